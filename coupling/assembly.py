@@ -59,16 +59,16 @@ from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-# Part of the normal module: the clearance between tip and root. Teeth compressed by more would touch there, and no
+# Clearance between tip and root, in normal modules. Teeth compressed by more would touch there, and no
 # steel bends so far.
 _GREATEST_COMPRESSION = 0.25
 
-_PER_GAP = 16  # straight pieces that stand for a bearing's cubic between two speeds of its table
+_PER_GAP = 16  # number of chords that replace a bearing's cubic between two speeds of its table
 
 
 @dataclass(frozen=True)
 class CoupledMachine:
-    """The parts of a machine, and the coupled system assembled of them.
+    """Parts of a machine, and the coupled system assembled from them.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class CoupledMachine:
         couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
-        In the rotors' couplings.
+        Dashpots in the rotors' couplings.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     """
@@ -138,7 +138,7 @@ class CoupledMachine:
         Parameters
         ----------
         number : int
-            Of the contact in the system.
+            Number of the contact in the system.
         contact : ToothContact
         force : float
             Mean mesh force, above 0 [N].
@@ -193,16 +193,16 @@ def assemble_machine(
 
     Parameters
     ----------
-    rotors, housing
-        The components.
+    rotors : sequence of RotorComponent
+    housing : HousingComponent or None
     speeds : dict of str to float
         Signed speed of each rotor [rad/s]; at rest see :func:`coupling.machine.gear_train.turning_senses`.
-    bearings, meshes
-        Connectors.
+    bearings : sequence of MountedBearing
+    meshes : sequence of GearMesh
     loads : MachineLoads
-        None by default.
-    dashpots
-        In the rotors' couplings.
+        Loads; by default there are none.
+    dashpots : sequence of ShaftDashpots
+        Dashpots in the rotors' couplings.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
         followed between them.
@@ -234,11 +234,13 @@ def assemble_machine(
     require_balance(meshes, loads.torques, speeds)
     _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
     pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
-    held = [_bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings]
+    bearing_connectors = [
+        _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings
+    ]
     within = []
-    for given in dashpots:
-        rows, dashpot = shaft_dashpots(given, coordinates.rotor(given.rotor), speeds[given.rotor], speed_range)
-        within.append(replace(dashpot, directions=coordinates.rows(given.rotor, rows).T))
+    for dashpot in dashpots:
+        rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
+        within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
 
     senses = _senses(meshes, speeds)
     phases = mesh_phases(
@@ -254,13 +256,13 @@ def assemble_machine(
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
     acting = _coordinate_loads(coordinates, bearings, loads)
-    for linear, _ in held:
+    for linear, _ in bearing_connectors:
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
     system = CoupledSystem(
         components=components,
         speeds=tuple(speeds.get(component.name, 0.0) for component in components),
-        linear=(*(linear for linear, _ in held), *within, *acting.dashpots),
+        linear=(*(linear for linear, _ in bearing_connectors), *within, *acting.dashpots),
         contacts=tuple(contacts),
         load=acting.constant,
         harmonic_loads=tuple(acting.harmonic),
@@ -268,7 +270,7 @@ def assemble_machine(
         acceleration_load=coordinates.acceleration_load(
             [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
         ),
-        nonlinear=tuple(own for _, own in held if own is not None),
+        nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
@@ -291,7 +293,7 @@ def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
 
 
 def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
-    """Return the same range of speeds as parts of ``ratio`` times the nominal ones, with those among them."""
+    """Return a speed range over ``ratio`` times the nominal speeds, widened to contain them."""
     low, high = speed_range
     if low == high or ratio == 0.0:
         return 1.0, 1.0
@@ -317,14 +319,14 @@ def _bearing(
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
     stiffness, damping = bearing.spatial_stiffness, bearing.spatial_damping
-    held = np.flatnonzero(np.any(stiffness != 0.0, axis=1) | np.any(damping != 0.0, axis=1))
-    held = np.union1d(held, [0, 1])
+    axes = np.flatnonzero(np.any(stiffness != 0.0, axis=1) | np.any(damping != 0.0, axis=1))
+    axes = np.union1d(axes, [0, 1])
     if isinstance(mounted.law, RollingLaw):
-        # Its tangent may vanish where its force does not stay zero. The ring of a floating one slides along z.
-        held = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
+        # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
+        axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     if table is not None:
         ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
-        held = np.union1d(held, np.flatnonzero(ever))
+        axes = np.union1d(axes, np.flatnonzero(ever))
     relative = coordinates.rows(rotor.name, rotor.motions(at))
     if mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
@@ -334,17 +336,19 @@ def _bearing(
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
     nonlinear = None
     if mounted.law is not None:
-        moving = held[np.any(relative[held] != 0.0, axis=1)]
+        moving = axes[np.any(relative[axes] != 0.0, axis=1)]
         tangent = stiffness[np.ix_(moving, moving)]
         nonlinear = NonlinearConnector(bearing.name, relative[moving].T, moving, mounted.law, tangent, speed)
     if table is not None:
-        parts = (part[:, held[:, None], held] for part in (table.stiffness, table.damping))
+        parts = (part[:, axes[:, None], axes] for part in (table.stiffness, table.damping))
         table = SpeedTable(table.speed_ratios, *parts)
-    among = np.ix_(held, held)
-    axes = tuple(held.tolist())
-    # A law of its own has its force from the elements.
-    offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[held]
-    linear = LinearConnector(bearing.name, relative[held].T, stiffness[among], damping[among], table, axes, offset)
+    among = np.ix_(axes, axes)
+    axis_numbers = tuple(axes.tolist())
+    # A nonlinear law includes the offset in the force of its elements.
+    offset = None if mounted.offset is None or mounted.law is not None else mounted.offset[axes]
+    linear = LinearConnector(
+        bearing.name, relative[axes].T, stiffness[among], damping[among], table, axis_numbers, offset
+    )
     return linear, nonlinear
 
 
@@ -376,13 +380,13 @@ def _coordinate_loads(
     coordinates: MachineCoordinates, bearings: Sequence[MountedBearing], loads: MachineLoads
 ) -> CoordinateLoads:
     """All loads on the coordinates but those that accelerate the trains."""
-    found = CoordinateLoads(np.zeros(coordinates.size))
+    total = CoordinateLoads(np.zeros(coordinates.size))
     for torque in loads.torques:
-        coordinates.add_torque(found, torque)
+        coordinates.add_torque(total, torque)
     for unbalance in loads.unbalances:
-        coordinates.add_unbalance(found, unbalance)
+        coordinates.add_unbalance(total, unbalance)
     for bow in loads.bows:
-        coordinates.add_bow(found, bow)
+        coordinates.add_bow(total, bow)
     places = {
         mounted.bearing.name: (*rotor.axis, rotor.start + mounted.bearing.at)
         for mounted in bearings
@@ -392,13 +396,13 @@ def _coordinate_loads(
     if loads.base is not None:
         speeds = [coordinates.speeds.get(part.name, 0.0) for part in components]
         harmonic, timed = base_loads(components, speeds, loads.base, places)
-        found.harmonic += harmonic
-        found.timed += timed
+        total.harmonic += harmonic
+        total.timed += timed
     if loads.gravity is not None:
-        found.constant += gravity_load(components, loads.gravity, places)
+        total.constant += gravity_load(components, loads.gravity, places)
     for force in loads.forces:
-        coordinates.add_force(found, force)
-    return found
+        coordinates.add_force(total, force)
+    return total
 
 
 def _with_shuttling(
@@ -452,7 +456,7 @@ def _require_thrust_carried(
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:
     """Tabulate a bearing over speed between two parts of a nominal one [rad/s]; None where it is constant.
 
-    Its monotone cubic is cut into straight pieces.
+    The monotone cubic of the table is replaced by chords.
     """
     low, high = speed_range
     if bearing.speeds is None or low == high or speed == 0.0:
@@ -483,7 +487,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
 def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
-    Of the compression δ of :mod:`coupling.machine.mesh_kinematics` the runout error e_err is taken off. A gear whose
+    The runout error e_err is subtracted from the compression δ of :mod:`coupling.machine.mesh_kinematics`. A gear whose
     centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
     e_err = -e (ε_k - ε_i): the same first-order runout as
     :func:`coupling.gears.geometry.pitch_deviations.runout_error`.

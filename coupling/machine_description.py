@@ -78,7 +78,7 @@ class Machine:
     ----------
     shafts : sequence of Shaft
     bearings : sequence of MountedBearing
-        Each on a shaft, in a seat of the housing or on the ground.
+        Bearings, each on a shaft, in a seat of the housing or on the ground.
     gears : sequence of ShaftGear
     gear_pairs : sequence of GearPair
         The driver of the first one turns at ``speed`` and takes ``torque`` in.
@@ -168,12 +168,12 @@ class Machine:
     @cached_property
     def pair_geometries(self) -> tuple[GearPairGeometry, ...]:
         """Both gears of every pair in mesh, at the distance of their shafts."""
-        found = []
+        geometries = []
         for pair in self.gear_pairs:
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            found.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes))
-        return tuple(found)
+            geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes))
+        return tuple(geometries)
 
     @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:
@@ -192,7 +192,7 @@ class Machine:
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
-        """Mean torque that each pair takes off its driver [N m], positive where power flows to the driven gear."""
+        """Mean torque that each pair takes from its driver [N m], positive where power flows to the driven gear."""
         return self.train.mean_pair_torques(self.constant_torques, self.speed)
 
     @cached_property
@@ -206,7 +206,7 @@ class Machine:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is allowed but likely not meant: bearings that do not hold their shaft against each other."""
+        """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft against each other."""
         return tuple(text for location in self.axial_locations for text in location.warnings)
 
     def shaft(self, name: str) -> Shaft:
@@ -219,15 +219,15 @@ class Machine:
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque."""
-        found = []
+        loaded = []
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = (
                 inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
                 for gear in self._gears_of(pair)
             )
             speed = self.speeds[self._gears_of(pair)[0].shaft]
-            found.append(load_gear_pair(pair, geometry, torque=torque, inertias=(driver, driven), speed=speed))
-        return tuple(found)
+            loaded.append(load_gear_pair(pair, geometry, torque=torque, inertias=(driver, driven), speed=speed))
+        return tuple(loaded)
 
     def rotor_components(
         self, *, limit_factor: float = 1.0, progress: Callable[[str], None] = lambda text: None
@@ -254,9 +254,9 @@ class Machine:
         Parameters
         ----------
         pairs : sequence of LoadedGearPair, optional
-            By default :meth:`loaded_pairs`.
+            Pairs; by default :meth:`loaded_pairs`.
         components : sequence of RotorComponent, optional
-            By default :meth:`rotor_components`.
+            Components; by default :meth:`rotor_components`.
         driving : Driving
             Torques that vary, motion of the base, gravity.
 
@@ -276,9 +276,9 @@ class Machine:
         ]
         loads = MachineLoads(
             unbalances=[
-                Unbalance(shaft.name, one.at, one.moment, one.phase)
+                Unbalance(shaft.name, unbalance.at, unbalance.moment, unbalance.phase)
                 for shaft in self.shafts
-                for one in shaft.unbalances
+                for unbalance in shaft.unbalances
             ],
             bows=bows,
             torques=self.constant_torques if driving.torques is None else driving.torques,
@@ -294,7 +294,7 @@ class Machine:
             bearings=self.bearings,
             meshes=[self._mesh(pair) for pair in pairs],
             loads=loads,
-            dashpots=[one for shaft in self.shafts for one in _dashpots(shaft.rotor)],
+            dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
         )
 
@@ -342,7 +342,7 @@ class Machine:
             raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
 
     def preload_point(self) -> OperatingPoint:
-        """Solve static equilibrium without torques, forces and weight: the forces with which bearings are preloaded.
+        """Solve static equilibrium without torques, forces and weight, which gives the bearings' preloads.
 
         Raises
         ------
@@ -354,7 +354,7 @@ class Machine:
 
     @property
     def needs_operating_point(self) -> bool:
-        """Whether the stiffness of a bearing or the misalignment of a pair has still to follow from the loads."""
+        """Whether a bearing's stiffness or a pair's misalignment is still to follow from the loads."""
         unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
         return unaligned or any(mounted.needs_load for mounted in self.bearings)
 
@@ -365,12 +365,12 @@ class Machine:
 
         Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
         have there; those with a nonlinear law start there. Pairs whose misalignment is None get the gap over the face
-        by the deflection of shafts, bearings and housing. What is given stays as it is.
+        by the deflection of shafts, bearings and housing. Given stiffness and misalignment stay as they are.
 
         Parameters
         ----------
         point : OperatingPoint, optional
-            By default :meth:`operating_point`.
+            Operating point; by default :meth:`operating_point`.
         gravity : sequence of float, optional
             Acceleration of free fall along x, y, z [m/s²].
 
@@ -395,9 +395,9 @@ class Machine:
 
     @cached_property
     def assembled(self) -> CoupledMachine:
-        """The coupled equations of motion under constant torques, as :meth:`assemble` makes them; assembled once.
+        """The coupled equations of motion under constant torques, see :meth:`assemble`; assembled once.
 
-        About the operating point, where something is left to it.
+        They are linearised about the operating point where :attr:`needs_operating_point`.
         """
         return self._linearised.assemble()
 
@@ -427,7 +427,7 @@ class Machine:
         frequency_limit : float
             Branches below it at some speed are followed [rad/s].
         progress : callable
-            Called with the part done, 0 to 1.
+            Called with the finished part, from 0 to 1.
 
         Raises
         ------
@@ -446,7 +446,7 @@ class Machine:
         frequencies : ndarray, shape (f,)
             ω > 0 [rad/s].
         mesh : int
-            Place of the gear pair in ``gear_pairs``.
+            Index of the gear pair in ``gear_pairs``.
 
         Raises
         ------
@@ -461,7 +461,7 @@ class Machine:
         Parameters
         ----------
         tolerance : float
-            Of the state after a period, relative, see :func:`coupling.periodic_response`.
+            Relative tolerance of the state after a period, see :func:`coupling.periodic_response`.
 
         Raises
         ------
@@ -486,13 +486,13 @@ class Machine:
         Parameters
         ----------
         revolutions : int
-            Of the first driver.
+            Number of revolutions of the first driver.
         discard : int
-            Revolutions before the record begins.
+            Number of revolutions before the record begins.
         points_per_revolution : int
-            Samples of the record, and the largest step.
+            Number of samples of the record in a revolution; the largest step is their interval.
         tolerance : float
-            Of the local error of a step, see :class:`coupling.TransientSettings`.
+            Tolerance of the local error of a step, see :class:`coupling.TransientSettings`.
         driving : Driving
             Torques that vary, motion of the base, gravity.
 
@@ -523,7 +523,7 @@ class Machine:
         Raises
         ------
         CouplingError
-            With the shafts, the gears and the forces [N].
+            Naming the shafts, the gears and the forces [N].
         """
         pairs = [
             ThrustPair((driver.shaft, driven.shaft), (driver.name, driven.name), geometry)
@@ -548,10 +548,10 @@ class Machine:
             )
         if len(self.shafts) == 1 or any(output.torque is None for output in self.outputs):
             return
-        for one in imbalances_of_shafts(self.torque, self.outputs):
+        for imbalance in imbalances_of_shafts(self.torque, self.outputs):
             raise CouplingError(
-                f"shaft {one.shaft!r} takes in {one.entering:g} N m and gives out {one.leaving:g} N m; expected "
-                f"torques that balance on shaft {one.shaft!r}, as no gear pair leads to or from it"
+                f"shaft {imbalance.shaft!r} takes in {imbalance.entering:g} N m and gives out {imbalance.leaving:g} "
+                f"N m; expected torques that balance on shaft {imbalance.shaft!r}, as no gear pair leads to or from it"
             )
 
     def _require_power_flow(self) -> None:
@@ -573,7 +573,7 @@ class Machine:
 
     def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")
-        held = self._bearings_on(shaft.name)
+        bearings = self._bearings_on(shaft.name)
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
             limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
@@ -586,14 +586,14 @@ class Machine:
         moments_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
         thrusts_at = [*moments_at, *(one.at for one in forces if one.force[2] != 0.0)]
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
-        for mounted in held:
+        for mounted in bearings:
             if isinstance(mounted.law, RollingLaw):
                 moments_at.append(mounted.bearing.at)
                 if not mounted.law.floats:
                     thrusts_at.append(mounted.bearing.at)
         modal = modal_rotor(
             self.rotor(shaft.name),
-            [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in held],
+            [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in bearings],
             frequency_limit=limit,
             count=count,
             gears_at=[gear.at for gear in gears],
@@ -646,18 +646,19 @@ class Machine:
 
     def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
         driver, driven = (
-            MountedGear(one.name, one.shaft, one.at, self.shaft(one.shaft).axis) for one in self._gears_of(loaded.pair)
+            MountedGear(gear.name, gear.shaft, gear.at, self.shaft(gear.shaft).axis)
+            for gear in self._gears_of(loaded.pair)
         )
         return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
     """Dashpots of the flexible couplings of a rotor."""
-    found, left = list[ShaftDashpots](), 0.0
+    dashpots, left = list[ShaftDashpots](), 0.0
     for part in rotor.segments:
         if isinstance(part, Coupling) and part.is_damped:
-            label = f"coupling {len(found) + 1} of {rotor.name}"
+            label = f"coupling {len(dashpots) + 1} of {rotor.name}"
             values = (part.lateral_damping, part.tilt_damping, part.torsional_damping, part.axial_damping)
-            found.append(ShaftDashpots(label, rotor.name, left, left + part.length, *values))
+            dashpots.append(ShaftDashpots(label, rotor.name, left, left + part.length, *values))
         left += part.length
-    return found
+    return dashpots

@@ -43,11 +43,11 @@ class Housing:
     Attributes
     ----------
     mesh : meshes.Mesh
-        Of the solid, with a surface for each seat.
+        Mesh of the solid, with a surface for each seat.
     material : Material
-        Of all elements that are in no volume of ``materials``.
+        Material of all elements that are in no volume of ``materials``.
     materials : mapping of str to Material
-        By the name of a volume of the mesh.
+        Material of each named volume of the mesh.
     fixtures : sequence of Support, Mount, Joint or LumpedMass
         Supports, mounts, joints between parts, and masses.
     seats : sequence of Seat
@@ -58,7 +58,7 @@ class Housing:
     Raises
     ------
     HousingError
-        Where a name is given twice, the mesh lacks a volume, or the damping ratio is none.
+        Where a name is given twice, the mesh lacks a volume, or the damping ratio is not from 0 to 1.
     """
 
     mesh: Mesh
@@ -83,8 +83,8 @@ class Housing:
                 )
         missing = [name for name in self.materials if name not in self.mesh.volumes]
         if missing:
-            known = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
-            raise HousingError(f"no volume {missing[0]!r} in the mesh; expected one of {known}")
+            volumes = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
+            raise HousingError(f"no volume {missing[0]!r} in the mesh; expected one of {volumes}")
         if not 0.0 <= self.damping_ratio < 1.0:
             raise HousingError(f"a damping ratio of {self.damping_ratio}; expected at least 0 and below 1")
 
@@ -111,11 +111,11 @@ class Housing:
             Edge length of the tetrahedra [m].
         material : Material
         unit : float, optional
-            Of the lengths in the file [m], where the file does not say.
+            Unit of the lengths in the file [m], where the file does not say.
         seats, fixtures, sensors, damping_ratio
             As :class:`Housing`. A seat with a diameter is found as a bore of the solid.
         order : {1, 2}
-            Of the elements.
+            Order of the elements.
 
         Raises
         ------
@@ -125,8 +125,8 @@ class Housing:
             As :class:`Housing`.
         """
         refine = [(seat.center, seat.diameter) for seat in seats if seat.diameter is not None]
-        found = mesh_cad(Path(path), mesh_size, unit=unit, order=order, refine=refine)
-        mesh = _with_bores(found.mesh, seats)
+        meshed = mesh_cad(Path(path), mesh_size, unit=unit, order=order, refine=refine)
+        mesh = _with_bores(meshed.mesh, seats)
         return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
 
     @classmethod
@@ -148,7 +148,7 @@ class Housing:
         path : path
         material : Material
         unit : float
-            Of the lengths in the file [m].
+            Unit of the lengths in the file [m].
         seats, fixtures, sensors, damping_ratio
             As :class:`Housing`. A seat with a diameter is found as a bore, unless a surface has its name.
 
@@ -198,7 +198,7 @@ class Housing:
         Parameters
         ----------
         free : Matrices, optional
-            Of :meth:`free_matrices`, where they are at hand.
+            Result of :meth:`free_matrices`, where it is at hand.
 
         Raises
         ------
@@ -233,8 +233,8 @@ class Housing:
         count : int
             Number of the lowest modes.
         bearings : mapping of str to (str, float), optional
-            Where the machine bears on the housing: by bearing, its seat and its distance along z from the centre of the
-            seat [m]. By default each seat stands for one bearing at its centre.
+            Places where the machine bears on the housing: for each bearing, its seat and its distance along z from the
+            centre of the seat [m]. By default each seat stands for one bearing at its centre.
         solver : {"lanczos", "eigsh"}
             Eigensolver, see :func:`housing.solve_modes`.
         progress : callable
@@ -252,23 +252,23 @@ class Housing:
         places = {name: (name, 0.0) for name in seat_ports} if bearings is None else bearings
         for name, (seat, _) in places.items():
             if seat not in seat_ports:
-                known = ", ".join(map(repr, seat_ports)) or "none"
-                raise HousingError(f"bearing {name!r}: no seat {seat!r} in the housing; expected one of {known}")
+                names = ", ".join(map(repr, seat_ports)) or "none"
+                raise HousingError(f"bearing {name!r}: no seat {seat!r} in the housing; expected one of {names}")
         loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in places.items()}
         progress(f"assembling {3 * len(self.mesh.points)} degrees of freedom")
         free = self.free_matrices()
         whole = self.matrices(free)
-        found = certified_modes(whole, loaded, below_hz=below_hz, count=count, solver=solver, progress=progress)
-        health = self.health(free, whole, found)
+        modes = certified_modes(whole, loaded, below_hz=below_hz, count=count, solver=solver, progress=progress)
+        health = self.health(free, whole, modes)
         health.require()
         return HousingModes(
             housing=self,
-            mode_set=found,
+            mode_set=modes,
             health=health,
-            seats={name: found.project_all(port) for name, port in seat_ports.items()},
-            sensors={name: found.project_all(port.matrix)[:, 0] for name, port in self.sensor_ports().items()},
-            damping_matrix=modal_damping(found, whole) if whole.damping.nnz else None,
-            participation=self.participation(whole, found),
+            seats={name: modes.project_all(port) for name, port in seat_ports.items()},
+            sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in self.sensor_ports().items()},
+            damping_matrix=modal_damping(modes, whole) if whole.damping.nnz else None,
+            participation=self.participation(whole, modes),
         )
 
     def require_sound_mesh(self) -> None:
@@ -279,14 +279,16 @@ class Housing:
         HousingError
             With everything that is wrong.
         """
-        joined = any(isinstance(one, Joint) for one in self.fixtures)
+        joined = any(isinstance(fixture, Joint) for fixture in self.fixtures)
         wrong = [
-            one
-            for one in diagnose(self.mesh)
-            if (not joined if one.name == "disconnected" else one.severity == "error")
+            defect
+            for defect in diagnose(self.mesh)
+            if (not joined if defect.name == "disconnected" else defect.severity == "error")
         ]
         if wrong:
-            raise HousingError("expected a sound mesh; " + "; ".join(f"{one.name}: {one.message}" for one in wrong))
+            raise HousingError(
+                "expected a sound mesh; " + "; ".join(f"{defect.name}: {defect.message}" for defect in wrong)
+            )
 
     def participation(self, whole: Matrices, modes: ModeSet) -> FloatArray:
         """Participation φᵀ M R of modes and residual modes in the motions of the ground, shape (n, 6) [√kg, √kg m].
@@ -303,9 +305,9 @@ class Housing:
         Parameters
         ----------
         free, whole : Matrices
-            Of :meth:`free_matrices` and :meth:`matrices`.
+            Results of :meth:`free_matrices` and :meth:`matrices`.
         modes : ModeSet
-            Of the latter.
+            Modes of ``whole``.
         """
         solid = mass_properties(self.mesh, self.material, self.materials)
         mass, center = solid.mass, solid.center
@@ -362,8 +364,8 @@ class HousingModes:
     @property
     def damping_ratios(self) -> FloatArray:
         """Fraction of critical damping of each mode with its own share of the dashpots, shape (n_modes,)."""
-        own = np.full(len(self.mode_set.frequencies), self.housing.damping_ratio)
-        return damping_ratios(self.mode_set.frequencies, own, self.damping_matrix)
+        ratios = np.full(len(self.mode_set.frequencies), self.housing.damping_ratio)
+        return damping_ratios(self.mode_set.frequencies, ratios, self.damping_matrix)
 
 
 def certified_modes(
@@ -406,16 +408,16 @@ def cover_joints(box: BoxGeometry, material: Material, bolt_material: Material |
     ----------
     box : meshes.BoxGeometry
     material : Material
-        Of the housing and its cover.
+        Material of the housing and its cover.
     bolt_material : Material, optional
-        Of the bolts; that of the housing by default.
+        Material of the bolts; that of the housing by default.
     """
     return [_bolted(bolt, material, bolt_material or material, box.rim_width) for bolt in box.bolts]
 
 
-def _bolted(bolt: Bolt, parts: Material, own: Material, rim: float) -> Joint:
+def _bolted(bolt: Bolt, clamped: Material, bolt_material: Material, rim: float) -> Joint:
     outer = max(rim, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
-    springs = bolted_joint(bolt.diameter, bolt.grip, parts, own, outer=outer).stiffness
+    springs = bolted_joint(bolt.diameter, bolt.grip, clamped, bolt_material, outer=outer).stiffness
     first, second = Patch(bolt.body_surface), Patch(bolt.cover_surface)
     return Joint(bolt.name, first, second, Bushing.along(bolt.axis, springs), bolt.position)
 

@@ -80,22 +80,22 @@ def element_constants(mesh: Mesh, material: Material, materials: Mapping[str, Ma
     """
     constants = np.tile(np.array([*material.lame, material.density])[:, None], mesh.n_elements)
     owner: dict[int, str] = {}
-    taken = np.zeros(mesh.n_elements, dtype=np.int64)
-    for number, (name, own) in enumerate(materials.items(), start=1):
+    volume_number = np.zeros(mesh.n_elements, dtype=np.int64)
+    for number, (name, volume_material) in enumerate(materials.items(), start=1):
         if name not in mesh.volumes:
-            known = ", ".join(sorted(mesh.volumes)) or "none"
-            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {known}")
+            names = ", ".join(sorted(mesh.volumes)) or "none"
+            raise HousingError(f"the mesh has no volume {name!r} to be of its own material; it has: {names}")
         members = np.asarray(mesh.volumes[name])
-        both = members[taken[members] > 0]
+        both = members[volume_number[members] > 0]
         if len(both):
-            other = owner[int(taken[both[0]])]
+            other = owner[int(volume_number[both[0]])]
             raise HousingError(f"volumes {other!r} and {name!r} share {len(both)} elements; each has one material only")
-        owner[number], taken[members] = name, number
-        constants[:, members] = np.array([*own.lame, own.density])[:, None]
+        owner[number], volume_number[members] = name, number
+        constants[:, members] = np.array([*volume_material.lame, volume_material.density])[:, None]
     return constants
 
 
-_DEGREE = 6  # of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
+_DEGREE = 6  # degree of p (p·n) on a curved quadratic facet: nothing is left to the quadrature
 
 
 def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
@@ -107,9 +107,9 @@ def enclosed_volume(mesh: Mesh) -> tuple[float, FloatArray]:
     Returns
     -------
     volume : float
-        [m³].
+        Volume [m³].
     centroid : ndarray, shape (3,)
-        [m].
+        Centroid [m].
     """
     # About the middle of the body, where the sums cancel least.
     middle = mesh.bounds.mean(axis=0)

@@ -22,7 +22,7 @@ SLACK = 0.01  # corners of a bore may be off its circle by this part of its diam
 _SHARPEST = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
 _LOCAL_FIT = 0.02  # corners of neighbours may be off their circle by this part of its radius
 _MOST_CIRCLES = 500
-_FEWEST_FACETS = 3  # that must propose a circle before it is tried
+_FEWEST_FACETS = 3  # facets that must propose a circle before it is tried
 
 
 def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, float]]:
@@ -44,12 +44,14 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
     sideways = np.abs(normals @ axis) < SIDEWAYS
     corners = np.concatenate([block.corners[:, [0, 1, 2, -1]] for block in boundary])
     pairs = _edge_neighbors(boundary)
-    one, two = pairs[:, 0], pairs[:, 1]
+    first_facet, second_facet = pairs[:, 0], pairs[:, 1]
     # Neighbours round a bore lie in front of each other, and turn, but not by a corner.
-    step = centers[two] - centers[one]
-    hollow = np.minimum(np.einsum("pi,pi->p", normals[one], step), -np.einsum("pi,pi->p", normals[two], step))
-    turn = np.einsum("pi,pi->p", normals[one], normals[two])
-    linked = sideways[one] & sideways[two] & (turn > _SHARPEST)
+    step = centers[second_facet] - centers[first_facet]
+    hollow = np.minimum(
+        np.einsum("pi,pi->p", normals[first_facet], step), -np.einsum("pi,pi->p", normals[second_facet], step)
+    )
+    turn = np.einsum("pi,pi->p", normals[first_facet], normals[second_facet])
+    linked = sideways[first_facet] & sideways[second_facet] & (turn > _SHARPEST)
     linked &= hollow > -1e-6 * np.linalg.norm(step, axis=1)
     pairs = np.concatenate([pairs[linked], pairs[linked][:, ::-1]])
     if len(pairs) == 0:
@@ -74,7 +76,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
 def _most_proposed(
     places: FloatArray, radii: FloatArray, first: FloatArray, second: FloatArray
 ) -> list[tuple[FloatArray, float]]:
-    """Circles that agree to their slack, as their medians, those with the most proposals first."""
+    """Medians of the circles that agree to their slack, those with the most proposals first."""
     if len(radii) == 0:
         return []
     size = np.exp(np.round(np.log(radii) / 0.05) * 0.05)  # bins of the same width for radii of the same size
@@ -94,7 +96,7 @@ def fit_circle(points: FloatArray) -> tuple[FloatArray, float]:
 
 
 def _fit_circles(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """As :func:`fit_circle` for many sets, shape (n, n_points, 2); not finite where points are in line."""
+    """Fit circles to n sets of points, shape (n, n_points, 2), by :func:`fit_circle`; not finite for points in line."""
     scale = np.abs(points).max(axis=(1, 2))
     scaled = points / scale[:, None, None]
     matrix = np.concatenate([scaled, np.ones((*scaled.shape[:2], 1))], axis=2)
@@ -151,11 +153,11 @@ class CylindricalBore:
     center : tuple of float
         The middle of its axis [m].
     diameter, length : float
-        Of the circle nearest to its corner nodes, and between its ends [m].
+        Diameter of the circle nearest to its corner nodes, and length between its ends [m].
     roundness : float
         Part of the full circle that its facets cover, 0 to 1.
     facets : tuple of ElementBlock
-        Its facets.
+        Facets of the bore.
     """
 
     center: tuple[float, float, float]
@@ -174,30 +176,30 @@ def find_bores(
     ----------
     mesh : Mesh
     axis : sequence of float
-        Of any length.
+        Direction of the axis, of any length.
     least_round : float
         Part of the full circle that a bore must cover; by default about a half, as in a housing split at the axis.
 
     Notes
     -----
     Each facet proposes the circle through its own corners and its neighbours'. The circles with the most proposals are
-    tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is none: its
-    sides run on along its tangents, where those of a split bore end at the parting plane.
+    tried first. Facets that lie on one circle all around are a bore. The round end of a slot, or a fillet, is no bore:
+    its sides run on along its tangents, where the sides of a split bore end at the parting plane.
     """
     direction = unit_vector(axis)
-    found: list[CylindricalBore] = []
-    taken = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
+    bores: list[CylindricalBore] = []
+    assigned = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
     for center, radius in candidate_circles(mesh, direction):
-        on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~taken
+        on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~assigned
         if not on.any():
             continue
         for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
-            if bore.roundness < least_round or any(_same(bore, other, direction) for other in found):
+            if bore.roundness < least_round or any(_same(bore, other, direction) for other in bores):
                 continue
             if not _runs_on(mesh, bore, direction):
-                found.append(bore)
-        taken |= on
-    return tuple(sorted(found, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
+                bores.append(bore)
+        assigned |= on
+    return tuple(sorted(bores, key=lambda bore: (-round(bore.diameter, 7), [round(x, 7) for x in bore.center])))
 
 
 def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
@@ -214,13 +216,15 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
     smooth, start = list[bool](), 0
     for block in mesh.boundary:
         on = inside[block.corners]
-        own = normals[start : start + len(block)]
+        block_normals = normals[start : start + len(block)]
         start += len(block)
         # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
-        for facet in np.flatnonzero((on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(own @ axis) < SIDEWAYS)):
+        for facet in np.flatnonzero(
+            (on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(block_normals @ axis) < SIDEWAYS)
+        ):
             edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
             inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
-            smooth.append(bool(own[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
+            smooth.append(bool(block_normals[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
     return bool(smooth) and 2 * sum(smooth) > len(smooth)
 
 
@@ -242,7 +246,7 @@ def fits_circle(
     arms = across(mesh.points - np.asarray(center), axis)
     near = np.abs(np.linalg.norm(arms, axis=1) - radius) <= slack
     on = np.concatenate([near[block.corners].all(axis=1) for block in mesh.boundary])
-    # Few do: only these are looked at, for hundreds of circles.
+    # Few facets have their corners on the cylinder: only these are examined, since hundreds of circles are tried.
     few = pick_facets(mesh.boundary, on)
     normals = facet_normals(mesh.points, few)
     inward = -across(facet_centers(mesh.points, few) - np.asarray(center), axis)
@@ -260,23 +264,27 @@ def joined_by_span(
     ----------
     mesh : Mesh
     facets : tuple of ElementBlock
-        As chosen by :func:`fits_circle`.
-    center, axis
-        Of the cylinder.
+        Facets as chosen by :func:`fits_circle`.
+    center : sequence of float
+        A point of the cylinder's axis [m].
+    axis : ndarray, shape (3,)
+        Unit vector.
     """
     part = _connected(facets)
     heights = (mesh.points - np.asarray(center)) @ axis
     low = np.concatenate([heights[block.corners].min(axis=1) for block in facets])
     high = np.concatenate([heights[block.corners].max(axis=1) for block in facets])
-    spans = sorted((float(low[part == one].min()), float(high[part == one].max()), one) for one in np.unique(part))
+    spans = sorted(
+        (float(low[part == number].min()), float(high[part == number].max()), number) for number in np.unique(part)
+    )
     groups: list[tuple[float, float, list[int]]] = []
-    for begin, end, one in spans:
+    for begin, end, number in spans:
         if groups:
             first, last, members = groups[-1]
             if min(end, last) - begin > 0.5 * min(end - begin, last - first):
-                groups[-1] = (first, max(last, end), [*members, one])
+                groups[-1] = (first, max(last, end), [*members, number])
                 continue
-        groups.append((begin, end, [one]))
+        groups.append((begin, end, [number]))
     return tuple(
         _bore(mesh, pick_facets(facets, np.isin(part, members)), np.asarray(center), axis) for _, _, members in groups
     )
@@ -327,9 +335,15 @@ def _roundness(mesh: Mesh, facets: Facets, center: FloatArray, first: FloatArray
     covered = np.zeros(_ARC_STEPS, dtype=bool)
     steps = np.arange(_ARC_STEPS)
     for block in facets:
-        own = angles[block.corners]
-        turned = np.mod(own - own[:, :1] + np.pi, 2 * np.pi) - np.pi  # from the first corner, the short way
-        ends = (own[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1)) * _ARC_STEPS / (2 * np.pi)
+        corner_angles = angles[block.corners]
+        turned = (
+            np.mod(corner_angles - corner_angles[:, :1] + np.pi, 2 * np.pi) - np.pi
+        )  # angles from the first corner, the short way
+        ends = (
+            (corner_angles[:, :1] + np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
+            * _ARC_STEPS
+            / (2 * np.pi)
+        )
         begin = np.floor(ends[:, 0] + 1e-6).astype(np.int64)
         width = np.ceil(ends[:, 1] - 1e-6).astype(np.int64) - begin
         for start, length in set(zip(begin.tolist(), width.tolist(), strict=True)):
@@ -356,7 +370,7 @@ def _connected(facets: Facets) -> IntArray:
 
 
 def _same(bore: CylindricalBore, other: CylindricalBore, axis: FloatArray) -> bool:
-    """Whether two are the same bore, found by two circles that both fit."""
+    """Whether two bores are one, found by two circles that both fit."""
     gap = np.subtract(bore.center, other.center)
     apart = float(np.linalg.norm(across(gap[None], axis)))
     slack = 2 * SLACK * bore.diameter

@@ -29,9 +29,9 @@ class Touching:
     Attributes
     ----------
     across : ndarray of int
-        Corners of the surface at the place of one of another body.
+        Corners of the surface at the place of a corner of another body.
     within : ndarray of int
-        Corners of the surface at the place of another one of the same body.
+        Corners of the surface at the place of another corner of the same body.
     hanging : ndarray of int
         Hanging nodes: corners of the surface within facets of other elements, at none of their corners.
     between_bodies : bool
@@ -74,10 +74,10 @@ def covered_quadrilaterals(mesh: Mesh) -> IntArray:
     triangles = [block.corners for block in mesh.boundary if block.of.n_corners == 3]
     if not quads or not triangles:
         return np.empty((0, 4), dtype=np.int64)
-    corners, known = np.concatenate(quads), np.sort(np.concatenate(triangles), axis=1)
+    corners, triangle_corners = np.concatenate(quads), np.sort(np.concatenate(triangles), axis=1)
     halves = np.sort(corners[:, [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]]], axis=2)
-    numbers = group_rows(np.concatenate([known, halves.reshape(-1, 3)]))
-    covered = np.isin(numbers[len(known) :], numbers[: len(known)]).reshape(-1, 4).any(axis=1)
+    numbers = group_rows(np.concatenate([triangle_corners, halves.reshape(-1, 3)]))
+    covered = np.isin(numbers[len(triangle_corners) :], numbers[: len(triangle_corners)]).reshape(-1, 4).any(axis=1)
     return np.asarray(corners[covered])
 
 
@@ -192,18 +192,18 @@ def _faces(mesh: Mesh) -> Iterator[MeshDefect]:
     if len(crowded):
         number = len(np.unique(table.number[crowded]))
         place = mesh.points[table.corners[crowded[0], :3]].mean(axis=0)
-        what = f"{number} facets are shared by three or more elements"
+        finding = f"{number} facets are shared by three or more elements"
         advice = "elements lie in each other, perhaps twice in the file; remove the surplus ones"
-        yield mesh_defect("non-manifold", "error", what, advice, number, place)
+        yield mesh_defect("non-manifold", "error", finding, advice, number, place)
     paired = np.flatnonzero(table.sharing == 2)
     pairs = paired[np.argsort(table.number[paired], kind="stable")].reshape(-1, 2)
     same = _turn(table.corners[pairs[:, 0]]) == _turn(table.corners[pairs[:, 1]])
     if same.any():
         number = int(same.sum())
         place = mesh.points[table.corners[pairs[np.argmax(same), 0], :3]].mean(axis=0)
-        what = f"at {number} facets both elements lie on the same side"
+        finding = f"at {number} facets both elements lie on the same side"
         advice = "one of each is turned inside out or folded over its neighbour; mesh anew"
-        yield mesh_defect("overlapping", "error", what, advice, number, place)
+        yield mesh_defect("overlapping", "error", finding, advice, number, place)
 
 
 def _turn(corners: IntArray) -> npt.NDArray[np.bool_]:
@@ -226,8 +226,8 @@ def _bodies(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
             for number, middle in enumerate(middles, start=1)
         )
         more = f" and {count - 1 - _LISTED} more" if count > 1 + _LISTED else ""
-        what = f"the mesh falls into {count} bodies that share no node: beside the largest {listed}{more}"
-        yield MeshDefect("disconnected", "warning", f"{what}; what joins them?", count, middles[0])
+        finding = f"the mesh falls into {count} bodies that share no node: beside the largest {listed}{more}"
+        yield MeshDefect("disconnected", "warning", f"{finding}; what joins them?", count, middles[0])
 
 
 def _hinges(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
@@ -238,45 +238,49 @@ def _hinges(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
     part = _parts(mesh, sparse.csr_array((ones, (faces.element, faces.number)), shape=shape))
     parts, count = int(part.max()) + 1, int(body.max()) + 1
     if parts > count:
-        what = f"{parts - count} parts hang on by an edge or a node alone"
+        finding = f"{parts - count} parts hang on by an edge or a node alone"
         advice = "they turn about it as about a hinge; let them share facets"
         middle = mesh.centers[part == parts - 1].mean(axis=0)
-        yield mesh_defect("hinged", "warning", what, advice, parts - count, middle, which="the smallest around")
+        yield mesh_defect("hinged", "warning", finding, advice, parts - count, middle, which="the smallest around")
 
 
 def _conformity(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
     """Neighbours that touch and do not share their nodes."""
     unequal = unequal_edges(mesh)
     if len(unequal):
-        what = f"{len(unequal)} edges have a middle node in one element and not in its neighbour"
+        finding = f"{len(unequal)} edges have a middle node in one element and not in its neighbour"
         advice = "elements of order 1 and 2 do not fit each other; use one order"
-        yield mesh_defect("non-conforming", "error", what, advice, len(unequal), mesh.points[unequal[0]].mean(axis=0))
+        yield mesh_defect(
+            "non-conforming", "error", finding, advice, len(unequal), mesh.points[unequal[0]].mean(axis=0)
+        )
     covered = covered_quadrilaterals(mesh)
     if len(covered):
-        what = f"{len(covered)} quadrilaterals lie on triangles"
+        finding = f"{len(covered)} quadrilaterals lie on triangles"
         advice = "bricks do not fit tetrahedra, nor the ends of wedges; use one kind, or join them along matching faces"
-        yield mesh_defect("non-conforming", "error", what, advice, len(covered), mesh.points[covered[0]].mean(axis=0))
+        yield mesh_defect(
+            "non-conforming", "error", finding, advice, len(covered), mesh.points[covered[0]].mean(axis=0)
+        )
     touching = touching_nodes(mesh, body)
     if number := len(touching.across):
-        what = f"the mesh falls into {body.max() + 1} bodies whose nodes coincide at {number} places"
+        finding = f"the mesh falls into {body.max() + 1} bodies whose nodes coincide at {number} places"
         advice = "merge them, unless the bodies are meant to be loose"
-        yield mesh_defect("disconnected", "error", what, advice, number, mesh.points[touching.across[0]])
+        yield mesh_defect("disconnected", "error", finding, advice, number, mesh.points[touching.across[0]])
     if number := len(touching.within):
-        what = f"nodes coincide at {number} places of one body and are not joined"
+        finding = f"nodes coincide at {number} places of one body and are not joined"
         advice = "merge them, unless a slit is meant"
-        yield mesh_defect("slit", "warning", what, advice, number, mesh.points[touching.within[0]])
+        yield mesh_defect("slit", "warning", finding, advice, number, mesh.points[touching.within[0]])
     if number := len(touching.hanging):
-        what = f"{number} nodes lie within facets that they are no part of"
+        finding = f"{number} nodes lie within facets that they are no part of"
         advice = "the elements on both sides do not match and are not joined; mesh them together"
         severity: Severity = "warning" if touching.between_bodies else "error"
-        yield mesh_defect("non-conforming", severity, what, advice, number, mesh.points[touching.hanging[0]])
+        yield mesh_defect("non-conforming", severity, finding, advice, number, mesh.points[touching.hanging[0]])
 
 
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""
 
-_LIKELY = 0.5  # of several possible units, the one that makes the housing nearest to this is proposed [m]
-_NO_VOLUME = 1e-9  # of the cube of an element's longest edge
+_LIKELY = 0.5  # size of a housing [m]; of several possible units, the one that comes nearest to it is proposed
+_NO_VOLUME = 1e-9  # least volume, as a part of the cube of an element's longest edge
 
 
 def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[MeshDefect, ...]:
@@ -317,18 +321,18 @@ def _elements(mesh: Mesh) -> Iterator[MeshDefect]:
         (folded, "folded", "error", "are folded by their middle nodes", "refine where it is curved, or use order 1"),
         (creased, "folded", "warning", "are folded at a node by their middle nodes", "refine where it is curved"),
     )
-    for which, name, severity, what, advice in cases:
+    for which, name, severity, finding, advice in cases:
         if which.any():
             number = int(which.sum())
             yield mesh_defect(
-                name, severity, f"{number} elements {what}", advice, number, mesh.centers[np.argmax(which)]
+                name, severity, f"{number} elements {finding}", advice, number, mesh.centers[np.argmax(which)]
             )
     if bad.any():
         worst, number = int(np.argmin(np.where(bad, shape, np.inf))), int(bad.sum())
-        what = f"{number} elements have a shape number below {LEAST_SHAPE} (1 is ideal, 0 is flat)"
+        finding = f"{number} elements have a shape number below {LEAST_SHAPE} (1 is ideal, 0 is flat)"
         advice = "mesh anew with a smaller or more even size there"
         which_one = f"the worst with {shape[worst]:.2g} at"
-        yield mesh_defect("shape", "warning", what, advice, number, mesh.centers[worst], which=which_one)
+        yield mesh_defect("shape", "warning", finding, advice, number, mesh.centers[worst], which=which_one)
 
 
 def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArray) -> FloatArray:
@@ -340,8 +344,8 @@ def _least_determinant(mesh: Mesh, nodes: IntArray, kind: str, places: FloatArra
 def _nodes(mesh: Mesh) -> Iterator[MeshDefect]:
     unused = np.setdiff1d(np.arange(len(mesh.points)), mesh.used_nodes)
     if len(unused):
-        what = f"{len(unused)} nodes belong to no element"
-        yield mesh_defect("unused nodes", "error", what, "leave them out", len(unused), mesh.points[unused[0]])
+        finding = f"{len(unused)} nodes belong to no element"
+        yield mesh_defect("unused nodes", "error", finding, "leave them out", len(unused), mesh.points[unused[0]])
 
 
 def _unit(mesh: Mesh, unit: float | None) -> Iterator[MeshDefect]:

@@ -28,7 +28,7 @@ class ElementKind:
     Attributes
     ----------
     name : str
-        meshio's, such as ``tetra10``.
+        Name in meshio, such as ``tetra10``.
     order : int
         Polynomial order, 1 or 2.
     corners : str
@@ -158,7 +158,7 @@ class ElementBlock:
     Raises
     ------
     GeometryError
-        Where there is no such kind, or the array has not its number of nodes.
+        Where there is no such kind, or the array has another number of nodes.
     """
 
     kind: str
@@ -221,8 +221,8 @@ def facets_of(nodes: IntArray) -> Facets:
         Where facets have another number of nodes.
     """
     if nodes.ndim != 2 or nodes.shape[1] not in _FACET_OF:
-        known = ", ".join(map(str, _FACET_OF))
-        raise GeometryError(f"facets have shape {nodes.shape}; expected (n_facets, n_nodes) with n_nodes of {known}")
+        numbers = ", ".join(map(str, _FACET_OF))
+        raise GeometryError(f"facets have shape {nodes.shape}; expected (n_facets, n_nodes) with n_nodes of {numbers}")
     return (ElementBlock(_FACET_OF[nodes.shape[1]], nodes),)
 
 
@@ -254,7 +254,7 @@ def facet_normals(points: FloatArray, facets: Facets) -> FloatArray:
     normals = [np.empty((0, 3))]
     for block in facets:
         corners = points[block.corners]
-        # Of a quadrilateral by its diagonals, of a triangle by two sides.
+        # A quadrilateral's normal by its diagonals, a triangle's by two sides.
         last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
         normals.append(np.cross(corners[:, 2] - corners[:, 0], last))
     together = np.concatenate(normals)
@@ -290,7 +290,7 @@ class FaceTable:
     corners : ndarray of int, shape (n_faces, 4)
         Corners of each face in its own order as its element sees it from outside; the fourth is -1 in a triangle.
     element : ndarray of int, shape (n_faces,)
-        The element it belongs to, over all blocks.
+        The element that the face belongs to, over all blocks.
     number : ndarray of int, shape (n_faces,)
         Equal for faces of the same corners.
     sharing : ndarray of int, shape (n_faces,)
@@ -350,9 +350,9 @@ def faces_as_facets(blocks: tuple[ElementBlock, ...], table: FaceTable, chosen: 
     source = table.source[chosen]
     for number, block in enumerate(blocks):
         for place, (kind, local) in enumerate(block.of.faces):
-            here = np.flatnonzero((source[:, 0] == number) & (source[:, 2] == place))
-            if len(here):
-                parts.setdefault(kind, []).append((here, block.nodes[source[here, 1]][:, local]))
+            rows = np.flatnonzero((source[:, 0] == number) & (source[:, 2] == place))
+            if len(rows):
+                parts.setdefault(kind, []).append((rows, block.nodes[source[rows, 1]][:, local]))
     facets = []
     for kind in sorted(parts, key=list(KINDS).index):
         places = np.concatenate([where for where, _ in parts[kind]])

@@ -98,10 +98,10 @@ def _signals_kept() -> Iterator[None]:
 
 # gmsh numbers the last two middle nodes of a ten-node tetrahedron the other way round than VTK does.
 _GMSH_TO_VTK = {4: [0, 1, 2, 3], 10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
-# ... and these are its edges in gmsh's order of the middle nodes.
+# Edges of the tetrahedron in gmsh's order of their middle nodes.
 _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
-_WORST_JACOBIAN = 0.05  # of an element's least to its mean, below which it counts as folded
+_WORST_JACOBIAN = 0.05  # least Jacobian of an element over its mean, below which it counts as folded
 _HALVINGS = 3
 _REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
 
@@ -129,7 +129,7 @@ def expected_elements(volume: float, mesh_size: float) -> float:
     Parameters
     ----------
     volume, mesh_size : float
-        [m³], [m], or both in another unit of length.
+        Volume [m³] and mesh size [m], or both in another unit of length.
     """
     return float(_REGULAR * volume / mesh_size**3)
 
@@ -140,7 +140,7 @@ def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
     Parameters
     ----------
     volume, extent, mesh_size : float
-        Of the solid, its longest side, and the edge length aimed at [m³, m, m].
+        Volume of the solid, its longest side, and the edge length aimed at [m³, m, m].
 
     Raises
     ------
@@ -262,7 +262,7 @@ def collect(
     ----------
     gmsh : module
     order : {1, 2}
-        Of the elements.
+        Order of the elements.
     surfaces, volumes : mapping of str to sequence of int
         Faces and solids of the model that make up each named region.
     unit : float

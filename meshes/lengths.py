@@ -4,7 +4,7 @@ UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 """Units of length that a user may name [m]."""
 
 SMALLEST, LARGEST = 0.01, 20.0
-"""A gearbox housing's longest side is longer than the one and shorter than the other [m]; else its unit is mistaken."""
+"""Bounds of the longest side of a gearbox housing [m]; beyond them its unit is mistaken."""
 
 
 def plausible(length: float) -> bool:

@@ -36,8 +36,9 @@ class MeshDefect:
     Attributes
     ----------
     name : str
-        Of the mesh itself: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``, ``disconnected``,
-        ``slit``, ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``. Of its resolution: ``size``, ``locking``.
+        Finding on the mesh itself: ``degenerate``, ``folded``, ``shape``, ``non-manifold``, ``overlapping``,
+        ``disconnected``, ``slit``, ``non-conforming``, ``hinged``, ``unused nodes``, ``unit``; on its resolution:
+        ``size``, ``locking``.
     severity : {"error", "warning"}
         Errors make the modes wrong or impossible; warnings leave the judgement to the user.
     message : str
@@ -45,7 +46,7 @@ class MeshDefect:
     count : int
         Number of nodes, facets, elements or bodies.
     place : ndarray, shape (3,)
-        Of the first or the worst of them [m].
+        Place of the first or the worst of them [m].
     """
 
     name: str
@@ -56,10 +57,17 @@ class MeshDefect:
 
 
 def mesh_defect(
-    name: str, severity: Severity, what: str, advice: str, count: int, place: FloatArray, *, which: str = "the first at"
+    name: str,
+    severity: Severity,
+    finding: str,
+    advice: str,
+    count: int,
+    place: FloatArray,
+    *,
+    which: str = "the first at",
 ) -> MeshDefect:
     """Make a defect whose message names the fault, one place, and the remedy."""
-    return MeshDefect(name, severity, f"{what}, {which} {place_text(place)}; {advice}", int(count), place)
+    return MeshDefect(name, severity, f"{finding}, {which} {place_text(place)}; {advice}", int(count), place)
 
 
 def place_text(place: FloatArray) -> str:
@@ -133,7 +141,7 @@ class Mesh:
         Parameters
         ----------
         points : ndarray, shape (n_nodes, 3)
-            [m].
+            Places of the nodes [m].
         cells : ndarray of int, shape (n_elements, 4) or (n_elements, 10)
         surfaces : mapping of str to ndarray of int, shape (n_facets, 3) or (n_facets, 6)
         volumes : mapping of str to ndarray of int, shape (n,)
@@ -161,7 +169,7 @@ class Mesh:
         Parameters
         ----------
         rotation : ndarray, shape (3, 3)
-            R of x' = R x, proper and orthogonal.
+            Matrix R of x' = R x, proper and orthogonal.
 
         Raises
         ------
@@ -227,7 +235,7 @@ class Mesh:
 
     @cached_property
     def boundary(self) -> Facets:
-        """The facets that belong to one element only, outward: a block for each kind."""
+        """Facets that belong to one element only, seen from outside: a block for each kind."""
         return faces_as_facets(self.blocks, self.faces, np.flatnonzero(self.faces.sharing == 1))
 
     @property
@@ -253,8 +261,8 @@ class Mesh:
             Where the mesh has no surface of that name; the message lists those it has.
         """
         if name not in self.surfaces:
-            known = ", ".join(sorted(self.surfaces)) or "none"
-            raise GeometryError(f"the mesh has no surface {name!r}; it has: {known}")
+            names = ", ".join(sorted(self.surfaces)) or "none"
+            raise GeometryError(f"the mesh has no surface {name!r}; it has: {names}")
         return self.surfaces[name]
 
     def _check_nodes(self, block: ElementBlock, owner: str, dimension: int) -> None:

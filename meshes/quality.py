@@ -82,8 +82,8 @@ def _block_shape(points: FloatArray, block: ElementBlock) -> FloatArray:
 
 # Longest edge of elements of order 1 and 2, as a part of the shortest wave: the usual rule of six nodes for each wave.
 _PARTS = {1: 6.0, 2: 3.0}
-# Too stiff in bending by this times (edge / thickness)²: measured with bars of one to four tetrahedra through the
-# thickness, where it lies between 2.6 and 2.9.
+# Relative excess stiffness in bending over (edge / thickness)²: measured with bars of one to four tetrahedra through
+# the thickness, where it lies between 2.6 and 2.9.
 _LOCKING = 2.8
 
 
@@ -126,7 +126,7 @@ def wall_thickness(mesh: Mesh) -> float:
     area = 0.0
     for block in mesh.boundary:
         corners = mesh.points[block.corners]
-        # Of a quadrilateral by its diagonals, of a triangle by two sides: half the product in both.
+        # The area of a quadrilateral by its diagonals, of a triangle by two sides: half the product in both.
         last = corners[:, -1] - corners[:, 1] if block.of.n_corners == 4 else corners[:, 2] - corners[:, 1]
         area += 0.5 * float(np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], last), axis=1).sum())
     return 2.0 * float(mesh.corner_volumes.sum()) / area
@@ -143,7 +143,7 @@ def resolution_defects(mesh: Mesh, wave: WaveCarrier) -> tuple[MeshDefect, ...]:
         coarse = (orders == order) & (longest > length / part)
         if coarse.any():
             number, worst = int(coarse.sum()), int(np.argmax(np.where(coarse, longest, 0.0)))
-            what = (
+            finding = (
                 f"{number} of {mesh.n_elements} elements have edges longer than 1/{part:g} of the shortest wave, "
                 f"{length_text(length)} at {wave.frequency / (2.0 * np.pi):.4g} Hz in walls about "
                 f"{length_text(thickness)} thick"
@@ -152,7 +152,7 @@ def resolution_defects(mesh: Mesh, wave: WaveCarrier) -> tuple[MeshDefect, ...]:
                 f"modes near that frequency come out too high; use elements of at most {length_text(length / part)}"
             )
             which = f"the worst of {length_text(longest[worst])} at"
-            defects.append(mesh_defect("size", "warning", what, advice, number, mesh.centers[worst], which=which))
+            defects.append(mesh_defect("size", "warning", finding, advice, number, mesh.centers[worst], which=which))
     defects += _locking(mesh, thickness)
     return tuple(defects)
 

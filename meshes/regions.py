@@ -11,10 +11,10 @@ from meshes.elements import Facets, FloatArray, facet_centers, facet_corners, fa
 from meshes.errors import GeometryError
 from meshes.mesh import Mesh
 
-_PLANE_SLACK = 1e-4  # of the mesh's diagonal
+_PLANE_SLACK = 1e-4  # part of the mesh's diagonal
 _NORMAL = 0.99  # least cosine between a facet's normal and that of the plane it lies on
-_CIRCLE_SLACK = 0.01  # of the bore's diameter
-_LEAST_ROUND = 0.45  # of the full circle, for less than half a bore holds no bearing
+_CIRCLE_SLACK = 0.01  # part of the bore's diameter
+_LEAST_ROUND = 0.45  # part of the full circle: less than half a bore holds no bearing
 _LISTED = 5
 
 
@@ -45,7 +45,7 @@ def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) ->
     point : sequence of float
         A point of the plane [m].
     normal : sequence of float
-        Its normal, of any length.
+        Normal of the plane, of any length.
 
     Raises
     ------
@@ -89,9 +89,9 @@ def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], 
     center : sequence of float
         Middle of the circle, on the face or near it [m].
     normal : sequence of float
-        The way that the face looks, out of its material; of any length.
+        Outward normal of the face, of any length.
     diameter : float
-        Facets whose middles lie in the circle belong to it [m].
+        Diameter of the circle [m]; facets whose middles lie in the circle belong to it.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], 
 
     Notes
     -----
-    Of several such faces one behind the other, as on both sides of a thin plate, it is the one nearest to the centre.
+    Among several such faces one behind the other, as on both sides of a thin plate, the nearest to the centre counts.
     """
     axis = unit_vector(normal)
     offset = facet_centers(mesh.points, mesh.boundary) - np.asarray(center)
@@ -132,12 +132,12 @@ def cylinder_facets(
     ----------
     mesh : Mesh
     center : sequence of float
-        A point on the bore's axis [m], at most a diameter beyond its ends. Of several bores on that axis the one is
-        taken whose middle is nearest along it.
+        A point on the bore's axis [m], at most a diameter beyond its ends. Among several bores on that axis, the one
+        with its middle nearest along the axis counts.
     diameter : float
-        [m].
+        Diameter [m].
     axis : sequence of float
-        Its direction, of any length.
+        Direction of the axis, of any length.
     length : float, optional
         Length of the part that is wanted, half of it to each side of the centre [m]; by default all of the bore.
 
@@ -193,7 +193,7 @@ def with_bore(
 
 
 def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) -> str:
-    """Message that names the bore asked for and the bores found, nearest first."""
+    """Message that names the bore asked for and the bores of the mesh, nearest first."""
     message = f"no bore of {1e3 * diameter:.5g} mm around {_place(center)} mm"
     bores = find_bores(mesh, axis=axis)
     if not bores:

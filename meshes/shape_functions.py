@@ -29,7 +29,7 @@ def shape_functions(kind: str, points: FloatArray) -> tuple[FloatArray, FloatArr
     -------
     values : ndarray, shape (n_points, n_nodes)
     gradients : ndarray, shape (n_points, n_nodes, dimension)
-        By the reference coordinates.
+        Derivatives by the reference coordinates.
     """
     element, order = _element(kind)
     pairs = [element.lbasis(points, number) for number in order]
@@ -50,7 +50,7 @@ def quadrature(kind: str, degree: int) -> tuple[FloatArray, FloatArray]:
     -------
     points : ndarray, shape (dimension, n_points)
     weights : ndarray, shape (n_points,)
-        Their sum is the volume of the reference element.
+        Weights, whose sum is the volume of the reference element.
     """
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefHex, RefLine, RefQuad, RefTet, RefTri
@@ -158,15 +158,15 @@ def jacobians(points: FloatArray, nodes: IntArray, gradients: FloatArray) -> Flo
     Parameters
     ----------
     points : ndarray, shape (n_points, 3)
-        [m].
+        Places of the nodes [m].
     nodes : ndarray of int, shape (n_elements, n_nodes)
     gradients : ndarray, shape (n_places, n_nodes, dimension)
-        Of the shape functions, by the reference coordinates.
+        Derivatives of the shape functions by the reference coordinates.
 
     Returns
     -------
     ndarray, shape (3, dimension, n_elements, n_places)
-        [m]. The component comes first, so that each one is a plain array over elements and places.
+        Jacobians [m]. The component comes first, so that each one is a plain array over elements and places.
     """
     n_places, n_nodes, dimension = gradients.shape
     flat = gradients.transpose(1, 2, 0).reshape(n_nodes, dimension * n_places)

@@ -15,7 +15,7 @@ ORTHONORMALITY_TOLERANCE = 1e-8
 # Accepted relative residual of a root of the exact equations, and relative correction at which it has converged.
 ACCEPTED = 1e-11
 SETTLED = 2e-14
-MOST_STEPS = 14  # of Newton's method
+MOST_STEPS = 14  # largest number of Newton steps
 
 
 @dataclass(frozen=True)
@@ -24,23 +24,23 @@ class ModeCertificate:
 
     Attributes
     ----------
-    limit
-        rad/s: every mode below it is claimed; of whirl every oscillating motion with |λ| below it.
-    expected
+    limit : float
+        Frequency below which every mode is claimed; for whirl every oscillating motion with |λ| below it [rad/s].
+    expected : int
         Number of modes below the limit by the count, doubles twice, rigid motions included.
-    found
-        Number of independent modes held there.
-    max_residual
+    found : int
+        Number of independent modes in the set below the limit.
+    max_residual : float
         Planar and torsional modes: largest relative difference between ω² and the strain over the kinetic energy of a
         shape, both integrated along the shaft; zero of rigid motions. Whirl: largest last correction of a root of the
-        exact equations, as a part of it.
-    method
+        exact equations, relative to the root.
+    method : str
         ``"wittrick-williams"``: the root count of `rotors.transfer_matrix.wittrick_williams`. ``"inertia"``: the same
         count of the Hermitian dynamic stiffness (`rotors.whirl.completeness`). ``"winding"``: the argument principle
         (`rotors.whirl.argument_principle`). ``"crossings"``: crossings of a Campbell diagram, whose branches are
         proved.
-    orthonormality
-        Largest entry of |Φᵀ M Φ − I|; zero of whirl, whose modes have no such products.
+    orthonormality : float
+        Largest entry of |Φᵀ M Φ − I|; zero for whirl, whose modes have no such products.
     """
 
     limit: float
@@ -52,12 +52,12 @@ class ModeCertificate:
 
     @property
     def complete(self) -> bool:
-        """Whether every mode below the limit is held."""
+        """Whether the set has every mode below the limit."""
         return self.found == self.expected
 
 
 def combined_certificate(parts: Sequence[ModeCertificate], limit: float, method: str) -> ModeCertificate:
-    """Certificate of several independent sets of motions below one limit (rad/s), counted by one method."""
+    """Certificate of several independent sets of motions below one limit [rad/s], counted by one method."""
     return ModeCertificate(
         limit,
         sum(part.expected for part in parts),
@@ -84,11 +84,11 @@ def certify(
     worst = float(residual.max(initial=0.0))
     skewness = float(np.abs(mass - np.eye(squared.size)).max(initial=0.0))
     failed = int(np.count_nonzero(~(residual <= ENERGY_TOLERANCE)))
-    found = int(squared.size) - failed if skewness <= ORTHONORMALITY_TOLERANCE else 0
-    certificate = ModeCertificate(limit, expected, found, worst, "wittrick-williams", skewness)
+    accepted = int(squared.size) - failed if skewness <= ORTHONORMALITY_TOLERANCE else 0
+    certificate = ModeCertificate(limit, expected, accepted, worst, "wittrick-williams", skewness)
     if not certificate.complete:
         raise IncompleteModesError(
-            f"{found} of {expected} modes below {limit:g} rad/s pass their energy check (worst residual "
+            f"{accepted} of {expected} modes below {limit:g} rad/s pass their energy check (worst residual "
             f"{worst:.1e}, orthonormality {skewness:.1e}); lower the frequency limit, or check the model for parts "
             "that differ by many orders of magnitude in stiffness"
         )

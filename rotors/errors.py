@@ -16,22 +16,22 @@ class EquilibriumError(RuntimeError):
     """A rolling bearing's equilibrium fails its proof or exceeds its theory; the message says why and what helps."""
 
 
-def require(condition: bool, what: str, value: object, expected: str) -> None:
-    """Raise `RotorError` naming ``what``, its ``value`` and what was ``expected`` unless ``condition``."""
+def require(condition: bool, label: str, value: object, expected: str) -> None:
+    """Raise `RotorError` naming ``label``, its ``value`` and what was ``expected`` unless ``condition``."""
     if not condition:
-        raise RotorError(f"{what} is {value!r}; expected {expected}")
+        raise RotorError(f"{label} is {value!r}; expected {expected}")
 
 
-def require_count(what: str, value: int | None) -> None:
+def require_count(label: str, value: int | None) -> None:
     """Raise `RotorError` unless ``value`` is None or a positive whole number."""
     whole = value is None or (isinstance(value, numbers.Integral) and value > 0)
-    require(whole, what, value, "a positive whole number")
+    require(whole, label, value, "a positive whole number")
 
 
-def require_finite(what: str, value: float, *, positive: bool = False, minimum: float | None = None) -> None:
+def require_finite(label: str, value: float, *, positive: bool = False, minimum: float | None = None) -> None:
     """Raise `RotorError` unless ``value`` is finite and, as asked, positive or not below ``minimum``."""
-    require(math.isfinite(value), what, value, "a finite number")
+    require(math.isfinite(value), label, value, "a finite number")
     if positive:
-        require(value > 0.0, what, value, "a positive number")
+        require(value > 0.0, label, value, "a positive number")
     if minimum is not None:
-        require(value >= minimum, what, value, f"a number not below {minimum:g}")
+        require(value >= minimum, label, value, f"a number not below {minimum:g}")

@@ -18,7 +18,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 ORDER = 5
-"""Places in an element; the error at its end is of order 2 ORDER + 1 in its size."""
+"""Gauss points (places) in an element; the error at its end is of order 2 ORDER + 1 in the element's size."""
 
 
 def _barycentric(points: FloatArray) -> FloatArray:
@@ -27,7 +27,7 @@ def _barycentric(points: FloatArray) -> FloatArray:
 
 
 def _missing(places: FloatArray) -> FloatArray:
-    """Polynomials that vanish at the places and are 1 and 0 at the ends, and 0 and 1."""
+    """Polynomials that vanish at the places: the first is 1 at the start and 0 at the end, the second 0 and 1."""
     whole = np.polynomial.polynomial.polyfromroots(places)
     first = np.polynomial.polynomial.polymul(whole, [1.0, -1.0]) / whole[0]
     last = np.polynomial.polynomial.polymul(whole, [0.0, 1.0]) / whole.sum()
@@ -47,16 +47,16 @@ POINTS: FloatArray = np.concatenate([[0.0], PLACES, [1.0]])
 """Both ends and the places: interpolation points of a compression within an element, shape (ORDER + 2,)."""
 
 BARYCENTRIC: FloatArray = _barycentric(POINTS)
-"""Weights of the barycentric formula on these points."""
+"""Weights of the barycentric formula on `POINTS`, shape (ORDER + 2,)."""
 
 INSIDE = 1e-6
-"""Part of an element by which evaluations at its ends stand inside, as events and switches are at the ends."""
+"""Offset of an evaluation at an end into the element, over its length: events and switches are at the very end."""
 
 AT_ENDS: FloatArray = np.ascontiguousarray(np.vander([INSIDE, 1.0 - INSIDE], ORDER, increasing=True) @ MONOMIALS.T)
-"""Weights of the values at the places in their polynomial just inside both ends, shape (2, ORDER)."""
+"""Weights of the values at the places for their polynomial just inside both ends, shape (2, ORDER)."""
 
 MISSING: FloatArray = _missing(PLACES)
-"""Coefficients of the defect of such a polynomial for a defect of 1 at the start or the end, (2, ORDER + 2)."""
+"""Coefficients of a polynomial's defect for a defect of 1 at the start or at the end, shape (2, ORDER + 2)."""
 
 
 BINOMIAL: FloatArray = np.array([[float(math.comb(j, k)) for k in range(ORDER)] for j in range(ORDER)])
@@ -67,44 +67,44 @@ AT_END: FloatArray = np.ascontiguousarray(MONOMIALS @ BINOMIAL)
 
 
 def weights_to(part: FloatArray) -> FloatArray:
-    """Weights at the places of an integral from 0 to ``part``, shapes (e,) and (e, ORDER); Gauss's own for 1."""
+    """Quadrature weights (e, ORDER) at the places for integrals from 0 to ``part`` (e,); the Gauss weights for 1."""
     powers = np.arange(1, ORDER + 1)
     return np.asarray((part[:, None] ** powers / powers) @ MONOMIALS.T)
 
 
-_LADDER = 1.1  # between the sizes of its rungs ...
-_RUNGS = 100  # ... so down to a ten-thousandth of the largest
-_LARGEST_BATCH = 24  # elements whose powers are found at once, within the processor's caches
-_BY_ONE_THREAD = 2**18  # of numbers: larger products of matrices OpenBLAS shares out among threads, at a loss
+_LADDER = 1.1  # ratio of neighbouring sizes of the ladder
+_RUNGS = 100  # number of ladder sizes: the smallest is a ten-thousandth of the largest
+_LARGEST_BATCH = 24  # number of elements whose powers are evaluated at once, within the processor's caches
+_BY_ONE_THREAD = 2**18  # operand size; OpenBLAS splits larger matrix products among threads, at a loss
 
 
 class Reference(NamedTuple):
     """The linear machine at its mean mesh stiffness, by the motion at its contacts.
 
-    The amplitudes of its modes are followed by those of its steady response to the loads, an amplitude e^{iwt} for each
-    harmonic and a constant 1, which no contact changes.
+    The amplitudes of the modes come first; the amplitudes of the steady response to the loads follow, e^{iwt} for each
+    harmonic and a constant 1. No contact changes the amplitudes of the response.
     """
 
     eigenvalue: ComplexArray  # (m,) λ; iw; 0
     source: ComplexArray  # (m, c) rate of each amplitude by a force of each contact, to be subtracted
-    displacement: FloatArray  # (c, 2 m) compression of each contact: its product with the amplitudes
-    rate: FloatArray  # (c, 2 m) its rate
-    stiffness: FloatArray  # (c,) of the reference, k̄
-    damping: FloatArray  # (c,) of the reference, c̄
-    full_damping: FloatArray  # (c,) the law's damping where it has faded in
+    displacement: FloatArray  # (c, 2 m) its product with the amplitudes is the compression of each contact
+    rate: FloatArray  # (c, 2 m) its product with the amplitudes is the rate of the compression
+    stiffness: FloatArray  # (c,) k̄, the mean stiffness
+    damping: FloatArray  # (c,) c̄, the mean damping
+    full_damping: FloatArray  # (c,) the contact law's damping beyond its fade-in depth
 
 
 class Steps(NamedTuple):
     """Matrices of an element of each size.
 
-    First the sizes that occur, then a geometric ladder of sizes, so that every other length is near one of them; these
-    are filled in when first needed. Rows of compressions and rates: place by place, contact
-    by contact.
+    The sizes that occur come first, then a geometric ladder of sizes, so that every other length is near one of them.
+    Ladder matrices are filled in when first needed. Rows of compressions and rates are ordered by place, then by
+    contact.
     """
 
     size: FloatArray  # (k,)
-    filled: IntArray  # (k,) whether
-    ladder: IntArray  # (1,) index of its first size
+    filled: IntArray  # (k,) 1 where the matrices are filled in
+    ladder: IntArray  # (1,) index of the first size of the ladder
     decay: FloatArray  # (k, 2, m) exp(λ h), real and imaginary part
     free_response: FloatArray  # (k, 2 s c, 2 m) compressions at the places from the amplitudes at the start; rates
     flexibility: FloatArray  # (k, 2 s c, s c) compressions at the places from the forces there, to be subtracted; rates
@@ -178,7 +178,7 @@ def empty_steps(reference: Reference, values: FloatArray, largest: float, *, inn
 
 
 class FreeMotion(NamedTuple):
-    """r rigid-body motions beside the reference's own: uniformly accelerated from a time on."""
+    """r uniformly accelerated rigid-body motions, added to the reference's response."""
 
     time: FloatArray  # (1,) [s]
     place: FloatArray  # (r,)
@@ -200,8 +200,8 @@ class Powers(NamedTuple):
     rate: FloatArray  # (2 m + r, n) rates of the amplitudes, and of the rigid-body motions
     loss: FloatArray  # (n,) principal values: the squares of the rates times these give the loss
     skew: FloatArray  # (2 m, n) forces of a stiffness that is not symmetric, twice; (0, n) where it is symmetric
-    riding: IntArray  # (k,) amplitudes that carry loads ...
-    pushing: FloatArray  # (k, n) ... and these
+    riding: IntArray  # (k,) indices of the amplitudes that loads are proportional to
+    pushing: FloatArray  # (k, n) load of each of these amplitudes
 
 
 class PowersRoom(NamedTuple):
@@ -214,7 +214,7 @@ class PowersRoom(NamedTuple):
 
 
 def powers_room(size: int, n: int, s: int) -> PowersRoom:
-    """Room for as many elements, with ``size`` amplitudes each, as BLAS multiplies in one thread."""
+    """Allocate room for the largest batch of elements, ``size`` amplitudes each, that BLAS multiplies in one thread."""
     batch = max(1, min(_LARGEST_BATCH, _BY_ONE_THREAD // (s * size * n)))
     return PowersRoom(np.zeros((batch * s, size)), np.zeros((batch * s, n)), np.zeros(size), np.zeros((batch, s)))
 
@@ -224,28 +224,28 @@ class Work(NamedTuple):
 
     base: FloatArray  # (2 n,) compressions and rates without the excess forces
     excess: FloatArray  # (n,)
-    move: FloatArray  # (n,) Newton's last step
-    slope: FloatArray  # (n,) of the excess by compression ...
-    rate_slope: FloatArray  # (n,) ... and by rate
+    move: FloatArray  # (n,) last Newton step
+    slope: FloatArray  # (n,) derivative of the excess by compression
+    rate_slope: FloatArray  # (n,) derivative of the excess by rate
     delta: FloatArray  # (s + 2, c) compressions at the places and both ends
     rate: FloatArray  # (s + 2, c)
     looked: FloatArray  # (4, c) compressions and rates just after the start, and just before the end
-    laws: FloatArray  # (n + 2 c + 1, 6) at the places, just after the start, at the end, and one for trials
+    laws: FloatArray  # (n + 2 c + 1, 6) rows at the places, just after the start, at the end, and one for trials
     matrix: FloatArray  # (n, n)
     right: FloatArray  # (n, 1)
     end: FloatArray  # (2 m,) amplitudes
     end_error: FloatArray  # (2 m,)
     measure: FloatArray  # (2,)
-    cut_decay: FloatArray  # (1, 2, m) to a part of an element
+    cut_decay: FloatArray  # (1, 2, m) decay over a part of an element
     cut_source: FloatArray  # (1, n, 2 m)
     integral: ComplexArray  # (s + 2,)
     values: ComplexArray  # (s,)
-    coefficient: FloatArray  # (s, c) of the excess as a power series
-    term: FloatArray  # (2 m,) of the amplitudes' power series
-    shares: FloatArray  # (n, 2 n) of the slopes in the forces
-    force_rows: FloatArray  # (n, 2 m) sensitivity of the forces; of no rows without disturbances ...
-    end_response: FloatArray  # (n, 2 m) ... response of the amplitudes at the end to the forces ...
-    decay: FloatArray  # (2, m) ... and the decay of the disturbances
+    coefficient: FloatArray  # (s, c) coefficients of the excess as a power series
+    term: FloatArray  # (2 m,) term of the amplitudes' power series
+    shares: FloatArray  # (n, 2 n) (I + S F)⁻¹ S: sensitivity of the forces to compressions and rates
+    force_rows: FloatArray  # (n, 2 m) sensitivity of the forces; (0, 2 m) without disturbances, as the next two
+    end_response: FloatArray  # (n, 2 m) response of the amplitudes at the end to the forces
+    decay: FloatArray  # (2, m) decay of the disturbances
     moved: FloatArray  # (n,)
     active: IntArray  # (n,) rows of forces that disturbances change
 

@@ -35,11 +35,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _MOMENTS = ORDER + 2
-_NEAR_END = 1.0  # largest |λ t| of a series of powers: no term of it is larger than its sum
-_SERIES_WITHIN = 0.7  # of |z|: beyond, the recursion upwards loses no more than two digits of the highest
+_NEAR_END = 1.0  # largest |λ t| for the power series: no term is larger than the sum
+_SERIES_WITHIN = 0.7  # largest |z| for the series; beyond it the upward recursion loses at most two digits
 _TERMS = 40
 _OVER: FloatArray = 1.0 / np.arange(1.0, _MOMENTS + _TERMS)
-"""1 / 1, 1 / 2, ...: a division takes as long as all the rest of a term."""
+"""1 / 1, 1 / 2, ...: tabulated, as a division takes as long as the rest of a term."""
 
 
 @uncounted()
@@ -67,7 +67,7 @@ def moments(z: complex, grown: complex, count: int, out: ComplexArray) -> None:
 def end_matrices(
     reference: Reference, h: float, part: float, decay: FloatArray, source: FloatArray, integral: ComplexArray
 ) -> None:
-    """Matrices from an element's start and from its forces to the amplitudes at a part of its size h."""
+    """Matrices that map the amplitudes at the start and the forces to the amplitudes at a part of the size h."""
     c, count = reference.stiffness.size, reference.eigenvalue.size
     for m in range(count):
         z = reference.eigenvalue[m] * h * part
@@ -129,9 +129,9 @@ def carry_on(
     integral: ComplexArray,
     term: FloatArray,
 ) -> None:
-    """As :func:`advance_to`, where the amplitudes at the end of the element are known already, for a part near 1.
+    """Advance as :func:`advance_to`, where the amplitudes at the end of the element are known, for a part near 1.
 
-    From there on by their power series, of as many terms as the fastest mode needs.
+    The power series about the end has as many terms as the fastest mode needs.
     """
     c, count = reference.stiffness.size, reference.eigenvalue.size
     beyond, fastest = h * (part - 1.0), 0.0
@@ -256,7 +256,7 @@ def product(row: FloatArray, a: int, z: FloatArray) -> float:
 def advance(decay: FloatArray, source: FloatArray, z: FloatArray, excess: FloatArray, end: FloatArray) -> None:
     """Amplitudes at the end or a place from those at the start and the excess forces."""
     count = decay.shape[1]
-    # Rows by names of their own: through indices the compiler does not see that it may take several numbers at once.
+    # Each row has its own name: through indices the compiler does not vectorise.
     u, v, x, y, real, imag = decay[0], decay[1], z[:count], z[count:], end[:count], end[count:]
     for m in range(count):
         real[m] = u[m] * x[m] - v[m] * y[m]
@@ -282,7 +282,7 @@ def interpolated(values: FloatArray, a: int, u: float) -> float:
 def solve_element(
     reference: Reference, contacts: Contacts, steps: Steps, slot: int, time: float, z: FloatArray, work: Work
 ) -> bool:
-    """Newton's method for the excess forces at the places; compressions and rates there and at both ends."""
+    """Solve for the excess forces at the places by Newton's method; compressions and rates there and at both ends."""
     c, h = reference.stiffness.size, steps.size[slot]
     n = ORDER * c
     base, excess, move, laws = work.base, work.excess, work.move, work.laws
@@ -311,8 +311,8 @@ def solve_element(
             force, tangent = laws[row, FORCE], laws[row, TANGENT]
             slope[row] = tangent - reference.stiffness[a]
             # Where the law holds the force at zero, it returns a loss and no slope.
-            held = force == 0.0 and tangent == 0.0
-            rate_slope[row] = (0.0 if held else laws[row, DAMPING]) - reference.damping[a]
+            unmoved = force == 0.0 and tangent == 0.0
+            rate_slope[row] = (0.0 if unmoved else laws[row, DAMPING]) - reference.damping[a]
             right[row, 0] = force - reference.stiffness[a] * x - reference.damping[a] * v - excess[row]
             largest = max(largest, abs(right[row, 0]))
             scale = max(scale, abs(force) + abs(reference.stiffness[a] * x) + abs(reference.damping[a] * v))
@@ -345,11 +345,11 @@ def solve_element(
 
 @uncounted(fastmath=SUMS, forceinline=True)
 def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: FloatArray, modes: int, work: Work) -> None:
-    """Defect of the polynomial of the excess, carried to the end: squares of error and amplitudes.
+    """Squares of the amplitude error at the end, by the defect of the excess polynomial, and of the amplitudes.
 
-    The defect vanishes at the places; its values at both ends give the rest of its shape. In an element that ends at a
-    part of its size only the value at its start is on the law's branch; added is the triangle between the last place
-    and the end, which does not cancel.
+    The defect vanishes at the places; its values at both ends determine its shape. In an element that ends at a part
+    of its size only the value at the start is on the law's branch; there the triangle between the last place and the
+    end, which does not cancel, is added.
     """
     c = reference.stiffness.size
     n = ORDER * c
@@ -388,7 +388,7 @@ def estimate(reference: Reference, steps: Steps, slot: int, part: float, z: Floa
 
 @uncounted()
 def held_energy(laws: FloatArray, first: int, count: int) -> float:
-    """Energy held in the teeth, by rows of the laws [J]."""
+    """Energy stored in the teeth [J], summed over rows of the laws."""
     total = 0.0
     for row in range(first, first + count):
         total += laws[row, ENERGY]

@@ -73,9 +73,9 @@ from rotors.numerics.compiled import counted, inner, uncounted
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_MOST_CUTS = 40  # of one element; with more, the flanks graze each other and cuts gain nothing
-_TRIES = 10  # sizes for one switch
-_BEYOND = 0.06  # part of a size by which its motion is extended past its end
+_MOST_CUTS = 40  # largest number of cuts of one element; beyond, the flanks graze and cuts gain nothing
+_TRIES = 10  # number of ladder sizes tried for one switch
+_BEYOND = 0.06  # extension of an element's motion past its end, over its size
 NO_BALANCE, NO_ROOM = 1, 2
 
 
@@ -145,16 +145,16 @@ def integrate_elements(
     columns: FloatArray,
     modes: int,
     trace: Trace,
-    held: int,
+    stored: int,
     work: Work,
 ) -> tuple[int, int, int]:
-    """Integrate the amplitudes z and their disturbances through elements, each of a slot's size or, at -1, of any.
+    """Integrate the amplitudes z and their disturbances through elements; slot -1 marks an element of any size.
 
-    Disturbances as in :mod:`coupling.collocation.switch_kernels`. The trace holds ``held`` elements before. Returns the
-    number of elements after, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
+    Disturbances are laid out as in :mod:`coupling.collocation.switch_kernels`. The trace holds ``stored`` elements at
+    the start. Returns the number of stored elements, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
     """
     c = reference.stiffness.size
-    count, cuts = held, 0
+    count, cuts = stored, 0
     for element in range(starts.size):
         time, left = starts[element], sizes[element]
         whole, cuts_here = left, 0
@@ -169,7 +169,7 @@ def integrate_elements(
             while True:
                 solved = solve_element(reference, contacts, steps, slot, time, z, work)
                 h = steps.size[slot]
-                # An element of a size that occurs is all of it; beyond a size's end it reaches only as far as
+                # An element with a slot has the slot's whole size; beyond the end it reaches only as far as
                 # evaluated.
                 part = 1.0 if slot < steps.ladder[0] else left / h
                 furthest = min(part - INSIDE, 1.0 + _BEYOND)
@@ -182,7 +182,7 @@ def integrate_elements(
                     which = -1
                 if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
                     break
-                # Some places lie beyond the switch: again with a size that ends near it.
+                # Some places lie beyond the switch: solve again with a size that ends near it.
                 closer = nearest_step_size(reference, steps, at * h, work)
                 if closer == slot:
                     break
@@ -220,7 +220,7 @@ def integrate_elements(
     return count, cuts, 0
 
 
-_EVEN = 1e-6  # part of the spacing by which times at even spacing may miss it
+_EVEN = 1e-6  # tolerance of evenly spaced times, over the spacing
 
 
 @counted()
@@ -261,7 +261,7 @@ def amplitudes_at(reference: Reference, trace: Trace, times: FloatArray) -> Floa
                     for j in range(ORDER):
                         series[p, a] += MONOMIALS[j, p] * trace.excess[element, j, a]
             continue
-        # The excess about the time before, in spacings.
+        # Expansion of the excess about the previous time, in spacings.
         u -= spacing / h
         scale = 1.0
         for p in range(ORDER):
@@ -289,7 +289,7 @@ def forces_at(
 
 @uncounted()
 def weights_of(trace: Trace, element: int, out: FloatArray) -> None:
-    """Quadrature weights [s] at the places (s,) over an element; Gauss weights where it is all of its size."""
+    """Quadrature weights [s] at the places (s,) over an element; Gauss weights for an element of full size."""
     part = trace.part[element]
     h = trace.size[element] / part
     for j in range(ORDER):
@@ -327,14 +327,14 @@ def amplitudes_of(
 
 
 @inner(fastmath=SUMS, forceinline=True)
-def lost_and_held(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
-    """Power loss by damping at some rates (n,), and twice their kinetic energy."""
-    lost, held = 0.0, 0.0
+def loss_and_squares(loss: FloatArray, rate: FloatArray) -> tuple[float, float]:
+    """Power loss by damping at rates (n,), and the sum of their squares: twice the kinetic energy."""
+    power, squares = 0.0, 0.0
     for k in range(rate.size):
         square = rate[k] * rate[k]
-        lost += loss[k] * square
-        held += square
-    return lost, held
+        power += loss[k] * square
+        squares += square
+    return power, squares
 
 
 @uncounted()
@@ -343,18 +343,18 @@ def add_batch(powers: Powers, room: PowersRoom, count: int, totals: FloatArray) 
     for number in range(count):
         for i in range(ORDER):
             amplitude, rate = room.amplitude[number * ORDER + i], room.rate[number * ORDER + i]
-            taken, held = lost_and_held(powers.loss, rate)
+            loss, speed_squared = loss_and_squares(powers.loss, rate)
             if powers.skew.shape[0] > 0:
                 project(powers.skew, rate, room.along)
                 for j in range(powers.skew.shape[0]):
-                    taken += 0.5 * amplitude[j] * room.along[j]
+                    loss += 0.5 * amplitude[j] * room.along[j]
             pushed = 0.0
             project(powers.pushing, rate, room.along)
             for j in range(powers.riding.size):
                 pushed += amplitude[powers.riding[j]] * room.along[j]
             totals[LOAD_WORK] += room.weights[number, i] * pushed
-            totals[DAMPING_LOSS] += room.weights[number, i] * taken
-            totals[LARGEST_KINETIC] = max(totals[LARGEST_KINETIC], 0.5 * held)
+            totals[DAMPING_LOSS] += room.weights[number, i] * loss
+            totals[LARGEST_KINETIC] = max(totals[LARGEST_KINETIC], 0.5 * speed_squared)
 
 
 @counted()
@@ -386,7 +386,7 @@ def add_contacts(
     """Add the losses by the contacts' damping, and the work of the rotating teeth: ∂U/∂p p' - f e' [J].
 
     ``figures`` (c, 4) are impulse, time apart, largest force and last touch of each contact. ``stored`` is the energy
-    in the teeth before, the result that after: it jumps where pairs enter or leave contact.
+    in the teeth before the elements, the result the energy after: it jumps where pairs enter or leave contact.
     """
     lost, rotation_work = 0.0, 0.0
     for element in range(trace.start.size):

@@ -32,30 +32,30 @@ from coupling.machine.coupled_system import CoupledSystem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_LARGEST = 0.05  # of E for which it is small
-_SMALLEST = 1e-8  # of E: its square is rounding
-_ROUNDING = 1e-13  # of the largest eigenvalue
+_LARGEST = 0.05  # largest entry of E for which the correction converges
+_SMALLEST = 1e-8  # entry of E at which the corrections stop: its square is rounding
+_ROUNDING = 1e-13  # rounding of B over the largest eigenvalue
 _STEPS = 5
-_MISSED = 1e-12  # residual of X and Y, relative to the sizes that they sum
+_MISSED = 1e-12  # largest residual X diag(λ) Y - A, over the sum of its terms' sizes
 
 
 def corrected_eigenvectors(
     matrix: FloatArray, values: ComplexArray, right: ComplexArray, left: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray] | None:
-    """Eigenvalues and vectors of a real matrix (2 N, 2 N); None where the given ones are too far from them.
+    """Correct a neighbour's eigenvalues and vectors to a real matrix; None where they are too far from it.
 
     Parameters
     ----------
     matrix : ndarray, shape (2 N, 2 N)
     values : ndarray of complex, shape (m,)
-        Of the neighbour, one of each conjugate pair.
+        Eigenvalues of the neighbour, one of each conjugate pair.
     right, left : ndarray of complex, shapes (2 N, m) and (m, 2 N)
-        Right vectors that count for both of a pair, and left ones.
+        Right eigenvectors, scaled for both of a conjugate pair, and left eigenvectors.
 
     Returns
     -------
     values, right, left
-        The same of the matrix, in the same order.
+        Corrected, in the same order.
     """
     oscillating = values.imag > 0.0
     weights = np.where(oscillating, 2.0, 1.0)
@@ -67,10 +67,10 @@ def corrected_eigenvectors(
     identity, size = np.eye(len(matrix)), np.inf
     for _ in range(_STEPS):
         projected = y @ (matrix @ x)
-        found = np.diagonal(projected)
-        apart = found[None, :] - found[:, None] + identity
+        quotients = np.diagonal(projected)
+        apart = quotients[None, :] - quotients[:, None] + identity
         # Any vectors serve for a multiple eigenvalue: their coupling is rounding.
-        coupled = (identity == 0.0) & (np.abs(projected) > _ROUNDING * np.abs(found).max())
+        coupled = (identity == 0.0) & (np.abs(projected) > _ROUNDING * np.abs(quotients).max())
         move = np.where(coupled, projected / np.where(apart == 0.0, 1e-300, apart), 0.0)
         size = float(np.abs(move).max())
         if not size < _LARGEST:
@@ -80,26 +80,26 @@ def corrected_eigenvectors(
         y = 2.0 * y - y @ (x @ y)  # its inverse to rounding
         if size < _SMALLEST:
             break
-    found = np.diagonal(y @ (matrix @ x)).copy()
-    missed = np.abs((x * found) @ y - matrix)
-    sizes = np.abs(x) @ np.abs(found[:, None] * y)
+    quotients = np.diagonal(y @ (matrix @ x)).copy()
+    missed = np.abs((x * quotients) @ y - matrix)
+    sizes = np.abs(x) @ np.abs(quotients[:, None] * y)
     if (
         size >= _SMALLEST
         or np.any(missed > _MISSED * sizes.max())
-        or np.any(found[: len(values)][oscillating].imag <= 0.0)
+        or np.any(quotients[: len(values)][oscillating].imag <= 0.0)
     ):
         return None
-    kept, vectors, rows = found[: len(values)], x[:, : len(values)], y[: len(values)]
+    eigenvalues, vectors, rows = quotients[: len(values)], x[:, : len(values)], y[: len(values)]
     # Vectors of a real eigenvalue are real but for rounding.
-    kept[~oscillating], vectors[:, ~oscillating], rows[~oscillating] = (
-        part[...].real for part in (kept[~oscillating], vectors[:, ~oscillating], rows[~oscillating])
+    eigenvalues[~oscillating], vectors[:, ~oscillating], rows[~oscillating] = (
+        part[...].real for part in (eigenvalues[~oscillating], vectors[:, ~oscillating], rows[~oscillating])
     )
-    return kept, np.ascontiguousarray(vectors * weights), np.ascontiguousarray(rows)
+    return eigenvalues, np.ascontiguousarray(vectors * weights), np.ascontiguousarray(rows)
 
 
 _RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
-_BALANCE = 1e-6  # part of the load that may rest on such a motion
-_DEFECT = 1e-7  # by which eigenvalues and vectors may miss the matrix they are of
+_BALANCE = 1e-6  # largest part of the load on a rigid-body motion
+_DEFECT = 1e-7  # largest residual of eigenvalues and vectors, relative
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ class LinearPart:
     rate_unit : float
         Unit of the rates, in which they compare with displacements [1/s].
     basis, rigid : ndarray, shapes (n, N) and (n, n - N)
-        Orthonormal: all motions that something resists, and the rigid-body motions, which nothing does.
+        Orthonormal bases of the resisted motions and of the rigid-body motions, which nothing resists.
     eigenvalues : ndarray of complex, shape (m,)
         [1/s]; one of each conjugate pair.
     right : ndarray of complex, shape (2 N, m)
@@ -122,10 +122,10 @@ class LinearPart:
     mean : ndarray, shape (n,)
         Mean of the reference's own response.
     frequencies : ndarray, shape (h,)
-        Its circular frequencies [rad/s].
+        Circular frequencies of that response [rad/s].
     amplitudes : ndarray of complex, shape (h, n)
     matrices : tuple of ndarray
-        K̄ and C̄ on the whole coordinates, shape (n, n) each, that basis and eigenvalues are of.
+        K̄ and C̄ on the whole coordinates, shape (n, n) each, from which basis and eigenvalues are computed.
     """
 
     system: CoupledSystem
@@ -142,7 +142,7 @@ class LinearPart:
 
     @property
     def states(self) -> int:
-        """Number of states that are not rigid, 2 N."""
+        """Number of states of the resisted motions, 2 N."""
         return len(self.right)
 
     def own_response(self, time: float) -> tuple[FloatArray, FloatArray]:
@@ -163,8 +163,8 @@ class LinearPart:
 
     def amplitudes_of(self, state: FloatArray, time: float | FloatArray = 0.0) -> FloatArray:
         """Amplitudes of a state and of the loads, as in the kernels, shape (2 M,); or (K, 2 M) of states at K times."""
-        own = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
-        whole = np.concatenate([state @ self.left.T, own], axis=-1)
+        reference = np.exp(np.multiply.outer(time, self.reference.eigenvalue[len(self.eigenvalues) :]))
+        whole = np.concatenate([state @ self.left.T, reference], axis=-1)
         return np.concatenate([whole.real, whole.imag], axis=-1)
 
     @cached_property
@@ -175,7 +175,7 @@ class LinearPart:
 
     @cached_property
     def from_amplitudes(self) -> FloatArray:
-        """Inverse matrix: states of such amplitudes, shape (2 N, 2 N)."""
+        """Matrix from amplitudes to a state, the inverse of `to_amplitudes`, shape (2 N, 2 N)."""
         oscillating = self.eigenvalues.imag > 0.0
         return np.concatenate([self.right.real, -self.right.imag[:, oscillating]], axis=1)
 
@@ -186,19 +186,19 @@ class LinearPart:
 
     @cached_property
     def velocity_rows(self) -> FloatArray:
-        """Rows of their rates over the amplitudes, shape (n, 2 M)."""
+        """Rows of all rates over the amplitudes, shape (n, 2 M)."""
         moving = self.rate_unit * (self.basis @ self.right[self.states // 2 :])
         return self._rows(moving, (1j * self.frequencies[:, None] * self.amplitudes).T, np.zeros_like(self.mean))
 
     def _rows(self, modes: ComplexArray, harmonics: ComplexArray, mean: FloatArray) -> FloatArray:
-        # Runout errors have amplitudes too, and move nothing themselves.
+        # Runout errors have amplitudes too, but move no coordinate.
         count = len(self.reference.eigenvalue) - modes.shape[1] - harmonics.shape[1] - 1
         none = np.zeros((len(mean), count))
         return real_rows(np.concatenate([modes, harmonics, none, mean[:, None]], axis=1))
 
     @cached_property
     def reference(self) -> Reference:
-        """The reference by the motion at its contacts."""
+        """The reference over the motion at its contacts, as arrays for the kernels."""
         contacts, half = self.system.contacts, self.states // 2
         directions = self.basis.T @ self.system.contact_directions
         frequencies = list(self.frequencies)
@@ -211,13 +211,13 @@ class LinearPart:
         mean = self.mean @ self.system.contact_directions - [contact.clearance for contact in contacts]
         phasor = np.array(phasors, dtype=np.complex128).reshape(len(contacts), len(frequencies))
         exponents = 1j * np.array(frequencies)
-        own = np.zeros((len(frequencies) + 1, len(contacts)))
+        from_contacts = np.zeros((len(frequencies) + 1, len(contacts)))
         still = np.zeros((len(contacts), 1))
         displacement = [directions.T @ self.right[:half], phasor, mean[:, None]]
         rate = [self.rate_unit * (directions.T @ self.right[half:]), exponents * phasor, still]
         return Reference(
             eigenvalue=np.concatenate([self.eigenvalues, exponents, [0.0]]),
-            source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, own]),
+            source=np.concatenate([self.left[:, half:] @ directions / self.rate_unit, from_contacts]),
             displacement=real_rows(np.concatenate(displacement, axis=1)),
             rate=real_rows(np.concatenate(rate, axis=1)),
             stiffness=self.system.loaded_flank_stiffness,
@@ -227,7 +227,7 @@ class LinearPart:
 
 
 def real_rows(rows: ComplexArray) -> FloatArray:
-    """Real rows over Re z and then Im z whose product is Re(d z), of complex rows d, shape (k, 2 m)."""
+    """Real rows (k, 2 m) over Re z, Im z whose product is Re(d z), from complex rows d."""
     return np.concatenate([rows.real, -rows.imag], axis=1)
 
 
@@ -242,8 +242,8 @@ def linear_part(
     rate_unit : float
         See :class:`LinearPart`.
     like : LinearPart, optional
-        Of the same machine at another speed: its basis is reused where the rigid-body motions are the same, its
-        eigenvectors where its matrices are.
+        Linear part of the same machine at another speed: its basis is reused where the rigid-body motions are the same,
+        its eigenvectors where its matrices are.
     repeats : bool
         Whether the motion is periodic, so that the loads on rigid-body motions must balance. They have no part in the
         reference in either case.
@@ -320,7 +320,7 @@ def _split(stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -
 
 
 def _splits(like: LinearPart, stiffness: FloatArray, damping: FloatArray, directions: FloatArray) -> bool:
-    """Whether the rigid-body motions at another speed are such here too; others show in the stiffness of the rest."""
+    """Whether ``like`` has the rigid-body motions of this system; extra ones show in the remaining stiffness."""
     if like.rigid.shape[0] != len(stiffness):
         return False
     for part in (stiffness, stiffness.T, damping, damping.T, directions.T):
@@ -351,10 +351,10 @@ def _eigenvectors(
             f"the eigenvectors of the mean machine do not separate: they miss it by {missing:.1e} of "
             f"{size.max():.1e}; an exactly critical damping is the usual reason, change it slightly"
         )
-    kept = values.imag >= 0.0
-    weights = np.where(values.imag > 0.0, 2.0, 1.0)[kept]
+    upper = values.imag >= 0.0
+    weights = np.where(values.imag > 0.0, 2.0, 1.0)[upper]
     return (
-        np.ascontiguousarray(values[kept], dtype=np.complex128),
-        np.ascontiguousarray(vectors[:, kept] * weights),
-        np.ascontiguousarray(inverse[kept]),
+        np.ascontiguousarray(values[upper], dtype=np.complex128),
+        np.ascontiguousarray(vectors[:, upper] * weights),
+        np.ascontiguousarray(inverse[upper]),
     )

@@ -28,7 +28,7 @@ from rotors.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
-_NEAR, _ROUGHLY = 1e-14, 1e-3  # parts of an element to which a switch is located, finely and roughly
+_NEAR, _ROUGHLY = 1e-14, 1e-3  # tolerances of a switch's location over the element's length, fine and rough
 _ALMOST = 1.0 - 1e-14
 # A branch is four times the number of touching pairs, plus the state of their damping.
 _PAIR, _HELD, _FADING, _FULL = 4, 1, 2, 3
@@ -57,9 +57,9 @@ def by_pairs(old: int, new: int) -> bool:
 
 @uncounted()
 def next_part(x: float, other: float, third: float, f: float, f_other: float, f_third: float, near: float) -> float:
-    """Next trial of a root search, as a part of the way from one bound to the other.
+    """Next trial of a root search, as a fraction of the way from one bound to the other.
 
-    By inverse quadratic interpolation where it is safe, else bisection: T. R. Chandrupatla, Advances in
+    Inverse quadratic interpolation where it is safe, else bisection: T. R. Chandrupatla, Advances in
     Engineering Software 28 (1997) 145-149.
     """
     part = 0.5
@@ -74,7 +74,7 @@ def next_part(x: float, other: float, third: float, f: float, f_other: float, f_
 
 @uncounted()
 def has_left(old: int, reference: Reference, contacts: Contacts, a: int, at: float, u: float, work: Work) -> bool:
-    """Whether a contact's law at a place u, at the time ``at``, is on another branch than the old one."""
+    """Whether a contact's law at the place u and the time ``at`` is on another branch than ``old``."""
     trial = work.laws.shape[0] - 1
     law(contacts, a, at, interpolated(work.delta, a, u), interpolated(work.rate, a, u), work.laws, trial)
     return branch(reference, a, work.laws, trial) != old
@@ -85,10 +85,10 @@ def touching_changes(
     contacts: Contacts, a: int, time: float, h: float, stop: float, x: float, other: float, rank: int, near: float,
     work: Work,
 ) -> tuple[float, float]:  # fmt: skip
-    """Two places, ``near`` from each other at most, between which a pair begins or ceases to touch.
+    """Bracket of width ``near`` around the place at which a pair begins or ceases to touch.
 
-    x and other are places on either side of it; the place on the side of x is returned first. Without a change between
-    x and other, these are returned.
+    ``x`` and ``other`` are places on either side of it; the place on the side of ``x`` is returned first. Without a
+    change between ``x`` and ``other``, these are returned.
     """
     f = penetration(contacts, a, min(time + x * h, stop), interpolated(work.delta, a, x), rank)
     f_other = penetration(contacts, a, min(time + other * h, stop), interpolated(work.delta, a, other), rank)
@@ -122,10 +122,10 @@ def placed(
     near: float,
     work: Work,
 ) -> float:
-    """Location at which a contact leaves its old branch, as a part of h, too late by ``near`` at most.
+    """Place at which a contact leaves its old branch, as a fraction of h, too late by ``near`` at most.
 
-    It lies between two places. Where a pair begins or ceases to touch, it is the root of the pair's penetration; other
-    switches are found by bisection.
+    Where a pair begins or ceases to touch, the place is the root of the pair's penetration; other switches are located
+    by bisection.
     """
     if by_pairs(old, new):
         rank = old // _PAIR + 1 if new > old else old // _PAIR
@@ -151,7 +151,7 @@ def placed(
 def first_switch(
     reference: Reference, contacts: Contacts, time: float, h: float, stop: float, furthest: float, work: Work
 ) -> tuple[float, int]:
-    """First switch of a contact law, as a part of h, and its contact; beyond ``furthest`` without any.
+    """First switch of a contact law, as a fraction of h, and its contact; beyond ``furthest`` without a switch.
 
     No law is evaluated later than ``stop``. The laws just after the start are left in the rows behind those of the
     places.
@@ -180,12 +180,12 @@ def first_switch(
                 if not at_place:
                     break
                 continue
-            # A switch before the last place is located again, with places before it.
+            # A switch before the last place is located again from the places before it.
             near = _NEAR if u > PLACES[ORDER - 1] else _ROUGHLY
             new = branch(reference, a, laws, i * c + a if at_place else row)
-            found = placed(reference, contacts, a, time, h, stop, before, u, old, new, near, work)
-            if found < first:
-                first, which = found, a
+            time_of = placed(reference, contacts, a, time, h, stop, before, u, old, new, near, work)
+            if time_of < first:
+                first, which = time_of, a
             break
     return first, which
 
@@ -252,9 +252,9 @@ def apply_sensitivity(columns: FloatArray, decay: FloatArray, rows: FloatArray, 
         for i in range(modes):
             j = modes + i
             x, y, p, q = columns[k, i], columns[k, j], decay[0, i], decay[1, i]
-            one = a * ends[0, i] + b * ends[1, i] + c * ends[2, i] + d * ends[3, i] + e * ends[4, i]
+            derivative = a * ends[0, i] + b * ends[1, i] + c * ends[2, i] + d * ends[3, i] + e * ends[4, i]
             two = a * ends[0, j] + b * ends[1, j] + c * ends[2, j] + d * ends[3, j] + e * ends[4, j]
-            columns[k, i] = p * x - q * y - one
+            columns[k, i] = p * x - q * y - derivative
             columns[k, j] = p * y + q * x - two
 
 
@@ -267,7 +267,7 @@ def apply_sensitivity_of_any(
     active: int,
     force: FloatArray,
 ) -> None:
-    """As :func:`apply_sensitivity`, for any number of forces."""
+    """Apply :func:`apply_sensitivity` for any number of forces."""
     size = columns.shape[1]
     modes = size // 2
     for k in range(columns.shape[0]):

@@ -26,7 +26,7 @@ from rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 
-# Last step of a floating ring along z [m], whose effect on the forces is of second order; most steps.
+# Step of a floating ring along z at which its iteration ends [m], and the largest number of steps.
 _SEATED = 1e-14
 _SEATING_STEPS = 100
 
@@ -35,7 +35,7 @@ _SEATING_STEPS = 100
 def _balls(
     shape: FloatArray, count: int, angle: float, q: FloatArray, force: FloatArray, tangent: FloatArray
 ) -> tuple[float, float]:
-    """Add the forces and tangent of a row of balls; returns its energy [J] and the slope of it over the cage angle."""
+    """Add the forces and tangent of a row of balls; returns its energy [J] and that energy's cage-angle slope."""
     distance, start_r, start_z, before = shape[0], shape[1], shape[2], shape[3]
     reach, place, stiffness = shape[4], shape[5], shape[6]
     energy, slope = 0.0, 0.0
@@ -88,9 +88,9 @@ def _rollers(
         level, tilt = across * (q[0] * c + q[1] * s) + along * q[2] + free, q[4] * c - q[3] * s
         level_slope, tilt_slope = across * (q[1] * c - q[0] * s), -q[4] * s - q[3] * c
         load, moment, k, k_place, k_square = 0.0, 0.0, 0.0, 0.0, 0.0
-        for one in range(number):
-            place = slices[one, 0]
-            deep = level + place * tilt - slices[one, 1]
+        for slice_number in range(number):
+            place = slices[slice_number, 0]
+            deep = level + place * tilt - slices[slice_number, 1]
             if deep <= 0.0:
                 continue
             root = stiffness * deep ** (1.0 / 9.0)
@@ -169,7 +169,7 @@ def _rows(
 
 @inner()
 def _release(force: FloatArray, tangent: FloatArray) -> float:
-    """Condense z, which is left to itself near the least energy; returns by how much that is less [J]."""
+    """Condense the free axis z out of force and tangent; returns the energy released by moving to the minimum [J]."""
     push, stiffness = force[2], tangent[2, 2]
     if stiffness > 0.0:
         for i in range(5):
@@ -191,14 +191,14 @@ def bearing_force(
 ) -> tuple[float, float]:
     """Force (5,) of the shaft on a bearing displaced by q (5,), and its tangent (5, 5); both are overwritten.
 
-    In q a floating bearing gets the place of its ring along z, for which the given one is the start.
+    For a floating bearing, z in q is the start of the search for the ring's place along z, and becomes that place.
 
     Returns
     -------
     energy : float
-        [J].
+        Energy [J].
     slope : float
-        Its derivative by the nominal time [J/s]: the power of the rotating cage at nominal speed.
+        Derivative of the energy by the nominal time [J/s]: the power of the rotating cage at nominal speed.
     """
     energy, slope = _rows(bearings, number, nominal_time, q, force, tangent)
     if bearings.floating[number]:

@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 30
 
-# Columns of the laws' table: what the contact law gives, see coupling.gears.contact.tooth_force_kernels.tooth_force.
+# Columns of the laws' table: results of coupling.gears.contact.tooth_force_kernels.tooth_force.
 FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 

@@ -19,7 +19,7 @@ SUMS = {"reassoc", "contract", "nsz"}
 
 @inner(fastmath=SUMS, forceinline=True)
 def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
-    """Rows x, for a few rows (k, n)."""
+    """Multiply a few rows (k, n) with x (n,) into ``out`` (k,)."""
     for j in range(rows.shape[0]):
         value = 0.0
         for i in range(rows.shape[1]):
@@ -31,8 +31,8 @@ def project(rows: FloatArray, x: FloatArray, out: FloatArray) -> None:
 def add_rows(rows: FloatArray, factors: FloatArray, sign: float, out: FloatArray) -> None:
     """Add as many rows as there are factors, each times its factor and the sign.
 
-    Four at a time, so that what is added to is fetched and stored four times less; each by a name of its own, for
-    through two indices the compiler does not see that it may take several numbers at once.
+    Four rows at a time, so that the sum is fetched and stored four times less often; each row has its own name, as
+    through two indices the compiler does not vectorise.
     """
     count = factors.size
     fours = count - count % 4

@@ -41,26 +41,26 @@ class Dynamics(NamedTuple):
     """The linear system: diagonal but for the gyroscopic blocks and the few directions of its connectors."""
 
     stiffness: FloatArray  # (n,) diagonal of the components' K
-    damping: FloatArray  # (n,) and of their C
+    damping: FloatArray  # (n,) diagonal of the components' C
     block_start: IntArray  # (g,) first coordinate of each gyroscopic block
     block_size: IntArray  # (g,)
     gyroscopic: FloatArray  # (g, b, b) Gᵀ at nominal speed, padded
-    connectors: FloatArray  # (r, n) Uᵀ, orthonormal: all else in K and C is U K_t Uᵀ and U C_t Uᵀ
-    connector_speed_ratios: FloatArray  # (t,) speeds, as parts of the nominal one, at which these are given
+    connectors: FloatArray  # (r, n) Uᵀ, orthonormal: the connectors add U K_t Uᵀ to K and U C_t Uᵀ to C
+    connector_speed_ratios: FloatArray  # (t,) speeds over the nominal one at which K_t and C_t are tabulated
     connector_stiffness: FloatArray  # (t, r, r) K_t
     connector_damping: FloatArray  # (t, r, r) C_t
     has_skew: bool  # whether K_t is not symmetric
     constant: FloatArray  # (n,) F
     acceleration_load: FloatArray  # (n,) load of an angular acceleration s'' of one
     frequency: FloatArray  # (h,) w [rad/s]
-    follows: IntArray  # (h,) whether the load follows time, rotation or speed: BY_TIME ...
+    follows: IntArray  # (h,) whether the load follows time, rotation or speed: a code such as BY_TIME
     cosine: FloatArray  # (h, n) Re F_w
     sine: FloatArray  # (h, n) Im F_w
     timed_times: FloatArray  # (k, l) [s], padded
     timed_values: FloatArray  # (k, l)
     timed_sizes: IntArray  # (k,)
     timed_rows: FloatArray  # (k, n)
-    resolved: FloatArray  # (n,) 1 for coordinates that the error measure looks at, else 0
+    resolved: FloatArray  # (n,) 1 for coordinates in the error measure, else 0
     beta: float
     gamma: float
 
@@ -87,7 +87,7 @@ class Contacts(NamedTuple):
     direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
     law: FloatArray  # numbers of all laws, one after another: `coupling.gears.contact.lookup_tables`
     law_at: IntArray  # (c,) offset of the law of each contact
-    shares_at: IntArray  # (c,) the same of its friction law; -1 where its lines of contact slide as one
+    shares_at: IntArray  # (c,) offset of the friction law of each contact; -1 where lines of contact slide as one
     phase: FloatArray  # (c,)
     mesh_frequency: FloatArray  # (c,)
     errors: FloatArray  # (c, harmonics, 3): amplitude, frequency, phase
@@ -102,16 +102,16 @@ class Bearings(NamedTuple):
 
     axis: IntArray  # (e,) axis of each direction: x, y, z and the rotations about x and y
     first: IntArray  # (b + 1,) first direction of each
-    linear: FloatArray  # (b, 5, 5) stiffness that the connectors hold already, its leading part
-    fixed: FloatArray  # (b, 5) displacement along axes that are no directions
-    preload: FloatArray  # (b,) of a spring along z [N]
-    floating: npt.NDArray[np.bool_]  # (b,) whether the outer ring slides along z; ``fixed`` has the start of its place
+    linear: FloatArray  # (b, 5, 5) stiffness that is in the linear connectors already, in the leading d by d
+    fixed: FloatArray  # (b, 5) displacement along axes without a direction
+    preload: FloatArray  # (b,) preload by a spring along z [N]
+    floating: npt.NDArray[np.bool_]  # (b,) whether the outer ring slides along z, from its place in ``fixed``
     first_row: IntArray  # (b + 1,)
     kind: IntArray  # (w,) BALLS, ROLLERS or GAP
     elements: IntArray  # (w,) number of rolling elements
     shape: FloatArray  # (w, 7) geometry and stiffness, by the kind
     cage: FloatArray  # (w, 2) azimuth of the first element and its rate by the nominal time
-    slices: FloatArray  # (w, slices, 2) of rollers: place and gap
+    slices: FloatArray  # (w, slices, 2) place and gap of the slices of rollers
 
 
 class Segments(NamedTuple):
@@ -120,38 +120,38 @@ class Segments(NamedTuple):
     start: FloatArray  # (s,)
     end: FloatArray  # (s,)
     steps: IntArray  # (s,)
-    slot: IntArray  # (s,) of the step matrices
+    slot: IntArray  # (s,) slot of the step matrices
     nominal_time: FloatArray  # (s, 3) s, s' and s'' at the start
 
 
 class Scratch(NamedTuple):
     """Scratch arrays, w the gyroscopic blocks' width and e + c the number of deflections; zeros at the start."""
 
-    a: FloatArray  # (n,) accelerations at the step's start ...
-    before: FloatArray  # (n,) ... and at that of the step before
-    a_end: FloatArray  # (n,) at the step's end: first without, then with the forces of the laws
+    a: FloatArray  # (n,) accelerations at the step's start
+    before: FloatArray  # (n,) accelerations at the start of the previous step
+    a_end: FloatArray  # (n,) accelerations at the step's end: first without, then with the forces of the laws
     q_predicted: FloatArray  # (n,) q*
     v_predicted: FloatArray  # (n,) v*
     load: FloatArray  # (n,)
     unbalanced: FloatArray  # (n,) loads less the resistance to q* and v*
-    x: FloatArray  # (n,) of a sample
+    x: FloatArray  # (n,) coordinates at a sample
     y: FloatArray  # (n,)
-    tq: FloatArray  # (r,) projections Uᵀ of q, v, a, q* and v* ...
+    tq: FloatArray  # (r,) tq to ta_end: projections Uᵀ of q, v, a, q*, v* and a at the step's end
     tv: FloatArray  # (r,)
     ta: FloatArray  # (r,)
     tq_predicted: FloatArray  # (r,)
     tv_predicted: FloatArray  # (r,)
-    ta_end: FloatArray  # (r,) ... and of the accelerations at the step's end
+    ta_end: FloatArray  # (r,)
     connector_force: FloatArray  # (r,)
     response: FloatArray  # (r,)
-    correction: FloatArray  # (r,) of the connectors' forces by their accelerations
-    dq: FloatArray  # (k,) projections Dᵀ of q, v, a, q* and v*
+    correction: FloatArray  # (r,) correction of the connectors' forces by their accelerations
+    dq: FloatArray  # (k,) dq to dv_predicted: projections Dᵀ of q, v, a, q* and v*
     dv: FloatArray  # (k,)
     da: FloatArray  # (k,)
     dq_predicted: FloatArray  # (k,)
     dv_predicted: FloatArray  # (k,)
     push: FloatArray  # (k,) forces of the laws
-    delta: FloatArray  # (e + c,) deflections and their rates, and without the laws' forces
+    delta: FloatArray  # (e + c,) deflections, their rates, and both without the laws' forces
     rate: FloatArray  # (e + c,)
     delta_free: FloatArray  # (e + c,)
     rate_free: FloatArray  # (e + c,)
@@ -191,7 +191,7 @@ class Samples(NamedTuple):
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
-    """Arrays of the laws of some bearings, see :class:`coupling.connector_forces.kernel_arrays.Bearings`."""
+    """Arrays of the laws of nonlinear bearings, see :class:`coupling.connector_forces.kernel_arrays.Bearings`."""
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
     floating = np.zeros(b, dtype=np.bool_)

@@ -39,9 +39,9 @@ class ContactAccuracyError(RuntimeError):
     """A table or an equilibrium fails its own accuracy check."""
 
 
-def require_finite(what: str, value: float, *, minimum: float = -math.inf, strict: bool = False) -> None:
+def require_finite(label: str, value: float, *, minimum: float = -math.inf, strict: bool = False) -> None:
     """Raise `GearError` unless `value` is a finite number above `minimum`."""
     if not math.isfinite(value):
-        raise GearError(f"{what} must be a finite number, got {value!r}")
+        raise GearError(f"{label} must be a finite number, got {value!r}")
     if value < minimum or (strict and value == minimum):
-        raise GearError(f"{what} must be {'above' if strict else 'at least'} {minimum:g}, got {value!r}")
+        raise GearError(f"{label} must be {'above' if strict else 'at least'} {minimum:g}, got {value!r}")

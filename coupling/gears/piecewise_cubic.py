@@ -39,7 +39,7 @@ def chebyshev_interpolant(function: Function, length: float) -> Function:
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     length : float
         End of the range.
     """
@@ -57,7 +57,7 @@ def chebyshev_interpolant(function: Function, length: float) -> Function:
 
 
 def _points(degree: int, length: float) -> FloatArray:
-    """Extrema of the Chebyshev polynomial, from the end of the range to 0; those of half the degree are among them."""
+    """Extrema of the Chebyshev polynomial, from the end of the range to 0; they include those of half the degree."""
     return np.asarray(0.5 * length * (1.0 + np.cos(np.pi * np.arange(degree + 1) / degree)), dtype=np.float64)
 
 
@@ -108,7 +108,7 @@ class PiecewiseCubic:
 
     @cached_property
     def _polynomial(self) -> PPoly:
-        """The same in powers of (x - knot), highest first."""
+        """The function in powers of (x - knot), highest first."""
         powers = np.diff(self.knots)[:, None] ** np.arange(4)
         return PPoly(np.ascontiguousarray((self.coefficients / powers).T[::-1]), self.knots)
 
@@ -129,17 +129,17 @@ class PiecewiseCubic:
         return PiecewiseCubic(knots, self.between(knots[:-1], knots[1:]))
 
     def between(self, low: FloatArray, high: FloatArray) -> FloatArray:
-        """Coefficients on intervals each of which lies within one of this function's, or outside, where ends are held.
+        """Coefficients on intervals that each lie within one interval of this function, or outside its range.
 
         Parameters
         ----------
         low, high : ndarray
-            Where they begin and end; any shape.
+            Begin and end of the intervals; any shape.
 
         Returns
         -------
         ndarray
-            That shape and 4.
+            Coefficients c0 ... c3 in the last axis, shape (..., 4).
         """
         inside = 0.5 * (low + high)
         interval = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, self.knots.size - 2)
@@ -153,14 +153,14 @@ class PiecewiseCubic:
             part**2 * (c2 + 3.0 * u * c3),
             part**3 * c3,
         ]
-        held = (inside < self.knots[0]) | (inside > self.knots[-1])
+        beyond = (inside < self.knots[0]) | (inside > self.knots[-1])
         for power, values in enumerate(moved):
-            values[held] = self(inside[held]) if power == 0 else 0.0
+            values[beyond] = self(inside[beyond]) if power == 0 else 0.0
         return np.stack(moved, axis=-1)
 
 
 def with_corners(knots: FloatArray, corners: npt.ArrayLike, apart: float) -> FloatArray:
-    """Knots with the corners within their range among them, without those nearer than `apart` to another one."""
+    """Knots and the corners within their range, without knots nearer than `apart` to another one."""
     inner = np.unique(np.asarray(corners, dtype=np.float64))
     inner = inner[(inner > knots[0]) & (inner < knots[-1])]
     above = np.searchsorted(knots, inner)
@@ -191,7 +191,7 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     breaks : ndarray
         Increasing: the ends of the range and the corners of the function. At corners not among them intervals are
         halved down to `NARROWEST`, where the error is what the function changes over such a length.
@@ -210,7 +210,7 @@ def fitted(function: Callable[[FloatArray], FloatArray], breaks: FloatArray, tol
         if todo_low.size > _MOST_INTERVALS:
             raise ContactAccuracyError("a curve has a step where it should be continuous: give it corners of its own")
         width = todo_high - todo_low
-        # At once: a call costs more than its points.
+        # All points in one call: a call costs more than its points.
         places = (todo_low[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])).ravel()
         nodes, between = np.hsplit(function(places).reshape(todo_low.size, -1), [_NODES.size])
         coefficients = nodes @ _THROUGH_NODES.T
@@ -231,7 +231,7 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
     Parameters
     ----------
     function : callable
-        From positions (n,) to values (n,).
+        Function from positions (n,) to values (n,).
     length : float
         End of the range.
     tolerance : float
@@ -259,9 +259,9 @@ def tabulated(function: Callable[[FloatArray], FloatArray], length: float, toler
         finer = 2 ** max(1, min(3, math.ceil(math.log2(max(error / tolerance, 1.0)) / 4.0)))
         intervals *= finer
         points = np.linspace(0.0, length, 2 * intervals + 1)
-        known = np.arange(points.size) % finer == 0
+        evaluated = np.arange(points.size) % finer == 0
         between = np.empty(points.size)
-        between[known], between[~known] = values, function(points[~known])
+        between[evaluated], between[~evaluated] = values, function(points[~evaluated])
         values = between
     raise ContactAccuracyError(
         f"the table still misses the function by {error:.1e} (allowed {tolerance:.1e}) with 8192 intervals; "

@@ -2,7 +2,7 @@
 
 Modes are followed from speed to speed, through places where they cross and where they veer.
 
-Two modes of neighbouring speeds are held for one where both of their left and right vectors say so. With the
+Two modes of neighbouring speeds count as the same where both their left and right vectors say so. With the
 normalisation pᴴ (2 λ I + C) q = 1 the modes of one speed have pᵢᴴ ((λᵢ + λⱼ) I + C) qⱼ = δᵢⱼ, so that
 
     likeness = |pᵢᴴ ((λᵢ + μⱼ) I + C) rⱼ · sⱼᴴ ((λᵢ + μⱼ) I + D) qᵢ|
@@ -41,17 +41,17 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 Point = BranchPoint[ComplexArray]
 
-_ALIKE = 0.8  # likeness from which two modes are one beyond doubt
-_ONE = 1e-6  # eigenvalues nearer to each other than this part of them are not told apart
-_JUMP = 0.05  # a step of an eigenvalue by this part of it weighs as much as no likeness at all
-_MOST_JUMPS = 4.0  # such steps, beyond which the length of a step makes no further difference
-_FARTHEST = 0.3  # a branch that would have to jump by this part of its frequency has ended
-_HALVINGS = 6  # of a step of speed
-_CROSSING = 1e-10  # of a frequency, to which a crossing is found
+_ALIKE = 0.8  # likeness from which two modes are certainly the same
+_ONE = 1e-6  # relative distance of eigenvalues below which their modes are not distinguished
+_JUMP = 0.05  # relative step of an eigenvalue that costs as much as zero likeness
+_MOST_JUMPS = 4.0  # largest cost of a step, in steps of `_JUMP`
+_FARTHEST = 0.3  # relative step of a frequency beyond which a branch ends
+_HALVINGS = 6  # largest number of halvings of a speed step
+_CROSSING = 1e-10  # relative tolerance of a crossing's frequency
 _STEPS = 40
 _RESIDUAL = 1e-9
-_AT_REST = 1e-6  # of the highest speed, in place of zero: forward and backward whirl of a round shaft are then apart
-_ABOVE = 1.15  # modes up to this over the limit are followed, so that none is lost that dips below it
+_AT_REST = 1e-6  # part of the highest speed in place of zero, to separate forward and backward whirl
+_ABOVE = 1.15  # factor on the limit up to which modes are followed, as some dip below the limit
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ class ModesAtSpeed:
     Attributes
     ----------
     speed : float
-        [rad/s].
+        Speed [rad/s].
     values : ndarray of complex, shape (m,)
     right, left : ndarray of complex, shapes (m, n)
-        Normalised as in :class:`coupling.linear.eigenpairs.Eigenpairs`.
+        Vectors, normalised as in :class:`coupling.linear.eigenpairs.Eigenpairs`.
     damping : ndarray, shape (n, n)
         C at that speed.
     """
@@ -76,53 +76,53 @@ class ModesAtSpeed:
     damping: FloatArray
 
 
-def likeness(one: ModesAtSpeed, other: ModesAtSpeed) -> FloatArray:
-    """How far each mode of one is each of the other, shape (m, m'), 0 to 1."""
-    return np.asarray(np.minimum(np.abs(_products(one, other)), 1.0))
+def likeness(modes: ModesAtSpeed, other: ModesAtSpeed) -> FloatArray:
+    """Likeness of each mode at one speed and each mode at the other, shape (m, m'), 0 to 1."""
+    return np.asarray(np.minimum(np.abs(_products(modes, other)), 1.0))
 
 
-def _products(one: ModesAtSpeed, other: ModesAtSpeed) -> ComplexArray:
+def _products(modes: ModesAtSpeed, other: ModesAtSpeed) -> ComplexArray:
     """Correlate modes by biorthogonality, with the phase: over modes of one eigenvalue the products add up."""
-    sums = one.values[:, None] + other.values[None, :]
-    there = sums * (one.left.conj() @ other.right.T) + one.left.conj() @ one.damping @ other.right.T
-    back = sums * (one.right @ other.left.conj().T) + one.right @ other.damping.T @ other.left.conj().T
-    return np.asarray(there * back)
+    sums = modes.values[:, None] + other.values[None, :]
+    forward = sums * (modes.left.conj() @ other.right.T) + modes.left.conj() @ modes.damping @ other.right.T
+    backward = sums * (modes.right @ other.left.conj().T) + modes.right @ other.damping.T @ other.left.conj().T
+    return np.asarray(forward * backward)
 
 
 def matched(
-    one: ModesAtSpeed,
+    modes: ModesAtSpeed,
     other: ModesAtSpeed,
     solve: Callable[[float], ModesAtSpeed],
     limit: float,
     halvings: int = _HALVINGS,
 ) -> IntArray:
-    """For each mode of one the place of the same mode in the other, or -1, shape (m,).
+    """Index of the same mode at the other speed for each mode, or -1, shape (m,).
 
     Parameters
     ----------
-    one, other : ModesAtSpeed
+    modes, other : ModesAtSpeed
     solve : callable
-        The modes at a speed between.
+        Gives the modes at a speed in between.
     limit : float
-        Modes above it [rad/s] need not be told apart.
+        Frequency above which modes need not be distinguished [rad/s].
     halvings : int
-        How often the step may be halved.
+        Largest number of halvings of the step.
     """
-    products = _products(one, other)
+    products = _products(modes, other)
     alike = np.minimum(np.abs(products), 1.0)
-    jump = np.abs(other.values[None, :] - one.values[:, None]) / np.abs(one.values)[:, None]
-    found = paired_modes(
+    jump = np.abs(other.values[None, :] - modes.values[:, None]) / np.abs(modes.values)[:, None]
+    partners = paired_modes(
         jump, alike, jump_scale=_JUMP, most_jumps=_MOST_JUMPS, longest_jump=_FARTHEST, sure_likeness=_ALIKE
     )
-    wanted = np.abs(one.values) < limit
-    # Of modes that have one frequency at every speed, as of equal shafts, no step tells which is which: nor need it.
+    wanted = np.abs(modes.values) < limit
+    # Modes with the same frequency at every speed, as of equal shafts, cannot be and need not be distinguished.
     gaps = np.abs(other.values[:, None] - other.values[None, :])
     together = np.abs(products @ (gaps <= _ONE * np.abs(other.values)))
-    surest = np.where(found >= 0, together[np.arange(found.size), found], 0.0)
+    surest = np.where(partners >= 0, together[np.arange(partners.size), partners], 0.0)
     if halvings == 0 or not np.any(wanted & (surest < _ALIKE)):
-        return found
-    middle = solve(0.5 * (one.speed + other.speed))
-    first = matched(one, middle, solve, limit, halvings - 1)
+        return partners
+    middle = solve(0.5 * (modes.speed + other.speed))
+    first = matched(modes, middle, solve, limit, halvings - 1)
     second = matched(middle, other, solve, limit, halvings - 1)
     return np.where(first >= 0, second[first], -1)
 
@@ -130,10 +130,10 @@ def matched(
 def order_crossing(
     machine: CoupledMachine, order: float, ends: Sequence[tuple[ModesAtSpeed, int]], contact: ContactState
 ) -> tuple[float, complex] | None:
-    """Speed and eigenvalue where a branch has the frequency of an order, between two neighbours on it.
+    """Speed and eigenvalue at which a branch has the frequency of an order, between two neighbouring speeds.
 
-    At each speed on the way Newton's method on the eigenpair begins between its neighbours. None where that leads away
-    from the branch.
+    At each trial speed Newton's method on the eigenpair starts between the neighbours. The result is None where that
+    leads away from the branch.
 
     Parameters
     ----------
@@ -143,11 +143,11 @@ def order_crossing(
     ends : two of (ModesAtSpeed, int)
         Modes at the speeds on either side, and the place of the branch among them.
     contact : ContactState
-        Of all speeds.
+        Contact state at all speeds.
     """
 
     def point(speed: float, value: complex, shape: ComplexArray) -> Point:
-        # Shapes are known up to a factor; each is turned into line with the first, to be averaged with others.
+        # Shapes are known up to a factor; each is rotated in phase with the first before they are averaged.
         aligned = np.asarray(shape * np.exp(-1j * np.angle(np.vdot(first, shape))))
         return BranchPoint(speed, value, value.imag - order * abs(speed), aligned)
 
@@ -163,12 +163,12 @@ def order_crossing(
 
     first = ends[0][0].right[ends[0][1]]
     low, high = (point(modes.speed, complex(modes.values[at]), modes.right[at]) for modes, at in ends)
-    found = refined_crossing(low, high, solve, tolerance=_CROSSING, steps=_STEPS)
-    return None if found is None else (found.speed, found.eigenvalue)
+    crossing = refined_crossing(low, high, solve, tolerance=_CROSSING, steps=_STEPS)
+    return None if crossing is None else (crossing.speed, crossing.eigenvalue)
 
 
 def _between(value: complex, ends: Sequence[complex]) -> bool:
-    """Whether an eigenvalue is near two on its branch, and not one of another branch."""
+    """Whether an eigenvalue is near those of its branch on both sides, and so not on another branch."""
     reach = 2.0 * abs(ends[1] - ends[0]) + 1e-3 * abs(ends[0])
     return min(abs(value - end) for end in ends) <= reach
 
@@ -180,15 +180,15 @@ class SystemCrossing:
     Attributes
     ----------
     speed : float
-        Of the leading rotor [rad/s], signed as in the diagram.
+        Speed of the leading rotor [rad/s], signed as in the diagram.
     line : ExcitationLine
     eigenvalue : complex
-        λ there [1/s], with Im λ = order |Ω|.
+        Eigenvalue λ [1/s] with Im λ = order |Ω|.
     branch : int
     kind, where : str
-        The mode's, at the nearest speed of the diagram.
+        Kind and place of the mode, at the nearest speed of the diagram.
     teeth : float
-        The gear meshes' share of its strain energy there.
+        Share of the gear meshes in the mode's strain energy there.
     """
 
     speed: float
@@ -207,25 +207,25 @@ class SystemCrossing:
 
 @dataclass(frozen=True)
 class SystemCampbell:
-    """Coupled modes at s speeds along b branches; NaN and empty words where a branch is not.
+    """Coupled modes at s speeds along b branches; NaN and empty words where a branch does not exist.
 
     Attributes
     ----------
     speeds : ndarray, shape (s,)
-        Of the leading rotor [rad/s].
+        Speed of the leading rotor [rad/s].
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)
-        As in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kinds and places as in :class:`coupling.linear.complex_modes.CoupledModes`.
     whirl : ndarray, shape (s, b)
-        Sense of the bending of the rotor that whirls most, about +z.
+        Whirl sense about +z of the rotor that whirls most.
     teeth : ndarray, shape (s, b)
-        The gear meshes' share of the strain energy.
+        Share of the gear meshes in the strain energy.
     lines : tuple of ExcitationLine
     crossings : tuple of SystemCrossing
-        By speed.
+        Crossings in the order of speed.
     unsettled : tuple of str
-        Crossings seen between two speeds that no refinement could prove, in words.
+        Crossings between two speeds that no refinement could prove, in words.
     limit : float
         Highest frequency that was followed [rad/s].
     """
@@ -266,15 +266,15 @@ def system_campbell(
     Parameters
     ----------
     machine : CoupledMachine
-        That turns; its rotors keep their ratios.
+        Rotating machine; its rotors keep their speed ratios.
     speeds : sequence of float
         Signed speeds of the leading rotor [rad/s], two or more of one sense, ascending in size; zero may begin them.
     frequency_limit : float
-        Branches below it at some speed are followed [rad/s].
+        Frequency limit: branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        Those of :func:`coupling.linear.excitation_orders.excitation_lines` where not given.
+        Lines; by default those of :func:`coupling.linear.excitation_orders.excitation_lines`.
     contact : ContactState, optional
-        At every speed; :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load where not given.
+        Contact at every speed; by default :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load.
     progress : callable
         Called with the finished part, from 0 to 1.
 
@@ -303,35 +303,35 @@ def system_campbell(
     def solve(speed: float) -> ModesAtSpeed:
         return _described(machine, speed, limit, state).modes
 
-    known: list[_Described] = []
+    points: list[_Described] = []
     branches = np.zeros((0, 0), dtype=np.intp)
     for number, speed in enumerate(stand_in):
-        here = _described(machine, float(speed), limit, state)
-        partner = matched(known[-1].modes, here.modes, solve, limit) if known else np.zeros(0, dtype=np.intp)
-        branches = extended_branches(branches, partner, here.modes.values.size)
-        known.append(here)
+        described = _described(machine, float(speed), limit, state)
+        partner = matched(points[-1].modes, described.modes, solve, limit) if points else np.zeros(0, dtype=np.intp)
+        branches = extended_branches(branches, partner, described.modes.values.size)
+        points.append(described)
         progress((number + 1) / stand_in.size)
-    sizes = np.abs(along_branches(branches, [one.modes.values for one in known], np.nan))
+    sizes = np.abs(along_branches(branches, [one.modes.values for one in points], np.nan))
     table = branches[:, np.any(sizes < frequency_limit, axis=0)]
-    eigenvalues = along_branches(table, [one.modes.values for one in known], complex(np.nan, np.nan))
+    eigenvalues = along_branches(table, [one.modes.values for one in points], complex(np.nan, np.nan))
     kinds, where = (
-        along_branches(table, [np.array(getattr(one, key)) for one in known], "") for key in ("kinds", "where")
+        along_branches(table, [np.array(getattr(one, key)) for one in points], "") for key in ("kinds", "where")
     )
-    whirl = along_branches(table, [one.whirl for one in known], np.nan)
-    teeth = along_branches(table, [one.teeth for one in known], np.nan)
+    whirl = along_branches(table, [one.whirl for one in points], np.nan)
+    teeth = along_branches(table, [one.teeth for one in points], np.nan)
     crossings, unsettled = [], []
     for line in chosen:
         for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in):
-            ends = [(known[i].modes, int(table[i, branch])) for i in (left, left + 1)]
-            found = order_crossing(machine, line.order, ends, state)
-            if found is None:
+            ends = [(points[i].modes, int(table[i, branch])) for i in (left, left + 1)]
+            crossing = order_crossing(machine, line.order, ends, state)
+            if crossing is None:
                 unsettled.append(
                     f"{line.name} meets the mode at {eigenvalues[left, branch].imag / (2.0 * np.pi):.5g} Hz between "
                     f"{leading_speeds[left]:.6g} and {leading_speeds[left + 1]:.6g} rad/s, "
                     "but the crossing does not converge; take more speeds about there"
                 )
                 continue
-            speed, value = found
+            speed, value = crossing
             if abs(value) < frequency_limit:
                 at = left if abs(speed - stand_in[left]) < abs(speed - stand_in[left + 1]) else left + 1
                 named = (str(kinds[at, branch]), str(where[at, branch]), float(teeth[at, branch]))
@@ -352,7 +352,7 @@ def system_campbell(
 
 @dataclass(frozen=True)
 class _Described:
-    """Oscillating modes at a speed with what names them, one entry for each."""
+    """Oscillating modes at a speed with kind, place, whirl and mesh share of each."""
 
     modes: ModesAtSpeed
     kinds: tuple[str, ...]

@@ -36,7 +36,7 @@ ComplexArray = npt.NDArray[np.complex128]
 # Relative distance of eigenvalues within which rounding mixes their shapes: by the eigensolver's error over this.
 # Forward and backward whirl of a round shaft that hardly turns are further apart.
 _SAME = 1e-8
-_INDEPENDENT = 1e-6  # of the largest singular value of a group's shapes, above which a direction is one of theirs
+_INDEPENDENT = 1e-6  # part of the largest singular value of a group's shapes above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
 
 
@@ -59,9 +59,9 @@ class ModeShares:
     moving : ndarray, shape (m, n)
         Kinetic energy by coordinate.
     kinetic : ndarray, shape (m, c)
-        The same by component.
+        Kinetic energy by component.
     strain : ndarray, shape (m, p)
-        Strain energy by part; zeros for a rigid-body motion, negative where a part's stiffness is.
+        Strain energy by part; zeros for a rigid-body motion, negative where a part's stiffness is negative.
     damping : ndarray, shape (m, p)
         Damping ratio by part; the sum is the mode's. Negative where a part feeds energy into the mode.
     stiffness : ndarray, shape (m,)
@@ -93,7 +93,7 @@ def mode_shares(
         start += component.size
         parts.append(Part("component", component.name))
         kinetic.append(motion[:, rows].sum(axis=1))
-        # The gyroscopic terms, which are skew, take no part in any of the three.
+        # The gyroscopic terms are skew and contribute to none of the three.
         works.append(_work(shapes[:, rows], component.stiffness, component.damping))
     for connector in system.linear:
         parts.append(Part("connector", connector.name))
@@ -109,12 +109,12 @@ def mode_shares(
     # Real eigenvalues of an undamped system with a negative stiffness have no total energy.
     safe = np.where(np.abs(total) > _NOTHING * size**2 * mass, total * np.where(size > 0.0, size, 1.0), np.inf)
     damping_shares = (size**2 * lost + eigenvalues.imag * fed) / safe
-    held = np.abs(strained).sum(axis=0)
+    strain_sum = np.abs(strained).sum(axis=0)
     return ModeShares(
         parts=tuple(parts),
         moving=motion / mass[:, None],
         kinetic=np.array(kinetic).T / mass[:, None],
-        strain=(strained / np.where((size > 0.0) & (held > 0.0) & (strain != 0.0), strain, np.inf)).T,
+        strain=(strained / np.where((size > 0.0) & (strain_sum > 0.0) & (strain != 0.0), strain, np.inf)).T,
         damping=np.where(size > 0.0, damping_shares, 0.0).T,
         stiffness=np.where(size > 0.0, strain / mass, 0.0),
     )
@@ -129,14 +129,14 @@ def _groups(eigenvalues: ComplexArray) -> list[slice]:
 
 
 def _over_groups(values: ComplexArray, groups: list[slice]) -> ComplexArray:
-    """Each group's mean in place of its values."""
+    """Replace the values of each group by their mean."""
     return np.concatenate([np.full(len(values[one]), values[one].mean()) for one in groups] or [values])
 
 
 def group_bases(eigenvalues: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, FloatArray]:
     """Orthonormal bases of the spaces of groups of modes, (b, n), and the averaging weights of each mode, (m, b).
 
-    A quadratic form of the shapes, summed over an orthonormal basis of a group's space, depends on no choice of it.
+    A quadratic form summed over an orthonormal basis of a group's space does not depend on the choice of basis.
     """
     return _bases(shapes, _groups(eigenvalues))
 
@@ -145,13 +145,13 @@ def _bases(shapes: ComplexArray, groups: list[slice]) -> tuple[ComplexArray, Flo
     """Orthonormal basis of each group's shapes, (b, n), and the averaging weights of each mode, (m, b)."""
     bases: list[ComplexArray] = []
     means = np.zeros((len(shapes), 0))
-    for one in groups:
-        basis = shapes[one]
+    for group in groups:
+        basis = shapes[group]
         if len(basis) > 1:
             _, sizes, rows = np.linalg.svd(basis, full_matrices=False)
             basis = rows[sizes > _INDEPENDENT * sizes[0]]
         mean = np.zeros((len(shapes), len(basis)))
-        mean[one] = 1.0 / len(basis)
+        mean[group] = 1.0 / len(basis)
         bases.append(basis)
         means = np.hstack([means, mean])
     return (np.concatenate(bases) if bases else shapes), means
@@ -183,11 +183,11 @@ class ModesCertificate:
     Attributes
     ----------
     expected, found : int
-        Number of eigenvalues, 2 n and those found: conjugates, and each zero by its multiplicity.
+        Number of eigenvalues expected, 2 n, and found; conjugates count, and each zero by its multiplicity.
     zeros : int
         Number of zero eigenvalues, from ranks.
     max_residual : float
-        Largest |λ² q + λ C q + K q|, as a part of the norm of its terms.
+        Largest |λ² q + λ C q + K q| over the norm of its terms.
     sum_rule : float
         Largest entry of Σ λ q pᴴ + X - I, 0 where every pair is there once.
     """
@@ -206,7 +206,7 @@ class CoupledModes:
     Attributes
     ----------
     eigenvalues : ndarray of complex, shape (m,)
-        λ [1/s], with a frequency of |λ| and a damping ratio of -Re λ / |λ|; exactly 0 for rigid motions.
+        Eigenvalues λ [1/s] with frequency |λ| and damping ratio -Re λ / |λ|; exactly 0 for rigid motions.
     shapes : ndarray of complex, shape (m, n)
         Mode shapes in the coordinates, of unit norm.
     left : ndarray of complex, shape (m, n)
@@ -221,13 +221,13 @@ class CoupledModes:
         Share of each kind of coordinate in the mode's kinetic energy, and under ``mesh`` the teeth's share in its
         strain energy.
     shares : ModeShares
-        By component, bearing and gear mesh.
+        Energy shares of components, bearings and gear meshes.
     whirl : ndarray, shape (m, c)
         Whirl of each component: 1 where it whirls counter-clockwise about z in circles, -1 clockwise, 0 in a plane; NaN
         where it has no bending or hardly any in the mode.
     certificate : ModesCertificate
     pairs : Eigenpairs
-        All 2n, for superposition.
+        All 2n eigenpairs, for superposition.
     """
 
     eigenvalues: ComplexArray
@@ -248,7 +248,7 @@ class CoupledModes:
 
     @property
     def damping_ratios(self) -> FloatArray:
-        """Parts of critical, shape (m,); negative where the mode grows."""
+        """Damping ratios, shape (m,); negative where the mode grows."""
         size = np.abs(self.eigenvalues)
         return np.asarray(-self.eigenvalues.real / np.where(size > 0.0, size, 1.0))
 
@@ -268,8 +268,8 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     ----------
     system : CoupledSystem
     contact : ContactState, optional
-        :func:`coupling.statics.mean_mesh.mean_contact`, where it is not given, or
-        :func:`coupling.statics.mean_mesh.contact_at` an instant.
+        Contact state: by default :func:`coupling.statics.mean_mesh.mean_contact`, or
+        :func:`coupling.statics.mean_mesh.contact_at` for an instant.
 
     Raises
     ------
@@ -314,10 +314,10 @@ def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatA
 
     Counter-clockwise circles have y a quarter turn behind x. With x and y in the same mass-normalised shapes of the
     shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones. ``vectors`` and
-    ``means`` are those of :func:`coupling.linear.complex_modes.group_bases`: modes that cannot be told apart have one
+    ``means`` are those of :func:`coupling.linear.complex_modes.group_bases`: indistinguishable modes have one
     sense.
     """
-    found = np.full((len(means), len(system.components)), np.nan)
+    directions = np.full((len(means), len(system.components)), np.nan)
     whole = means @ (np.abs(vectors) ** 2).sum(axis=1)
     start = 0
     for number, component in enumerate(system.components):
@@ -329,9 +329,9 @@ def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatA
             backward = means @ (np.abs(x - 1j * y) ** 2).sum(axis=1)
             both = forward + backward
             whirls = 0.5 * both > _WHIRLS * whole
-            found[whirls, number] = ((forward - backward) / np.where(both > 0.0, both, 1.0))[whirls]
+            directions[whirls, number] = ((forward - backward) / np.where(both > 0.0, both, 1.0))[whirls]
         start = end
-    return found
+    return directions
 
 
 def _energy_by_kind(system: CoupledSystem, shares: ModeShares) -> list[dict[str, float]]:
@@ -350,7 +350,7 @@ def _kind(share: dict[str, float]) -> str:
 
 
 def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list[str]:
-    """Component or contact of each mode, see :attr:`CoupledModes.where`; the first of equal ones."""
+    """Component or contact of each mode, see :attr:`CoupledModes.where`; the first where several are equal."""
     owners = np.repeat(np.arange(len(system.components)), [part.size for part in system.components])
     labels = np.array(system.kinds)
     places = []
@@ -366,7 +366,7 @@ def _places(system: CoupledSystem, shares: ModeShares, kinds: list[str]) -> list
 
 
 def _largest(values: FloatArray) -> int:
-    """Index of the largest share; the first of those that are equal but for rounding."""
+    """Index of the largest share; the first where several are equal within rounding."""
     return int(np.flatnonzero(values >= values.max() - _EQUAL_SHARES)[0])
 
 
@@ -385,7 +385,7 @@ class GrowingMode:
     eigenvalue : complex
         λ [1/s]; real for a divergence without oscillation.
     kind, where : str
-        As in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kind and place as in :class:`coupling.linear.complex_modes.CoupledModes`.
     feeders : tuple of (Part, float)
         Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
         divergence by negative stiffness, those parts with minus their shares of the strain energy.
@@ -415,7 +415,7 @@ class Stability:
     Attributes
     ----------
     growing : tuple of GrowingMode
-        The fastest first; none in a stable system.
+        Growing modes, the fastest first; none in a stable system.
     least_damped : int or None
         Index of the oscillating mode with the lowest damping ratio.
     """
@@ -425,7 +425,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """Whether nothing grows."""
+        """Whether no mode grows."""
         return not self.growing
 
 
@@ -436,7 +436,7 @@ def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
     ----------
     modes : CoupledModes
     tolerance : float
-        Damping ratios from -tolerance up are no growth, nor are eigenvalues that are rounding of the largest one.
+        Damping ratios from -tolerance up count as stable, as do eigenvalues within rounding of zero.
     """
     ratios = modes.damping_ratios
     # The damping ratio of a rigid-body motion is ±1 however small its eigenvalue.
@@ -453,7 +453,11 @@ def _growing(modes: CoupledModes, i: int) -> GrowingMode:
     shares = modes.shares
     swings = modes.eigenvalues[i].imag != 0.0
     # A divergence by negative stiffness is independent of the damping: dashpots only slow it.
-    given = shares.damping[i] if swings or shares.stiffness[i] >= 0.0 else -shares.strain[i]
-    least = -_NEUTRAL * float(np.abs(given).max(initial=0.0))
-    feeders = [(shares.parts[j], float(given[j])) for j in np.argsort(given, kind="stable") if given[j] < least]
+    shares_of_parts = shares.damping[i] if swings or shares.stiffness[i] >= 0.0 else -shares.strain[i]
+    least = -_NEUTRAL * float(np.abs(shares_of_parts).max(initial=0.0))
+    feeders = [
+        (shares.parts[j], float(shares_of_parts[j]))
+        for j in np.argsort(shares_of_parts, kind="stable")
+        if shares_of_parts[j] < least
+    ]
     return GrowingMode(i, complex(modes.eigenvalues[i]), modes.kinds[i], modes.where[i], tuple(feeders))

@@ -32,7 +32,7 @@ from coupling.errors import ModesError
 
 FloatArray = npt.NDArray[np.float64]
 
-_RANK = 1e-11  # of a damping's rank: its singular values below this, relative to its largest terms, are rounding
+_RANK = 1e-11  # singular values of a damping matrix below this part of its largest terms are rounding
 _ROUNDING = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
 _PRECISION = float(np.finfo(np.float64).eps)
 ComplexArray = npt.NDArray[np.complex128]
@@ -40,7 +40,7 @@ ComplexArray = npt.NDArray[np.complex128]
 _RESIDUAL = 1e-9  # largest residual of a pair, relative to the terms of its equation
 _REFINE = 1e-12  # pairs with a larger residual are refined
 _DOUBLE = 1e-9  # relative distance within which two eigenvalues are one double eigenvalue
-_INDEPENDENT = 1e-6  # singular value below which their vectors are one as well
+_INDEPENDENT = 1e-6  # singular value below which the vectors of a double eigenvalue are dependent
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,9 @@ class ReducedState:
     matrix : ndarray, shape (m, m)
         A.
     basis : ndarray, shape (2n - r, m)
-        Orthonormal; the state (q', Ω Uᵀ q) is this times x.
+        Orthonormal basis: the state (q', Ω Uᵀ q) is ``basis @ x``.
     whole : ndarray, shape (2n - r, 2n - r)
-        The matrix that acts on that state.
+        Matrix of the first-order system on that state.
     momenta : ndarray, shape (2n - r, s)
         Orthonormal basis of its left null space, the complement of ``basis``.
     rigid : ndarray, shape (n, r)
@@ -93,19 +93,19 @@ def reduce_state(stiffness: FloatArray, damping: FloatArray) -> ReducedState:
 
     resisted = left.T @ damping @ right
     size = np.abs(left).T @ np.abs(damping) @ np.abs(right)
-    # R and L themselves are rounded: that much of the largest damping is in their product with C in any case.
+    # R and L are rounded: their product with C contains at least that part of the largest damping.
     bound = _RANK * float(size.max(initial=0.0)) + n * _PRECISION * float(np.abs(damping).max(initial=0.0))
-    drifting, kept = right @ _null(resisted, bound), left @ _null(resisted.T, bound)
+    drifting, undamped_left = right @ _null(resisted, bound), left @ _null(resisted.T, bound)
     # The right null vectors have a static deflection under the forces of their drift; the left ones are momenta.
     deflection = -np.linalg.lstsq((stiffness @ u) / root, damping @ drifting, rcond=None)[0]
     null_right = np.vstack([drifting, deflection])
-    null_left = np.vstack([kept, (u.T @ damping.T @ kept) / root[:, None]])
+    null_left = np.vstack([undamped_left, (u.T @ damping.T @ undamped_left) / root[:, None]])
     drifts = null_right.shape[1]
     complete = np.linalg.qr(null_left, mode="complete")[0]
     momenta, basis = complete[:, :drifts], complete[:, drifts:]
     drift = np.zeros((n, n))
     if drifts:
-        drift = drifting @ np.linalg.solve(null_left.T @ null_right, kept.T)
+        drift = drifting @ np.linalg.solve(null_left.T @ null_right, undamped_left.T)
     return ReducedState(basis.T @ whole @ basis, basis, whole, momenta, right, drift, drifts)
 
 
@@ -145,7 +145,7 @@ class Eigenpairs:
     values : ndarray of complex, shape (m,)
         λ [1/s], none of them zero.
     right, left : ndarray of complex, shapes (m, n)
-        q, of unit norm, and p; rows.
+        Right vectors q, of unit norm, and left vectors p, in rows.
     rigid : ndarray, shape (r, n)
         Rigid-body motions, which no spring resists, orthonormal; rows.
     drifts : int
@@ -193,7 +193,7 @@ def quadratic_eigenpairs(stiffness: FloatArray, damping: FloatArray) -> Eigenpai
         inverse = np.linalg.inv(vectors)
     except np.linalg.LinAlgError:  # vectors of a defective eigenvalue that are one to the last digit
         inverse = np.linalg.pinv(vectors)
-    # What the left vectors have along the momenta that the reduced state leaves out.
+    # Part of the left vectors along the momenta that the reduced state leaves out.
     leaving = (inverse @ (state.basis.T @ (state.whole @ state.momenta))) / values[:, None]
     left = (inverse @ state.basis.T + leaving @ state.momenta.T)[:, :n].conj()
     norms = np.linalg.norm(right, axis=0)

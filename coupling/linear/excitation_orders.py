@@ -17,7 +17,7 @@ class ExcitationLine:
     Attributes
     ----------
     name : str
-        Such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
+        Name such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
     kind : str
         ``shaft``, ``mesh``, ``sideband`` or ``bearing``.
     order : float
@@ -47,7 +47,7 @@ def excitation_lines(
     mesh_harmonics : sequence of int
         Multiples of each mesh frequency.
     sidebands : int
-        Number on either side of each harmonic of a mesh, at the distance of either gear's shaft speed.
+        Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft.
     element_passes : sequence of int
         Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
 

@@ -41,7 +41,7 @@ from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_conta
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_EVEN_POINTS = 600  # across a band, beside those of each resonance
+_EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
 _SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
 
@@ -61,11 +61,11 @@ def receptance(
     ----------
     system : CoupledSystem
     outputs, inputs : ndarray, shapes (o, n) and (i, n)
-        Directions of motion; a motion of a component by :func:`coupling.machine.coupled_system.embed`.
+        Directions of motion over the coordinates; see :func:`coupling.machine.coupled_system.embed` for a component's.
     frequencies : ndarray, shape (f,)
         w [rad/s], not 0; the response at -w is the conjugate.
     contact : ContactState, optional
-        By default the mean contact.
+        State of the contacts; by default the mean contact.
     modes : CoupledModes, optional
         Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 
@@ -81,9 +81,9 @@ def receptance(
     ModesError
         Where the modes are not complete, or an undamped mode is driven at its own frequency.
     """
-    for what, rows in (("outputs", outputs), ("inputs", inputs)):
+    for label, rows in (("outputs", outputs), ("inputs", inputs)):
         if rows.ndim != 2 or rows.shape[1] != system.size:
-            raise CouplingError(f"{what} of shape {rows.shape}; expected (any, {system.size})")
+            raise CouplingError(f"{label} of shape {rows.shape}; expected (any, {system.size})")
     loads = np.broadcast_to(inputs, (len(frequencies), *inputs.shape))
     moved = response(system, loads, frequencies, contact, _pairs_of(modes))
     return np.asarray(np.einsum("fin,on->foi", moved, outputs))
@@ -103,18 +103,18 @@ def response(
     if pairs is not None:
         return superposed(pairs, loads, w)
     stiffness, damping = linear_matrices(system, mean_contact(system) if contact is None else contact)
-    found = np.empty(loads.shape, dtype=np.complex128)
-    for number, (each, load) in enumerate(zip(w, loads, strict=True)):
-        dynamic = stiffness + 1j * each * damping
-        dynamic[np.diag_indices(system.size)] -= each**2
+    amplitudes = np.empty(loads.shape, dtype=np.complex128)
+    for number, (frequency, load) in enumerate(zip(w, loads, strict=True)):
+        dynamic = stiffness + 1j * frequency * damping
+        dynamic[np.diag_indices(system.size)] -= frequency**2
         try:
-            found[number] = np.linalg.solve(dynamic, load.T).T
+            amplitudes[number] = np.linalg.solve(dynamic, load.T).T
         except np.linalg.LinAlgError as error:
             raise ModesError(
-                f"an undamped mode is driven at its own frequency, {each / (2.0 * np.pi):.6g} Hz; give it damping or "
-                "leave that frequency out"
+                f"an undamped mode is driven at its own frequency, {frequency / (2.0 * np.pi):.6g} Hz; give it damping "
+                "or leave that frequency out"
             ) from error
-    return found
+    return amplitudes
 
 
 def _pairs_of(modes: CoupledModes | None) -> Eigenpairs | None:
@@ -182,9 +182,9 @@ class FrequencyResponse:
     coordinates : ndarray of complex, shape (f, n)
         Amplitudes of the whole system.
     sensor_acceleration : dict of str to ndarray of complex, shape (f,)
-        Along each sensor [m/s²].
+        Acceleration along each sensor [m/s²].
     bearing_load : dict of str to ndarray of complex, shape (f, 5)
-        Of each shaft on its bearing: forces along x, y, z [N], moments about x and y [N m]; 0 where nothing holds.
+        Load of each shaft on its bearing: forces along x, y, z [N], moments about x and y [N m]; 0 along free axes.
     mesh_force : dict of str to ndarray of complex, shape (f,)
         Force along each line of action [N]; contacts that do not touch are left out.
     """
@@ -203,7 +203,7 @@ class FrequencyResponse:
         return {name: load[:, :2] for name, load in self.bearing_load.items()}
 
     def peaks(self, curve: ComplexArray, count: int = 8) -> npt.NDArray[np.int64]:
-        """Places along the frequencies at which the size of a curve (f,) has its highest maxima, highest first."""
+        """Return the indices of the highest maxima of a curve's magnitude (f,), the highest first."""
         size = np.abs(curve)
         tops = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
         return np.asarray(tops[np.argsort(-size[tops], kind="stable")][:count])
@@ -227,7 +227,7 @@ def mesh_error_response(
     mesh : int
         Number of the gear mesh.
     contact : ContactState, optional
-        By default the mean contact.
+        State of the contacts; by default the mean contact.
     modes : CoupledModes, optional
         Modes about the same contact, to be superposed; by default the system is solved at every frequency.
 
@@ -291,40 +291,40 @@ def unbalance_response(
     ----------
     machine : CoupledMachine
     speeds : sequence of float
-        Of the leading rotor [rad/s], none 0.
+        Speeds of the leading rotor [rad/s], none 0.
     rotor : str
     contact : ContactState, optional
-        At every speed; by default the mean contact under the machine's load.
+        Contact at every speed; by default the mean contact under the machine's load.
 
     Returns
     -------
     FrequencyResponse
-        With w the signed speeds of that rotor: amplitudes rotate with it.
+        Response with w the signed speeds of that rotor: amplitudes rotate with it.
 
     Raises
     ------
     CouplingError
         Where the rotor has no unbalance, or a speed is 0.
     """
-    if not any(one.rotor == rotor and one.moment != 0.0 for one in machine.loads.unbalances):
+    if not any(load.rotor == rotor and load.moment != 0.0 for load in machine.loads.unbalances):
         raise CouplingError(f"rotor {rotor!r} has no unbalance; expected one")
     at_speeds = [machine.at_speed(float(speed)) for speed in speeds]
-    frequencies = np.array([one.speeds[rotor] for one in at_speeds])
+    frequencies = np.array([at_speed.speeds[rotor] for at_speed in at_speeds])
     if np.any(frequencies == 0.0):
         raise CouplingError("a speed of 0, where an unbalance has no force; expected others")
     state = mean_contact(at_speeds[0].system) if contact is None else contact
     number = [part.name for part in machine.system.components].index(rotor)
     rows = _rows_of(machine.system, number)
     parts = []
-    for one, w in zip(at_speeds, frequencies, strict=True):
-        # Other rotors of the same speed have loads of that frequency too, on their own coordinates.
+    for at_speed, w in zip(at_speeds, frequencies, strict=True):
+        # Other rotors of the same speed have loads of that frequency too, on other coordinates.
         load = sum(
-            (each.amplitude for each in one.system.harmonic_loads if each.frequency == w),
-            np.zeros(one.system.size, dtype=np.complex128),
+            (each.amplitude for each in at_speed.system.harmonic_loads if each.frequency == w),
+            np.zeros(at_speed.system.size, dtype=np.complex128),
         )
         alone = np.where(rows, load, 0.0)
-        moved = response(one.system, alone[None, None, :], np.array([w]), state)[:, 0]
-        parts.append(_named(one, state, np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is"))
+        moved = response(at_speed.system, alone[None, None, :], np.array([w]), state)[:, 0]
+        parts.append(_named(at_speed, state, np.array([w]), moved, f"unbalance of {rotor}", "unbalance as it is"))
     first = parts[0]
     return FrequencyResponse(
         excitation=first.excitation,
@@ -343,8 +343,8 @@ def _rows_of(system: CoupledSystem, number: int) -> npt.NDArray[np.bool_]:
     return np.asarray(owners == number)
 
 
-def _joined(each: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
-    return {name: np.concatenate([one[name] for one in each]) for name in each[0]}
+def _joined(responses: list[dict[str, ComplexArray]]) -> dict[str, ComplexArray]:
+    return {name: np.concatenate([part[name] for part in responses]) for name in responses[0]}
 
 
 def _named(
@@ -394,7 +394,7 @@ class BasisError:
     Attributes
     ----------
     machine : CoupledMachine
-        On the basis whose error is estimated.
+        Machine on the basis whose error is estimated.
     other : CoupledMachine
         The same machine on another basis, its sensors, meshes and bearings in the same order.
     """
@@ -413,7 +413,7 @@ class BasisError:
         Returns
         -------
         dict of str to ndarray, shape (f,)
-            By name of the sensor; between 0.005 and 10.
+            Relative error by name of the sensor, between 0.005 and 10.
 
         Raises
         ------
@@ -422,19 +422,19 @@ class BasisError:
         ModesError
             Where an undamped mode is driven at its own frequency.
         """
-        asked = np.asarray(frequencies, dtype=np.float64)
-        if not asked.size or not self.machine.sensor_rows:
-            return {name: np.zeros(asked.size) for name in self.machine.sensor_rows}
-        w = (asked[:, None] * (1.0 + _NEIGHBOURHOOD)).ravel()
-        own, other = self._pairs
-        ours, others = _sensor_responses(self.machine, own, w), _sensor_responses(self.other, other, w)
-        found = {}
+        requested = np.asarray(frequencies, dtype=np.float64)
+        if not requested.size or not self.machine.sensor_rows:
+            return {name: np.zeros(requested.size) for name in self.machine.sensor_rows}
+        w = (requested[:, None] * (1.0 + _NEIGHBOURHOOD)).ravel()
+        pairs, other_pairs = self._pairs
+        ours, others = _sensor_responses(self.machine, pairs, w), _sensor_responses(self.other, other_pairs, w)
+        errors = {}
         for name, motion in ours.items():
             size = np.linalg.norm(motion, axis=1)
             apart = np.linalg.norm(motion - others[name], axis=1)
             part = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
-            found[name] = np.clip(_SAFETY * part.reshape(asked.size, -1).max(axis=1), _LEAST, _HIGHEST)
-        return found
+            errors[name] = np.clip(_SAFETY * part.reshape(requested.size, -1).max(axis=1), _LEAST, _HIGHEST)
+        return errors
 
     @cached_property
     def _pairs(self) -> tuple[Eigenpairs | None, Eigenpairs | None]:

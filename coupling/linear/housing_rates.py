@@ -30,14 +30,14 @@ class HousingRates:
     stiffness, mass : ndarray, shape (p, h, h)
         dK [1/s²] and dM [1] per unit of each parameter.
     bearings : sequence of mapping of str to ndarray, shape (5, h)
-        Of each parameter, the change of the seats' motions at bearings; where there is none it may be absent.
+        Change of the seats' motions at bearings, for each parameter; a bearing without a change may be absent.
     sensors : sequence of mapping of str to ndarray, shape (h,)
-        Of each parameter, the change of the sensors' motions likewise.
+        Change of the sensors' motions, for each parameter; a sensor without a change may be absent.
     static : sequence of mapping of str to ndarray, shape (5,)
-        Of each parameter, the change of the seats' motions at bearings in the static displacement field [m, rad].
+        Change of the seats' motions at bearings in the static displacement field, for each parameter [m, rad].
     powers : sequence of mapping of float to float
-        Of each parameter, the change of the sound power at ω [rad/s] in the line's motion, by the points of the housing
-        that the radiating surface moves with [W]; where there is none it may be absent.
+        Change of the sound power [W] at ω [rad/s] in the line's motion by the points of the housing that the radiating
+        surface moves with, for each parameter; a frequency without a change may be absent.
     """
 
     frequencies: FloatArray

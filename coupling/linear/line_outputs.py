@@ -29,7 +29,7 @@ class LineOutput(Protocol):
 
     @property
     def decibels(self) -> float:
-        """Change of its level for a factor of ten [dB]."""
+        """Change of the output's level for a factor of ten [dB]."""
         ...
 
     def value(self, w: float, motion: ComplexArray) -> float:
@@ -57,9 +57,9 @@ class SensorAmplitude:
     ----------
     sensor : str
     row : ndarray, shape (n,)
-        s, the displacement of the sensor by the coordinates of the machine.
+        Displacement s of the sensor by the coordinates of the machine.
     housing : slice
-        Place of the housing's coordinates among these.
+        Place of the housing's coordinates among those of the machine.
     """
 
     sensor: str
@@ -69,16 +69,16 @@ class SensorAmplitude:
     decibels = 20.0
 
     def value(self, w: float, motion: ComplexArray) -> float:
-        """|y|."""
+        """Amplitude |y| [m/s²]."""
         return w**2 * abs(complex(self.row @ motion))
 
     def weight(self, w: float, motion: ComplexArray) -> complex:
-        """-ω² y* / |y|, by which a displacement of the sensor adds to the amplitude [1/s²]."""
+        """Factor -ω² y* / |y| from a displacement of the sensor to the change of the amplitude [1/s²]."""
         displacement = complex(self.row @ motion)
         return w**2 * displacement.conjugate() / abs(displacement)
 
     def adjoint_load(self, w: float, motion: ComplexArray) -> ComplexArray:
-        """-ω² (y* / |y|) s [1/s²]."""
+        """Adjoint load -ω² (y* / |y|) s [1/s²]."""
         return np.asarray(self.weight(w, motion) * self.row)
 
     def by_housing(self, rates: HousingRates, number: int, w: float, motion: ComplexArray) -> float:
@@ -105,13 +105,13 @@ class SoundPower:
     Attributes
     ----------
     frequency : float
-        ω of the resistance [rad/s].
+        Circular frequency ω of the resistance [rad/s].
     resistance : ndarray, shape (h, h)
-        R of the rates of the housing's coordinates [W s²], real and symmetric.
+        Radiation resistance R of the rates of the housing's coordinates [W s²], real and symmetric.
     housing : slice
         Place of the housing's coordinates among those of the machine.
     added : float
-        Power by the points that the radiating surface moves with, to first order.
+        Power by the points that the radiating surface moves with, to first order [W].
     """
 
     frequency: float
@@ -122,12 +122,12 @@ class SoundPower:
     decibels = 10.0
 
     def value(self, w: float, motion: ComplexArray) -> float:
-        """½ ω² qᴴ R q, and what is added."""
-        own = motion[self.housing]
-        return 0.5 * w**2 * float((own.conj() @ self.resistance @ own).real) + self.added
+        """Sound power ½ ω² qᴴ R q + `added` [W]."""
+        housing_motion = motion[self.housing]
+        return 0.5 * w**2 * float((housing_motion.conj() @ self.resistance @ housing_motion).real) + self.added
 
     def adjoint_load(self, w: float, motion: ComplexArray) -> ComplexArray:
-        """ω² R q* [W/m of the coordinates]."""
+        """Adjoint load ω² R q* [W/m of the coordinates]."""
         load = np.zeros_like(motion)
         load[self.housing] = w**2 * (self.resistance @ motion[self.housing].conj())
         return load

@@ -27,9 +27,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 HARMONICS = 12
-"""Harmonics of a mesh, at most."""
-_POINTS = 200  # phases of a mesh period, as in the mean mesh
-_SAME = 1e-9  # relative difference of frequencies that are one
+"""Largest number of harmonics of a mesh."""
+_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
+_SAME = 1e-9  # relative difference below which frequencies are equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +39,11 @@ class Response:
     Attributes
     ----------
     frequency : float
-        ω [rad/s].
+        Circular frequency ω [rad/s].
     causes : tuple of (int, int)
-        Number of the contact in the system, and harmonic of its mesh frequency, of each mesh that drives it.
+        For each mesh that drives the motion, number of its contact in the system and harmonic of its mesh frequency.
     motion : ndarray of complex, shape (n,)
-        q by the coordinates of the system.
+        Motion q by the coordinates of the system.
     """
 
     frequency: float
@@ -88,7 +88,9 @@ class MeshHarmonicModel:
         force = self.contact.force
         contacts = self.machine.system.contacts
         return tuple(
-            n for n, one in enumerate(contacts) if force is not None and force[n] > 0.0 and one.mesh_frequency != 0.0
+            n
+            for n, contact in enumerate(contacts)
+            if force is not None and force[n] > 0.0 and contact.mesh_frequency != 0.0
         )
 
     def responses(self, limit: float) -> tuple[Response, ...]:
@@ -99,13 +101,13 @@ class MeshHarmonicModel:
         )
 
     def parts(self, limit: float) -> tuple[ResponseParts, ...]:
-        """Solve the same motions with their parts by transmission error and by load shuttling."""
-        found = []
+        """Solve the motions of `responses` with their parts by transmission error and by load shuttling."""
+        parts = []
         for w, causes in self._harmonics(limit):
             loads = np.stack([self._error_load(causes), self._shuttling_load(causes)], axis=1)
             by_error, by_shuttling = linalg.solve(self._dynamic(w), loads).T
-            found.append(ResponseParts(w, causes, by_error + by_shuttling, by_error, by_shuttling))
-        return tuple(found)
+            parts.append(ResponseParts(w, causes, by_error + by_shuttling, by_error, by_shuttling))
+        return tuple(parts)
 
     def dynamic_stiffness(self, frequency: float) -> ComplexArray:
         """Z at a frequency [rad/s], shape (n, n)."""
@@ -119,21 +121,21 @@ class MeshHarmonicModel:
         Parameters
         ----------
         number : int
-            Contact of the system whose phase and rate the mesh has.
+            Number of the contact in the system, which gives the phase and the mesh frequency.
         mesh : LoadedMesh
-            Of the flanks of this contact, or of others in their place.
+            Loaded mesh of the flanks of this contact, or of flanks in their place.
         hunting_period : int
-            Mesh periods that its phases cover.
+            Number of mesh periods that the phases of ``mesh`` cover.
         count : int
         """
         contact = self.machine.system.contacts[number]
-        found = transmission_error_phasors(mesh, count, hunting_period)
-        found = found.conj() if contact.mesh_frequency < 0.0 else found
+        phasors = transmission_error_phasors(mesh, count, hunting_period)
+        phasors = phasors.conj() if contact.mesh_frequency < 0.0 else phasors
         orders = np.arange(1, count + 1)
-        return np.asarray(found * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
+        return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
 
     def shuttling_loads(self, number: int, law: ToothContact, force: float) -> dict[int, ComplexArray]:
-        """Moments of load shuttling by harmonic, of a contact with some flanks under a force [N], shape (n,) each."""
+        """Moments of load shuttling by harmonic, of the flanks ``law`` under a force [N], shape (n,) each."""
         rate = abs(self.machine.system.contacts[number].mesh_frequency)
         loads = self.machine.shuttling(number, law, force)[1]
         return {round(load.frequency / (2.0 * np.pi * rate)): load.amplitude for load in loads}
@@ -148,7 +150,7 @@ class MeshHarmonicModel:
 
     def _harmonics(self, limit: float) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
         """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
-        found: list[tuple[float, tuple[tuple[int, int], ...]]] = []
+        harmonics: list[tuple[float, tuple[tuple[int, int], ...]]] = []
         every = [
             (2.0 * np.pi * h * abs(self.machine.system.contacts[n].mesh_frequency), (n, h))
             for n in self.loaded
@@ -157,11 +159,11 @@ class MeshHarmonicModel:
         for w, cause in sorted(every):
             if w > limit * (1.0 + _SAME):
                 break
-            if found and w <= found[-1][0] * (1.0 + _SAME):
-                found[-1] = (found[-1][0], (*found[-1][1], cause))
+            if harmonics and w <= harmonics[-1][0] * (1.0 + _SAME):
+                harmonics[-1] = (harmonics[-1][0], (*harmonics[-1][1], cause))
             else:
-                found.append((w, (cause,)))
-        return found
+                harmonics.append((w, (cause,)))
+        return harmonics
 
     def _load(self, w: float, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
         """Return f at a frequency, shape (n,)."""
@@ -202,7 +204,7 @@ class MeshHarmonicModel:
         return {n: self.shuttling_loads(n, contacts[n].contact, float(force[n])) for n in self.loaded}
 
     def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
-        """Mesh of a contact by some law under its mean force."""
+        """Mesh of the contact law ``law`` under the mean force of a contact."""
         assert self.contact.force is not None
         force = float(self.contact.force[number])
         if law.hunting_period > 1:

@@ -63,24 +63,24 @@ from rotors.rolling_bearings import rolling_state
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_GAP_STEP = 1e-6  # of the flanks' compression, in the differences of transmission error and shuttling
-_STIFFNESS_STEP = 0.01  # likewise in those of k, which has a step where a slice comes into touch at one of the phases
-_STIFFNESS_POINTS = 2000  # phases of a mesh period in those of k
-_BEARING_STEP = 1e-4  # of a bearing's deflection, in the differences of its tangent
-_SHAFT_STEP = 1e-5  # of the shaft's length, in the differences of its motions
+_GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of transmission error and shuttling
+_STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
+_STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
+_BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
+_SHAFT_STEP = 1e-5  # step over the shaft's length, in the differences of its motions
 
 
 @dataclass(frozen=True, eq=False)
 class Line(Response):
-    """Line of an output at a mesh harmonic, beside its response.
+    """Line of an output at a mesh harmonic, with the response.
 
     Attributes
     ----------
     output : LineOutput
     value : float
-        J, in the unit of the output.
+        Output J, in its unit.
     adjoint : ndarray of complex, shape (n,)
-        μ, output per unit of a load.
+        Adjoint state μ, output per unit of a load.
     """
 
     output: LineOutput
@@ -95,11 +95,11 @@ class _GapRates:
     Attributes
     ----------
     stiffness : ndarray, shape (j,)
-        Of k [N/m per m].
+        Derivative of k [N/m per m].
     error : ndarray of complex, shape (j, harmonics)
-        Of e.
+        Derivative of e [m per m].
     shuttling : ndarray of complex, shape (j, harmonics, n)
-        Of the moments on the coordinates.
+        Derivative of the moments on the coordinates.
     """
 
     stiffness: FloatArray
@@ -114,10 +114,10 @@ class LineModel(MeshHarmonicModel):
     Attributes
     ----------
     machine : CoupledMachine
-        Assembled about the point.
+        Machine assembled about the operating point.
     point : OperatingPoint
     pairs : tuple of LoadedGearPair
-        Of the machine's meshes.
+        Loaded pairs of the machine's meshes.
     found : tuple of bool
         Whether the gap of each pair's flanks is that of the operating point.
     """
@@ -134,7 +134,7 @@ class LineModel(MeshHarmonicModel):
         limit : float
             Highest frequency [rad/s].
         count : int
-            Lines of each sensor.
+            Number of lines of each sensor.
 
         Raises
         ------
@@ -144,13 +144,13 @@ class LineModel(MeshHarmonicModel):
         if count < 1:
             raise CouplingError(f"{count} lines of each sensor; expected 1 or more")
         responses = self.responses(limit)
-        found = []
+        lines = []
         for name, row in self.machine.sensor_rows.items():
             output = SensorAmplitude(name, row, self.housing)
             heard = [(output.value(one.frequency, one.motion), one) for one in responses]
             heard.sort(key=lambda pair: -pair[0])
-            found += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
-        return tuple(sorted(found, key=lambda one: -one.value))
+            lines += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
+        return tuple(sorted(lines, key=lambda one: -one.value))
 
     def line(self, output: LineOutput, response: Response) -> Line:
         """Take an output of a motion, and solve its adjoint state."""
@@ -164,7 +164,7 @@ class LineModel(MeshHarmonicModel):
         Returns
         -------
         load : ndarray of complex, shape (5,)
-            [N, N m].
+            Load [N, N m].
         adjoint : ndarray of complex, shape (5,)
             Output per unit of the seat's motion [1/m, 1/rad].
         """
@@ -204,23 +204,23 @@ class LineModel(MeshHarmonicModel):
         against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
         load = self.point.bearing(bearing)
         slope = self._bearing_slope(load)[axes]
-        own = -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
-        # Its static deflection changes with its place too.
-        return own + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
+        direct = -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
+        # The bearing's static deflection changes with its place too.
+        return direct + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
 
     def by_housing(self, line: Line, rates: HousingRates) -> FloatArray:
         """Differentiate the output by parameters of the housing, at the same operating point, shape (p,)."""
-        own, w = self.housing, line.frequency
-        motion, adjoint = line.motion[own], line.adjoint[own]
+        coordinates, w = self.housing, line.frequency
+        motion, adjoint = line.motion[coordinates], line.adjoint[coordinates]
         dynamic = rates.stiffness - w**2 * rates.mass + 1j * w * rates.damping
         total = -np.einsum("a,pab,b->p", adjoint, dynamic, motion, optimize=True).real
         for number, bearings in enumerate(rates.bearings):
             for name, rows in bearings.items():
                 law = self._connector(name)
-                held = rows[list(law.axes)]
+                at_bearing = rows[list(law.axes)]
                 force = self._dynamic_force(law, w, line.motion)
                 against = self._dynamic_force(law, w, line.adjoint, transposed=True)
-                total[number] += float(((held @ adjoint) @ force + against @ (held @ motion)).real)
+                total[number] += float(((at_bearing @ adjoint) @ force + against @ (at_bearing @ motion)).real)
             total[number] += self._by_seats(line, rates, number)
             total[number] += line.output.by_housing(rates, number, w, line.motion)
         return np.asarray(total)
@@ -245,14 +245,14 @@ class LineModel(MeshHarmonicModel):
 
         Matrices and ports change to first order, so that resonances move with them.
         """
-        own, w = self.housing, line.frequency
+        coordinates, w = self.housing, line.frequency
         dynamic = self._dynamic(w)
         change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
-        dynamic[own, own] += step * change
+        dynamic[coordinates, coordinates] += step * change
         for name, rows in rates.bearings[number].items():
             law = self._connector(name)
             moved = law.directions.copy()
-            moved[own] -= step * rows[list(law.axes)].T
+            moved[coordinates] -= step * rows[list(law.axes)].T
             inner = law.stiffness + 1j * w * law.damping
             dynamic += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
         moved_output = line.output.moved(rates, number, step)
@@ -281,14 +281,14 @@ class LineModel(MeshHarmonicModel):
     @cached_property
     def _gap_rates(self) -> dict[int, _GapRates]:
         """Derivatives of the loaded contacts whose flanks follow the operating point."""
-        found = {}
+        rates = {}
         for number in self.loaded:
             mesh, back = self.machine.flanks(number)
             law = self.machine.meshes[mesh].contact
             # Even flanks, such as those of spur gears in the middle, have no slices and no first-order change.
             if self.found[mesh] and law.faces is not None:
-                found[number] = self._gap_rates_of(number, law, back)
-        return found
+                rates[number] = self._gap_rates_of(number, law, back)
+        return rates
 
     def _gap_rates_of(self, number: int, law: ToothContact, back: bool) -> _GapRates:
         assert law.faces is not None
@@ -302,8 +302,8 @@ class LineModel(MeshHarmonicModel):
         shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
 
         def moved(station: int, step: float) -> ToothContact:
-            found = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
-            return found.back_flanks if back else found
+            opened = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
+            return opened.back_flanks if back else opened
 
         for station in range(FACE_STATIONS):
             for way in (1.0, -1.0):
@@ -341,9 +341,11 @@ class LineModel(MeshHarmonicModel):
         if bearing not in self._tangent_rates:
             return np.zeros(5)
         law = self._connector(bearing)
-        held = np.ix_(list(law.axes), list(law.axes))
+        among_axes = np.ix_(list(law.axes), list(law.axes))
         moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        return np.array([-float((adjoint @ change[held] @ moved).real) for change in self._tangent_rates[bearing]])
+        return np.array(
+            [-float((adjoint @ change[among_axes] @ moved).real) for change in self._tangent_rates[bearing]]
+        )
 
     @cached_property
     def _tangent_rates(self) -> dict[str, FloatArray]:
@@ -358,7 +360,7 @@ class LineModel(MeshHarmonicModel):
     def _dynamic_force(
         self, law: LinearConnector, w: float, field: ComplexArray, *, transposed: bool = False
     ) -> ComplexArray:
-        """(K + iωC) Dᵀ q of a bearing, or with the transposed law."""
+        """Dynamic force (K + iωC) Dᵀ q of a bearing, or that of the transposed law."""
         dynamic = law.stiffness + 1j * w * law.damping
         return np.asarray((dynamic.T if transposed else dynamic) @ (law.directions.T @ field))
 
@@ -368,12 +370,12 @@ class LineModel(MeshHarmonicModel):
         rotor = next(one for one in self.machine.rotors if one.name == mounted.rotor)
         length = self.point.shaft(mounted.rotor).part.shaft.length
         at, step = mounted.bearing.at, _SHAFT_STEP * length
-        here = rotor.motions(at)
-        # Strains jump at a bearing; the mean of both sides counts. Beyond the end nothing strains.
+        at_middle = rotor.motions(at)
+        # Strains jump at a bearing: the mean of both sides counts. Beyond the shaft's end there is no strain.
         sides = [
-            (rotor.motions(at + way * step) - here) / (way * step)
+            (rotor.motions(at + way * step) - at_middle) / (way * step)
             if 0.0 <= at + way * step <= length
-            else _rigid_slope(here)
+            else _rigid_slope(at_middle)
             for way in (1.0, -1.0)
         ]
         slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
@@ -389,14 +391,14 @@ def _tangent_rate(load: BearingLoad) -> FloatArray:
     assert load.rolling is not None
     bearing = load.rolling.bearing
     step = _BEARING_STEP * float(np.linalg.norm(load.deflection[:3]))
-    # Tilts by which the elements move as much.
+    # Step of the tilts by which the elements move as much.
     steps = np.array([step] * 3 + [2.0 * step / bearing.rows[0].pitch_diameter] * 2)
-    found = np.zeros((5, 5, 5))
+    rate = np.zeros((5, 5, 5))
     for axis, size in enumerate(steps):
         for way in (1.0, -1.0):
             place = load.deflection + way * size * np.eye(5)[axis]
-            found[axis] += way / (2.0 * size) * rolling_state(bearing, place).stiffness
-    return found
+            rate[axis] += way / (2.0 * size) * rolling_state(bearing, place).stiffness
+    return rate
 
 
 def _rigid_slope(motions: FloatArray) -> FloatArray:

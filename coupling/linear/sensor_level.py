@@ -37,12 +37,12 @@ class SensorLevel:
     Attributes
     ----------
     model : MeshHarmonicModel
-        The machine with any flanks.
+        Model of the machine, with any flanks.
     mesh : int
         Number of the gear mesh.
     sensor : str
     weights : mapping of int to float
-        w_n by n from 1.
+        Weight w_n by harmonic n from 1.
     damping_follows : bool
         Whether the mesh damping is by a damping ratio, so that it follows the mesh stiffness.
 
@@ -69,19 +69,19 @@ class SensorLevel:
             )
 
     def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
-        """Level with some flanks, all teeth alike [m/s²]."""
+        """Level with the flanks of ``contact``, all teeth alike [m/s²]."""
         total = sum((self.weights[n] * abs(a)) ** 2 for n, a in self.accelerations(mesh, contact).items())
         return math.sqrt(0.5 * total)
 
     def accelerations(self, mesh: LoadedMesh, contact: ToothContact) -> dict[int, complex]:
-        """Complex amplitudes of the sensor's acceleration by the harmonic [m/s²], with some flanks.
+        """Complex amplitudes of the sensor's acceleration by the harmonic [m/s²], with the flanks of ``contact``.
 
         Parameters
         ----------
         mesh : LoadedMesh
-            Of the flanks over one mesh period.
+            Loaded mesh of the flanks over one mesh period.
         contact : ToothContact
-            The flanks.
+            Contact law of the flanks.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
         if model.machine.flanks(number)[1]:
@@ -92,7 +92,7 @@ class SensorLevel:
         shuttling = model.shuttling_loads(number, contact, force)
         before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])
         damping_change = damping * (math.sqrt(stiffness / before) - 1.0) if self.damping_follows else 0.0
-        found = {}
+        accelerations = {}
         for n, (w, by_sensor, by_contact) in self._adjoints.items():
             load = stiffness * error[n - 1] * direction
             if n in shuttling:
@@ -100,8 +100,8 @@ class SensorLevel:
             change = stiffness - before + 1j * w * damping_change
             moved = by_sensor @ load
             moved -= change * (by_sensor @ direction) * (by_contact @ load) / (1.0 + change * (by_contact @ direction))
-            found[n] = complex(-(w**2) * moved)
-        return found
+            accelerations[n] = complex(-(w**2) * moved)
+        return accelerations
 
     @cached_property
     def _loaded(self) -> tuple[int, ...]:
@@ -110,12 +110,12 @@ class SensorLevel:
 
     @cached_property
     def _adjoints(self) -> dict[int, tuple[float, ComplexArray, ComplexArray]]:
-        """By the harmonic, ω [rad/s], p and u of shape (n,)."""
+        """Frequency ω [rad/s] and solutions p and u of shape (n,), by harmonic."""
         machine, contact = self.model.machine, self.model.machine.system.contacts[self._loaded[0]]
         loads = np.stack([machine.sensor_rows[self.sensor], contact.direction], axis=1)
-        found = {}
+        adjoints = {}
         for n in self.weights:
             w = 2.0 * np.pi * n * abs(contact.mesh_frequency)
             by_sensor, by_contact = linalg.solve(self.model.dynamic_stiffness(w).T, loads).T
-            found[n] = (w, by_sensor, by_contact)
-        return found
+            adjoints[n] = (w, by_sensor, by_contact)
+        return adjoints

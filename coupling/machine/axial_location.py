@@ -21,7 +21,7 @@ _BOTH = frozenset((1, -1))
 
 @dataclass(frozen=True)
 class AxialSupport:
-    """A bearing as far as it holds its shaft along the axis.
+    """Axial support of a shaft by a bearing.
 
     Attributes
     ----------
@@ -29,9 +29,9 @@ class AxialSupport:
     at : float
         Station from the shaft's left end [m].
     senses : frozenset of int
-        Of the shaft's axial force that it carries: 1 towards +z, -1 towards -z.
+        Senses of the shaft's axial force that the bearing carries: 1 towards +z, -1 towards -z.
     rolling : RollingBearing or None
-        By its elements.
+        Rolling bearing that is described by its elements.
     """
 
     name: str
@@ -46,7 +46,7 @@ class AxialSupport:
 
     @property
     def arrangement(self) -> Literal["O", "X"] | None:
-        """Of two rows within the bearing, one for each sense; None of other bearings."""
+        """Arrangement of two rows within the bearing, one for each sense; None for other bearings."""
         rows = () if self.rolling is None else sorted(self.rolling.rows, key=lambda row: row.position)
         if len(rows) != 2 or rows[0].position == rows[1].position or _spherical(rows[0]):
             return None
@@ -54,7 +54,7 @@ class AxialSupport:
 
     @property
     def has_balls(self) -> bool:
-        """Whether it is a ball bearing by its elements."""
+        """Whether it is a ball bearing that is described by its elements."""
         return self.rolling is not None and isinstance(self.rolling.rows[0], BallRow)
 
     @property
@@ -76,8 +76,8 @@ def axial_support(mounted: MountedBearing, speed: float) -> AxialSupport:
     elements, bearing = mounted.elements, mounted.bearing
     if elements is not None:
         return AxialSupport(bearing.name, bearing.at, elements.thrust_senses, elements)
-    held = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
-    return AxialSupport(bearing.name, bearing.at, _BOTH if held else frozenset())
+    has_stiffness = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
+    return AxialSupport(bearing.name, bearing.at, _BOTH if has_stiffness else frozenset())
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class AxialLocation:
     ----------
     shaft : str
     bearings : sequence of AxialSupport
-        All of the shaft's; kept from left to right.
+        All bearings of the shaft; sorted from left to right.
     """
 
     shaft: str
@@ -122,8 +122,8 @@ class AxialLocation:
     def warnings(self) -> tuple[str, ...]:
         """Sentences on the rows that carry thrust.
 
-        On rows that all carry it one way, springs that do not press rows against each other, and ball bearings that
-        share it both ways.
+        They concern rows that all carry thrust one way, springs that do not press rows against each other, and ball
+        bearings that share thrust both ways.
         """
         return (*self._one_way(), *self._springs(), *self._shared())
 
@@ -155,26 +155,26 @@ class AxialLocation:
 
     def _springs(self) -> tuple[str, ...]:
         """Springs of bearings that another bearing of the shaft opposes or shares."""
-        sprung = [one for one in self.bearings if one.spring != 0.0]
-        if len({one.spring > 0.0 for one in sprung}) == 2:
-            names = _listed([one.name for one in sprung])
-            forces = " and ".join(f"{abs(one.spring):.4g} N towards {_along(one.spring)}" for one in sprung)
-            left = abs(sum(one.spring for one in sprung))
+        sprung = [bearing for bearing in self.bearings if bearing.spring != 0.0]
+        if len({bearing.spring > 0.0 for bearing in sprung}) == 2:
+            names = _listed([bearing.name for bearing in sprung])
+            forces = " and ".join(f"{abs(bearing.spring):.4g} N towards {_along(bearing.spring)}" for bearing in sprung)
+            left = abs(sum(bearing.spring for bearing in sprung))
             effect = "cancel and press no element" if left == 0.0 else f"leave {left:.4g} N, which presses one way only"
             return (
                 f"shaft {self.shaft!r}: the `preload` of {names} is a spring's force on the shaft each, and "
                 f"{forces} {effect}; {_RIGID}",
             )
-        found = []
-        for one in sprung:
-            others = [other.name for other in self.bearings if other.senses and other is not one]
+        warnings = []
+        for bearing in sprung:
+            others = [other.name for other in self.bearings if other.senses and other is not bearing]
             if others:
-                found.append(
-                    f"shaft {self.shaft!r}: the `preload` of {one.name!r} is a spring's force on the shaft, "
-                    f"{abs(one.spring):.4g} N towards {_along(one.spring)}, which moves it in {_listed(others)} as "
-                    f"well: it does not press them against each other; {_RIGID}"
+                warnings.append(
+                    f"shaft {self.shaft!r}: the `preload` of {bearing.name!r} is a spring's force on the shaft, "
+                    f"{abs(bearing.spring):.4g} N towards {_along(bearing.spring)}, which moves it in "
+                    f"{_listed(others)} as well: it does not press them against each other; {_RIGID}"
                 )
-        return tuple(found)
+        return tuple(warnings)
 
 
 ARRANGEMENTS = {"O": "back to back", "X": "face to face"}

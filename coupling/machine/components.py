@@ -71,8 +71,8 @@ class HousingComponent(Component):
     sensors : mapping of str to ndarray, shape (n,)
         Motion along each sensor by the coordinates.
     participation : ndarray, shape (n, 6), or None
-        φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the base moves
-        or there is weight.
+        Participation φᵀ M R in rigid motions along and about x, y, z through the origin [√kg, √kg m]; needed where the
+        base moves or there is weight.
     seat_axes : mapping of str to tuple of float
         x and y of each seat's centre [m], where they are known.
     """
@@ -101,7 +101,7 @@ class RotorComponent(Component):
     Attributes
     ----------
     modal : ModalRotor
-        Its planar modes on averaged supports are the basis in both planes; the torsional ones are free.
+        Modes of the rotor: planar modes on averaged supports as the basis in both planes, and free torsional modes.
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m, m)
@@ -125,7 +125,7 @@ class RotorComponent(Component):
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
-        # A machine is put together anew at every speed, with its bearings and gears at the same places.
+        # Cached: a machine is assembled anew at every speed, with bearings and gears at the same places.
         return {}
 
     def _section(self, at: float) -> FloatArray:
@@ -146,7 +146,7 @@ class RotorComponent(Component):
     def turning(self) -> FloatArray:
         """Coordinates of a rotation of the whole rotor about z by one radian, shape (n,).
 
-        Its first torsional mode, to which the others are orthogonal: as a row, the same is ∫ dI_p of their rotations,
+        The row is the first torsional mode, to which the others are orthogonal: it is ∫ dI_p of their rotations,
         and its square the rotor's polar inertia [kg m²]; not to be written to.
         """
         row = np.zeros(self.size)
@@ -172,9 +172,9 @@ def housing_component(
     Parameters
     ----------
     modes : ModeSet
-        With m modes and, where it has attachments, k of them: n = m + k coordinates.
+        Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
-        Parts of critical. Attachments take the highest of them.
+        Damping ratios. Attachments take the highest of them.
     seats, seat_z, sensors, participation, seat_axes
         See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
@@ -285,7 +285,7 @@ def rotor_component(
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
 ) -> RotorComponent:
-    """Project a rotor onto its modes, freed of the springs that its planar basis was found on.
+    """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
     bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the
@@ -302,14 +302,14 @@ def rotor_component(
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
-        Of the shaft's own material and fits, on every mode of the free shaft.
+        Damping ratio of the shaft's own material and fits, on every mode of the free shaft.
     axis : tuple of float
         x and y of the shaft's line [m], which matter where the base turns.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
     m, n = lateral.count, modal.size
     values, plane_basis = np.linalg.eigh(lateral.free_stiffness)
-    # Motions of the whole shaft have no stiffness; what rounding leaves of it is taken off.
+    # Motions of the whole shaft have no stiffness; rounding errors of it are set to zero.
     values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
     squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
     gyroscopic = np.zeros((n, n))

@@ -96,13 +96,13 @@ class GapLaw:
     Attributes
     ----------
     force : float
-        F, at a penetration of ``depth`` [N].
+        Force F at a penetration of ``depth`` [N].
     depth : float
         Penetration beyond the gap at which the force is F [m].
     exponent : float
-        n, at least 1.
+        Exponent n, at least 1.
     gap : float
-        Radial [m]; 0 for a spring of this law without one.
+        Radial gap [m]; 0 for a spring of this law without a gap.
     """
 
     force: float
@@ -112,10 +112,10 @@ class GapLaw:
 
     def __post_init__(self) -> None:
         """Require a positive force and depth, an exponent of 1 or more and no negative gap."""
-        for what in ("force", "depth"):
-            value = getattr(self, what)
+        for attribute in ("force", "depth"):
+            value = getattr(self, attribute)
             if not (math.isfinite(value) and value > 0.0):
-                raise CouplingError(f"{what} of a gap's law of {value!r}; expected a positive number")
+                raise CouplingError(f"{attribute} of a gap's law of {value!r}; expected a positive number")
         if not (math.isfinite(self.exponent) and self.exponent >= 1.0):
             raise CouplingError(f"exponent of a gap's law of {self.exponent!r}; expected 1 or more")
         if not (math.isfinite(self.gap) and self.gap >= 0.0):
@@ -139,7 +139,7 @@ class GapLaw:
     def tangent(self, load: npt.ArrayLike) -> FloatArray:
         """Tangent stiffness over x, y [N/m] under a radial load (2,) [N].
 
-        Without a load that within the gap: zero, but for a linear spring without a gap.
+        Without a load it is the tangent within the gap: zero, except for a linear spring without a gap.
         """
         push = np.asarray(load, dtype=np.float64)
         size = float(np.hypot(*push))
@@ -165,9 +165,9 @@ BearingLaw = RollingLaw | GapLaw
 class MountedBearing:
     """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
 
-    With a ``law`` of its own, motion follows that in place of the bearing's stiffness, which linear analyses take. With
-    ``rolling``, the machine's static equilibrium goes by the bearing's elements; one whose ``bearing`` has no stiffness
-    gets it from there.
+    With a ``law``, motion follows it in place of the bearing's stiffness, which linear analyses use. With
+    ``rolling``, the machine's static equilibrium is that of the bearing's elements; a ``bearing`` without stiffness
+    gets its stiffness from there.
 
     Attributes
     ----------
@@ -178,7 +178,7 @@ class MountedBearing:
     law : BearingLaw or None
     rolling : RollingBearing or None
     offset : ndarray, shape (5,), or None
-        Force of the linear law without deflection [N, N m]: that of the operating point less K times its deflection.
+        Force of the linear law at zero deflection [N, N m]: force at the operating point less K times the deflection.
     """
 
     bearing: Bearing
@@ -228,7 +228,7 @@ class MountedBearing:
 
     @property
     def needs_load(self) -> bool:
-        """Whether its stiffness has still to follow from its load at the operating point."""
+        """Whether the stiffness is still to follow from the load at the operating point."""
         return self.elements is not None and not np.any(self.bearing.stiffness)
 
 
@@ -308,9 +308,9 @@ class LinearConnector:
     over_speed : SpeedTable, optional
         K and C at other speeds than the nominal one, where they depend on it.
     axes : tuple of int
-        Of a bearing, the axis of each direction: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
+        Axis of each direction of a bearing: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
     offset : ndarray, shape (d,), or None
-        f₀ of a law that is linearised about a deflection [N]; among the system's constant loads as -D f₀.
+        Force f₀ of a law that is linearised about a deflection [N]; the system's constant loads contain -D f₀.
     """
 
     name: str
@@ -324,9 +324,9 @@ class LinearConnector:
     def __post_init__(self) -> None:
         """Require stiffness and damping of shape (d, d) for d directions."""
         d = self.directions.shape[1]
-        for what, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
+        for label, matrix in (("stiffness", self.stiffness), ("damping", self.damping)):
             if matrix.shape != (d, d):
-                raise CouplingError(f"{self.name}: {what} of shape {matrix.shape}; expected ({d}, {d})")
+                raise CouplingError(f"{self.name}: {label} of shape {matrix.shape}; expected ({d}, {d})")
 
 
 @dataclass(frozen=True)
@@ -363,7 +363,7 @@ class SpeedTable:
 class NonlinearConnector:
     """A connector with a nonlinear bearing law, in place of the linear law of its tangent.
 
-    The linear connector of the same bearing stays among the system's, so that linear analyses see the tangent K about
+    The linear connector of the same bearing stays in the system, so that linear analyses have the tangent K about
     the bearing's mean load; this one adds f(δ) - K δ to it.
 
     Attributes
@@ -405,9 +405,9 @@ class Sliding:
     ----------
     friction : SlidingFriction
     directions : ndarray, shape (n, 2)
-        a and b: a pair at the position x along its path slides by (a + x b)ᵀ q' beside the nominal rotation.
+        Directions a and b: a pair at the position x along its path slides by (a + x b)ᵀ q' beside the nominal rotation.
     nominal : ndarray, shape (2,)
-        W_a [m/s] and W_b [m/s per base pitch]: it slides by W_a + x W_b in the nominal rotation.
+        Rates W_a [m/s] and W_b [m/s per base pitch]: a pair slides by W_a + x W_b in the nominal rotation.
     """
 
     friction: SlidingFriction
@@ -430,10 +430,10 @@ class ContactConnector:
     ----------
     name : str
     direction : ndarray, shape (n,)
-        d, the compression by each coordinate.
+        Compression d by each coordinate.
     contact : ToothContact
     phase : float
-        At t = 0 [mesh periods].
+        Mesh phase at t = 0 [mesh periods].
     mesh_frequency : float
         f [Hz]; negative for flanks met in the opposite order.
     errors : ndarray, shape (h, 3)
@@ -477,8 +477,8 @@ class ContactConnector:
     def event_times(self, start: float, end: float) -> FloatArray:
         """Return times in (start, end) at which a pair enters or leaves its path of contact or a relief begins [s].
 
-        The force may jump at the former; at the latter its slope and the power of the rotating teeth do. With friction
-        also those at which a pair passes the pitch point.
+        The force may jump where a pair enters or leaves; where a relief begins, its slope and the power of the rotating
+        teeth jump. With friction the times at which a pair passes the pitch point are included.
         """
         turns = () if self.sliding is None else self.sliding.friction.event_phases
         marks = np.unique([*self.contact.event_phases, *self.contact.corner_phases, *turns])
@@ -499,11 +499,11 @@ class ShaftDashpots:
     ----------
     name, rotor : str
     left, right : float
-        Its ends, from the rotor's left one [m].
+        Ends of the coupling, from the rotor's left end [m].
     lateral, axial : float
-        [N s/m].
+        Damping coefficients [N s/m].
     tilt, torsional : float
-        [N m s/rad].
+        Damping coefficients [N m s/rad].
     """
 
     name: str
@@ -517,9 +517,9 @@ class ShaftDashpots:
 
 
 def shaft_dashpots(
-    given: ShaftDashpots, rotor: RotorComponent, speed: float, speed_range: tuple[float, float] = (1.0, 1.0)
+    dashpots: ShaftDashpots, rotor: RotorComponent, speed: float, speed_range: tuple[float, float] = (1.0, 1.0)
 ) -> tuple[FloatArray, LinearConnector]:
-    """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law over these as a connector.
+    """Deflections of a coupling by its rotor's coordinates, shape (6, m), and the law of its dashpots as a connector.
 
     Parameters
     ----------
@@ -528,19 +528,21 @@ def shaft_dashpots(
     speed_range : tuple of float
         Lowest and highest speed of the run, as parts of Ω: the circulatory stiffness is proportional to the speed.
     """
-    left, right = rotor.motions(given.left), rotor.motions(given.right)
-    middle = 0.5 * (given.right - given.left) * (left[3:] + right[3:])
+    left, right = rotor.motions(dashpots.left), rotor.motions(dashpots.right)
+    middle = 0.5 * (dashpots.right - dashpots.left) * (left[3:] + right[3:])
     # A tilt about y moves what is further along z to +x, one about x to -y.
     sway = right[:2] - left[:2] - np.array([middle[1], -middle[0]])
     tilt = right[3:] - left[3:]
-    turn = rotor.rotation(given.right) - rotor.rotation(given.left)
+    turn = rotor.rotation(dashpots.right) - rotor.rotation(dashpots.left)
     rows = np.vstack([sway, tilt, turn[None], right[2:3] - left[2:3]])
-    damping = np.diag([given.lateral, given.lateral, given.tilt, given.tilt, given.torsional, given.axial])
+    damping = np.diag(
+        [dashpots.lateral, dashpots.lateral, dashpots.tilt, dashpots.tilt, dashpots.torsional, dashpots.axial]
+    )
     circulating = np.zeros((6, 6))
-    for first, value in ((0, given.lateral), (2, given.tilt)):
+    for first, value in ((0, dashpots.lateral), (2, dashpots.tilt)):
         circulating[first, first + 1], circulating[first + 1, first] = speed * value, -speed * value
     table = None
     if speed_range[0] != speed_range[1] and np.any(circulating):
         ends = np.array(speed_range)
         table = SpeedTable(ends, ends[:, None, None] * circulating, np.stack([damping, damping]))
-    return rows, LinearConnector(given.name, rows.T, circulating, damping, over_speed=table)
+    return rows, LinearConnector(dashpots.name, rows.T, circulating, damping, over_speed=table)

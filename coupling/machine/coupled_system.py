@@ -25,7 +25,7 @@ class HarmonicLoad:
     Attributes
     ----------
     frequency : float
-        w [rad/s], at the nominal speeds.
+        Circular frequency w at the nominal speeds [rad/s].
     amplitude : ndarray of complex, shape (n,)
     follows : "time", "turning" or "unbalance"
         Dependence on the speed where it is not the nominal one, see :mod:`coupling.machine.speed_profile`: constant
@@ -45,7 +45,7 @@ class TimedLoad:
     Attributes
     ----------
     times : ndarray, shape (l,)
-        [s], ascending.
+        Times [s], ascending.
     values : ndarray, shape (l,)
     direction : ndarray, shape (n,)
     """
@@ -76,13 +76,13 @@ class CoupledSystem:
     Attributes
     ----------
     components : tuple of Component
-        Their coordinates follow each other.
+        Components, whose coordinates follow each other.
     speeds : tuple of float
         Signed speed of rotation of each component [rad/s]; 0 for the housing.
     linear : tuple of LinearConnector
     contacts : tuple of ContactConnector
     load : ndarray, shape (n,)
-        F, constant; zero by default.
+        Constant load F; zero by default.
     harmonic_loads : tuple of HarmonicLoad
     timed_loads : tuple of TimedLoad
     acceleration_load : ndarray, shape (n,)
@@ -105,11 +105,11 @@ class CoupledSystem:
         """Require a speed for each component, and loads of shape (n,); loads that are not given are zero."""
         if len(self.speeds) != len(self.components):
             raise CouplingError(f"{len(self.speeds)} speeds for {len(self.components)} components; expected as many")
-        for what in ("load", "acceleration_load"):
-            if getattr(self, what).shape == (0,):
-                object.__setattr__(self, what, np.zeros(self.size))
-            if getattr(self, what).shape != (self.size,):
-                raise CouplingError(f"a {what} of shape {getattr(self, what).shape}; expected ({self.size},)")
+        for attribute in ("load", "acceleration_load"):
+            if getattr(self, attribute).shape == (0,):
+                object.__setattr__(self, attribute, np.zeros(self.size))
+            if getattr(self, attribute).shape != (self.size,):
+                raise CouplingError(f"a {attribute} of shape {getattr(self, attribute).shape}; expected ({self.size},)")
 
     @cached_property
     def size(self) -> int:
@@ -207,7 +207,7 @@ class CoupledSystem:
 
     @cached_property
     def highest_frequency(self) -> float:
-        """Highest natural frequency of the resolved coordinates, the residual ones held [rad/s]."""
+        """Highest natural frequency of the resolved coordinates, with the residual ones fixed [rad/s]."""
         stiffness = self.mean_stiffness[np.ix_(self.resolved, self.resolved)]
         return float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max(initial=0.0)))
 

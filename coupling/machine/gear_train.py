@@ -27,13 +27,13 @@ from coupling.machine.connectors import GearMesh
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
 
 LARGEST_OFFSET = 1e-6
-"""Largest difference of the distance of two axes from the centre distance of the gears on them [m]."""
+"""Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
 
 LARGEST_IMBALANCE = 0.01
 """Largest imbalance of the power of a train, relative."""
 
 _RATIO_ROUNDING = 1e-9
-_NO_TORQUE = 1e-9  # part of the input torque below which a gear pair carries none but for rounding
+_NO_TORQUE = 1e-9  # part of the input torque below which the torque of a gear pair is rounding
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Contradiction:
     shaft : str
         Shaft that would have to turn at two speeds.
     ratio, other : Fraction
-        Its speed over that of the first driver by the other pairs, and by this one.
+        Speed of that shaft over that of the first driver by the other pairs, and by this pair.
     """
 
     pair: int
@@ -86,7 +86,7 @@ class Output:
     ----------
     shaft : str
     torque : float, optional
-        Against the rotation of the shaft [N m]; None: the outputs share the power equally.
+        Torque against the rotation of the shaft [N m]; None: the outputs share the power equally.
     at : float, optional
         Distance from the shaft's left end [m]; None: the right end.
     """
@@ -98,7 +98,7 @@ class Output:
 
 @dataclass(frozen=True)
 class GearTrain:
-    """Gear pairs followed from the first driver on; see :func:`gear_train`.
+    """Gear train: pairs and the speed ratios that follow from them; see :func:`gear_train`.
 
     Attributes
     ----------
@@ -200,17 +200,17 @@ class GearTrain:
         at : float
             Station of the input torque [m].
         ends : mapping of str to float
-            Length of each shaft [m]: the station of an output without one of its own.
+            Length of each shaft [m]: the default station of an output.
         """
         if torque == 0.0 or not (self.pairs or outputs):
             return ()
         first = self.pairs[0].driver if self.pairs else outputs[0].shaft
         sense = math.copysign(1.0, speed)
         applied = [Torque(first, at, sense * torque)]
-        for output, taken in shared_torques(self, torque, outputs):
+        for output, value in shared_torques(self, torque, outputs):
             against = -sense * math.copysign(1.0, self.ratios[output.shaft])
             place = ends[output.shaft] if output.at is None else output.at
-            applied.append(Torque(output.shaft, place, against * taken))
+            applied.append(Torque(output.shaft, place, against * value))
         return tuple(applied)
 
     def mesh_frequencies(self, speed: float) -> tuple[float, ...]:
@@ -228,8 +228,8 @@ class GearTrain:
         """
         sense = math.copysign(1.0, speed)
         along = dict.fromkeys(self.ratios, 0.0)
-        for one in applied:
-            along[one.rotor] += one.value * sense * math.copysign(1.0, self.ratios[one.rotor])
+        for torque in applied:
+            along[torque.rotor] += torque.value * sense * math.copysign(1.0, self.ratios[torque.rotor])
         return self.pair_torques(along)
 
 
@@ -237,7 +237,7 @@ def gear_train(pairs: Iterable[GearedShafts], shafts: Iterable[str] = ()) -> Gea
     """Follow tooth ratios from the driver of the first pair through all pairs; without pairs all shafts are as fast."""
     pairs = tuple(pairs)
     ratios = {pairs[0].driver: Fraction(1)} if pairs else dict.fromkeys(shafts, Fraction(1))
-    found: dict[int, Contradiction] = {}
+    contradictions: dict[int, Contradiction] = {}
     waiting = list(enumerate(pairs))
     while waiting:
         left = []
@@ -245,7 +245,7 @@ def gear_train(pairs: Iterable[GearedShafts], shafts: Iterable[str] = ()) -> Gea
             first, second = ratios.get(pair.driver), ratios.get(pair.driven)
             if first is not None and second is not None:
                 if second != first * pair.ratio:
-                    found[place] = Contradiction(place, pair.driven, second, first * pair.ratio)
+                    contradictions[place] = Contradiction(place, pair.driven, second, first * pair.ratio)
             elif first is not None:
                 ratios[pair.driven] = first * pair.ratio
             elif second is not None:
@@ -255,7 +255,7 @@ def gear_train(pairs: Iterable[GearedShafts], shafts: Iterable[str] = ()) -> Gea
         if len(left) == len(waiting):
             break
         waiting = left
-    return GearTrain(pairs, ratios, tuple(found[place] for place in sorted(found)))
+    return GearTrain(pairs, ratios, tuple(contradictions[place] for place in sorted(contradictions)))
 
 
 def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) -> dict[str, float]:
@@ -280,8 +280,8 @@ def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) ->
                 rows[row] = [a - factor * b for a, b in zip(rows[row], rows[pivot], strict=True)]
     solution = [0.0] * size
     for row in range(1, size):
-        known = sum(rows[row][column] * solution[column] for column in range(row))
-        solution[row] = (rows[row][size] - known) / rows[row][row]
+        substituted = sum(rows[row][column] * solution[column] for column in range(row))
+        solution[row] = (rows[row][size] - substituted) / rows[row][row]
     return dict(zip(shafts, solution, strict=True))
 
 
@@ -295,7 +295,7 @@ def shared_torques(train: GearTrain, torque: float, outputs: Sequence[Output]) -
     ----------
     train : GearTrain
     torque : float
-        At the first driver, in the sense in which it turns [N m].
+        Torque at the first driver, in the sense in which it turns [N m].
     outputs : sequence of Output
     """
     ratios = {shaft: float(ratio) for shaft, ratio in train.ratios.items()}
@@ -309,7 +309,7 @@ def shared_torques(train: GearTrain, torque: float, outputs: Sequence[Output]) -
 
 
 def output_torque(train: GearTrain, outputs: Sequence[Output]) -> float:
-    """Torque that outputs amount to at the first driver, through the tooth ratios [N m]."""
+    """Torque of the outputs, reduced to the first driver by the tooth ratios [N m]."""
     return sum((output.torque or 0.0) * abs(float(train.ratios[output.shaft])) for output in outputs)
 
 
@@ -326,10 +326,10 @@ def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[
     CouplingError
         Where only some outputs have torques, or their power is off by more than one in a hundred.
     """
-    given = [output for output in outputs if output.torque is not None]
-    if not given:
+    with_torque = [output for output in outputs if output.torque is not None]
+    if not with_torque:
         return
-    if len(given) < len(outputs):
+    if len(with_torque) < len(outputs):
         raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
     leaving = output_torque(train, outputs)
     if not is_balanced(torque, leaving):
@@ -341,7 +341,7 @@ def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[
 
 @dataclass(frozen=True)
 class ShaftImbalance:
-    """A shaft in no gear pair whose own torques do not balance.
+    """A shaft in no gear pair whose torques do not balance.
 
     Attributes
     ----------
@@ -359,7 +359,7 @@ class ShaftImbalance:
 
 
 def imbalances_of_shafts(torque: float, outputs: Sequence[Output]) -> Iterator[ShaftImbalance]:
-    """Shafts, none geared to another, whose own torques do not balance; the input is on the first output's shaft."""
+    """Shafts without gear pairs whose torques do not balance; the input is on the first output's shaft."""
     first: dict[str, int] = {}
     for place, output in enumerate(outputs):
         first.setdefault(output.shaft, place)
@@ -388,17 +388,17 @@ def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Litera
     """
     least = _NO_TORQUE * abs(torque)
     sense = math.copysign(1.0, torque)
-    found: list[Literal["drive", "back", "reversed"] | None] = []
-    for one in pair_torques:
-        if abs(one) <= least:
-            found.append(None)
-        elif sense * one < 0.0:
-            found.append("reversed")
-        elif one > 0.0:
-            found.append("drive")
+    flanks: list[Literal["drive", "back", "reversed"] | None] = []
+    for pair_torque in pair_torques:
+        if abs(pair_torque) <= least:
+            flanks.append(None)
+        elif sense * pair_torque < 0.0:
+            flanks.append("reversed")
+        elif pair_torque > 0.0:
+            flanks.append("drive")
         else:
-            found.append("back")
-    return found
+            flanks.append("back")
+    return flanks
 
 
 def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]) -> list[int]:
@@ -464,13 +464,13 @@ def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], sp
         if len(train) < 2 or varying.intersection(train):
             continue
         powers = {name: total.get(name, 0.0) * speeds[name] for name in train}
-        taken = sum(power for power in powers.values() if power > 0.0)
-        given = -sum(power for power in powers.values() if power < 0.0)
-        if abs(taken - given) > LARGEST_IMBALANCE * max(taken, given):
+        power_in = sum(power for power in powers.values() if power > 0.0)
+        power_out = -sum(power for power in powers.values() if power < 0.0)
+        if abs(power_in - power_out) > LARGEST_IMBALANCE * max(power_in, power_out):
             listed = ", ".join(f"{total.get(name, 0.0):.6g} N m on {name!r}" for name in train)
             raise CouplingError(
-                f"torques of {listed} bring {taken:.6g} W into their gear train and take {given:.6g} W out of it; "
-                "expected torques that balance through the tooth ratios"
+                f"torques of {listed} bring {power_in:.6g} W into their gear train and take {power_out:.6g} W "
+                "out of it; expected torques that balance through the tooth ratios"
             )
 
 
@@ -517,13 +517,13 @@ def geometry_on_axes(
     shafts : tuple of str
         Names of the two shafts.
     axes : sequence of (float, float)
-        Their places x, y [m].
+        Positions x, y of the axes [m].
 
     Raises
     ------
     coupling.gears.GearError
-        Where the gears do not fit each other; at this distance: with the distance, that which the gears need, and the
-        shafts.
+        Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
+        the shafts.
     """
     distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
     try:
@@ -545,7 +545,7 @@ def require_one_plane(label: str, places: Sequence[float], face_width: float) ->
         )
 
 
-_MISFIT = 1e-3  # of a pitch: larger misfits are no rounding of the axes
+_MISFIT = 1e-3  # largest misfit over the pitch that may come from rounding of the axes
 
 
 def mesh_phases(

@@ -23,8 +23,8 @@ from coupling.machine.coupled_system import HarmonicLoad
 
 FloatArray = npt.NDArray[np.float64]
 
-_POINTS = 128  # phases of a mesh period
-_HARMONICS = 6  # of the mesh frequency, at most
+_POINTS = 128  # number of phases of a mesh period
+_HARMONICS = 6  # largest number of mesh harmonics
 _SMALL = 0.01  # part of the greatest harmonic below which the last ones are left out
 _NO_ARM = 1e-9  # part of the face width that is rounding
 
@@ -39,7 +39,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     contact : ToothContact
     geometry : GearPairGeometry
     force : float
-        Along the line of action, above 0 [N].
+        Force along the line of action, above 0 [N].
     phases : array_like, shape (n,)
         Mesh periods.
 
@@ -56,7 +56,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     along = (mesh.positions[:, :, None] + shift - geometry.pitch_point_position) * geometry.base_pitch
     shares = mesh.line_loads / mesh.line_loads.sum(axis=(1, 2))[:, None, None]
     arms[:, 0] = (shares * z).sum(axis=(1, 2))
-    # Slots without a pair carry nothing, whatever their position.
+    # Slots without a pair carry no load, whatever their position.
     arms[:, 1] = np.where(shares > 0.0, shares * along, 0.0).sum(axis=(1, 2))
     return arms
 
@@ -74,8 +74,10 @@ def shuttling_loads(
 
     Parameters
     ----------
-    contact, geometry
-        Of the flanks that carry.
+    contact : ToothContact
+        Contact law of the loaded flanks.
+    geometry : GearPairGeometry
+        Geometry of the loaded flanks.
     force : float
         Mean mesh force F, above 0 [N].
     axial : float
@@ -102,16 +104,16 @@ def shuttling_loads(
         return nothing, []
     if np.abs(arm).max() <= _NO_ARM * contact.faces.face_width:
         return nothing, []
-    found = np.fft.rfft(arm) / len(arm)
-    orders = np.arange(1, min(_HARMONICS, len(found) - 1) + 1)
-    amplitudes = 2.0 * found[orders]
+    spectrum = np.fft.rfft(arm) / len(arm)
+    orders = np.arange(1, min(_HARMONICS, len(spectrum) - 1) + 1)
+    amplitudes = 2.0 * spectrum[orders]
     if mesh_frequency < 0.0:
         amplitudes = amplitudes.conj()
     amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(mesh_frequency) * orders * phase)
     heard = np.abs(amplitudes) > max(_SMALL * np.abs(amplitudes).max(initial=0.0), _NO_ARM * contact.faces.face_width)
-    # On the coordinates acts minus the force times the compression's gradient.
+    # The load on the coordinates is minus the force times the compression's gradient.
     harmonics = [
         HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude * tilting, follows="turning")
         for order, amplitude in zip(orders[heard].tolist(), amplitudes[heard], strict=True)
     ]
-    return -force * found[0].real * tilting, harmonics
+    return -force * spectrum[0].real * tilting, harmonics

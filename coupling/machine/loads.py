@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 Point = tuple[float, float, float]
-_VELOCITY_PIECES = 16  # straight pieces in place of the parabola of a velocity between two accelerations
+_VELOCITY_PIECES = 16  # number of chords that replace the velocity's parabola between two accelerations
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class BowReactions:
     Attributes
     ----------
     at : ndarray, shape (k,)
-        From the rotor's left end [m].
+        Stations from the rotor's left end [m].
     forces : ndarray of complex, shape (k,)
-        Along x and, as the imaginary part, y of the shaft as it stands at t = 0 [N].
+        Forces along x and, as the imaginary part, along y with the shaft at its angle of t = 0 [N].
     """
 
     rotor: str
@@ -90,9 +90,9 @@ class TorqueRipple:
     Attributes
     ----------
     order : float or None
-        w over the speed of its rotor: the frequency follows the speed.
+        Frequency w over the speed of the rotor: the frequency follows the speed.
     frequency : float or None
-        w [rad/s], whatever the speed; one of the two.
+        Frequency w independent of the speed [rad/s]; either this or the order is given.
     """
 
     rotor: str
@@ -120,7 +120,7 @@ class TorqueSlope:
     speed_ratios : ndarray, shape (t,)
         Speeds as parts of the nominal one, ascending.
     slopes : ndarray, shape (t,)
-        dT/dω there: negative for most motors, whose torque then damps departures from the nominal speed.
+        Slopes dT/dω at these speeds: negative for most motors, whose torque damps departures from the nominal speed.
     """
 
     name: str
@@ -130,9 +130,9 @@ class TorqueSlope:
     slopes: FloatArray
 
     def at_speed_ratio(self, ratio: float) -> "TorqueSlope":
-        """Return the same slope over speed, about ``ratio`` times the nominal speed."""
+        """Return the slope over speed, relative to ``ratio`` times the nominal speed."""
         if ratio == 0.0:
-            # Speeds have no ratio to one of 0, about which the slope is that of standstill.
+            # At a nominal speed of 0 there are no speed ratios: the slope is that at standstill.
             at_rest = np.interp(0.0, self.speed_ratios, self.slopes)
             return replace(self, speed_ratios=np.ones(1), slopes=np.array([at_rest]))
         return replace(self, speed_ratios=self.speed_ratios / abs(ratio))
@@ -142,7 +142,7 @@ AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
 
 
 def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
-    """Sum of the torques on each rotor [N m]: of tables over time the largest value, without ripples and slopes."""
+    """Sum of the torques on each rotor [N m]: tables over time count by their largest value, ripples and slopes not."""
     total: dict[str, float] = {}
     for torque in torques:
         match torque:
@@ -158,7 +158,7 @@ def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Drive:
-    """Station at which the torque acts that accelerates a train: a rotor, and a distance from its left end [m]."""
+    """Station of the torque that accelerates a train: a rotor, and the distance from its left end [m]."""
 
     rotor: str
     at: float
@@ -176,7 +176,7 @@ class MachineLoads:
     drives : sequence of Drive
         Stations of the torques that accelerate a train, see :meth:`MachineCoordinates.acceleration_load`.
     base : BaseMotion, optional
-        Motion of the ground: under bearings, pedestals and the housing's supports alike.
+        Motion of the ground under bearings, pedestals and the housing's supports.
     gravity : sequence of float, optional
         Acceleration of free fall along x, y, z [m/s²].
     forces : sequence of ShaftForce
@@ -226,7 +226,7 @@ class MachineCoordinates:
     speeds : mapping of str to float
         Signed speed of each rotor [rad/s].
     size : int
-        n.
+        Number of coordinates, n.
     """
 
     def __init__(self, components: Sequence[Component], speeds: Mapping[str, float]) -> None:
@@ -238,8 +238,8 @@ class MachineCoordinates:
         """Return the rotor of this name."""
         part = self.components[self._numbers[name]] if name in self._numbers else None
         if not isinstance(part, RotorComponent):
-            known = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
-            raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(known)}")
+            names = sorted(part.name for part in self.components if isinstance(part, RotorComponent))
+            raise CouplingError(f"no rotor is named {name!r}; there are: {', '.join(names)}")
         return part
 
     def rows(self, name: str, rows: FloatArray) -> FloatArray:
@@ -269,27 +269,27 @@ class MachineCoordinates:
         loads.harmonic.append(HarmonicLoad(speed, force * rotating, follows="unbalance"))
 
     def add_bow(self, loads: CoordinateLoads, bow: BowReactions) -> None:
-        """K b e^{iΩs} of a bow b: the shaft resists its motion u beside the bow by K (u - b e^{iΩs})."""
+        """Add K b e^{iΩs} of a bow b: the shaft resists its motion u relative to the bow by K (u - b e^{iΩs})."""
         force = np.zeros_like(loads.constant, dtype=np.complex128)
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
             force = force + value * self.rotating_force(bow.rotor, at)
         loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
 
-    def add_force(self, loads: CoordinateLoads, given: ShaftForce) -> None:
+    def add_force(self, loads: CoordinateLoads, force: ShaftForce) -> None:
         """Add a constant force on a section of a rotor.
 
         Raises
         ------
         CouplingError
-            Where it has a part along z and nothing holds the rotor along its axis.
+            Where the force has a part along z and nothing holds the rotor along its axis.
         """
-        rotor = self.rotor(given.rotor)
-        if given.force[2] != 0.0 and rotor.modal.axial is None:
+        rotor = self.rotor(force.rotor)
+        if force.force[2] != 0.0 and rotor.modal.axial is None:
             raise CouplingError(
-                f"a force of {given.force[2]:.4g} N along z on rotor {given.rotor!r}, which no bearing holds along its "
+                f"a force of {force.force[2]:.4g} N along z on rotor {force.rotor!r}, which no bearing holds along its "
                 "axis; expected a bearing with axial stiffness, or a force across the axis"
             )
-        loads.constant += np.array(given.force) @ self.rows(given.rotor, rotor.motions(given.at)[:3])
+        loads.constant += np.array(force.force) @ self.rows(force.rotor, rotor.motions(force.at)[:3])
 
     def add_torque(self, loads: CoordinateLoads, torque: AnyTorque) -> None:
         """Add a torque: constant, tabled over time, harmonic, or a slope over the speed."""
@@ -323,21 +323,21 @@ class MachineCoordinates:
         pairs : sequence of two names
             Rotors that gears connect.
         drives : sequence of Drive
-            One for each train at most; a train without is driven at the left end of its first rotor.
+            Drives, at most one for each train; a train without a drive is driven at the left end of its first rotor.
         """
         total = np.zeros(self.size)
         rotors = [part.name for part in self.components if isinstance(part, RotorComponent)]
         for train in trains(rotors, pairs):
-            here = [drive for drive in drives if drive.rotor in train] or [Drive(train[0], 0.0)]
-            if len(here) > 1:
+            driving = [drive for drive in drives if drive.rotor in train] or [Drive(train[0], 0.0)]
+            if len(driving) > 1:
                 raise CouplingError(
-                    f"rotors {[one.rotor for one in here]} of one train are said to drive it; expected one"
+                    f"rotors {[one.rotor for one in driving]} of one train are said to drive it; expected one"
                 )
             for name in train:
                 total -= self.speeds[name] * self.rigid_rotation(name)
             power = sum(self.speeds[name] ** 2 * float(np.sum(self.rigid_rotation(name) ** 2)) for name in train)
             if power:
-                total += power / self.speeds[here[0].rotor] * self.rotation(here[0].rotor, here[0].at)
+                total += power / self.speeds[driving[0].rotor] * self.rotation(driving[0].rotor, driving[0].at)
         return total
 
 
@@ -353,14 +353,14 @@ def _dashpot(slope: TorqueSlope, row: FloatArray) -> LinearConnector:
 
 
 def trains(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[list[str]]:
-    """Gear trains: rotors that gear pairs connect, in their order; a rotor without a pair is a train of its own."""
-    found = [[name] for name in names]
+    """Gear trains: rotors that gear pairs connect, in order; a rotor without a pair is a train by itself."""
+    groups = [[name] for name in names]
     for first, second in pairs:
-        one, other = (next(train for train in found if name in train) for name in (first, second))
-        if one is not other:
-            found.remove(other)
-            one += other
-    return [sorted(train, key=list(names).index) for train in found]
+        first_group, second_group = (next(train for train in groups if name in train) for name in (first, second))
+        if first_group is not second_group:
+            groups.remove(second_group)
+            first_group += second_group
+    return [sorted(train, key=list(names).index) for train in groups]
 
 
 @dataclass(frozen=True)
@@ -394,7 +394,7 @@ class BaseMotion:
     Attributes
     ----------
     parts : tuple
-        Their accelerations add up.
+        Parts of the motion, whose accelerations add up.
     point : tuple of float
     """
 
@@ -421,17 +421,17 @@ def base_loads(
     components: Sequence[Component], speeds: Sequence[float], base: BaseMotion, places: dict[str, Point]
 ) -> tuple[list[HarmonicLoad], list[TimedLoad]]:
     """Inertia loads of a moving base; ``places`` are the positions of the pedestals [m]."""
-    held = participations(components, base.point, places)
+    carried = participations(components, base.point, places)
     tilting = _gyroscopic(components, speeds)
     harmonic: list[HarmonicLoad] = []
     timed: list[TimedLoad] = []
     for part in base.parts:
         if isinstance(part, BaseHarmonic):
             velocity = part.amplitude / (1j * part.frequency)
-            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - held @ part.amplitude))
+            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - carried @ part.amplitude))
             continue
         moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
-        timed += [TimedLoad(part.times, part.values[:, k], -held[:, k]) for k in moved]
+        timed += [TimedLoad(part.times, part.values[:, k], -carried[:, k]) for k in moved]
         times, velocities = _velocities(part)
         timed += [TimedLoad(times, velocities[:, k], tilting[:, k]) for k in moved if np.any(tilting[:, k])]
     return harmonic, timed
@@ -477,18 +477,19 @@ def _about(participation: FloatArray, point: Point) -> FloatArray:
 
 
 def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
-    held = rotor.modal.participation
-    if held is None:
+    participation = rotor.modal.participation
+    if participation is None:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
     m, (x, y) = rotor.modal.lateral.count, np.subtract(rotor.axis, point[:2])
-    shift, tilt = rotor.plane_basis.T @ held.displacement, rotor.plane_basis.T @ held.tilt
+    shift, tilt = rotor.plane_basis.T @ participation.displacement, rotor.plane_basis.T @ participation.tilt
     tilt = tilt + (rotor.start - point[2]) * shift
     whole = np.zeros((rotor.size, 6))
     whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
     whole[m : 2 * m, 1], whole[m : 2 * m, 3], whole[m : 2 * m, 5] = shift, -tilt, x * shift
     whole[:, 5] += rotor.turning
-    along = slice(rotor.size - len(held.axial), rotor.size)
-    whole[along, 2], whole[along, 3], whole[along, 4] = held.axial, y * held.axial, -x * held.axial
+    along = slice(rotor.size - len(participation.axial), rotor.size)
+    axial = participation.axial
+    whole[along, 2], whole[along, 3], whole[along, 4] = axial, y * axial, -x * axial
     return whole
 
 

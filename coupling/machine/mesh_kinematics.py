@@ -33,17 +33,17 @@ class FlankMotion:
     Attributes
     ----------
     push : tuple of float
-        e.
+        Unit vector e along which the driver pushes.
     axial_part : float
-        h.
+        Axial part h of the force over its transverse part.
     sense : int
-        s.
+        Sense of rotation s of the driver, 1 or -1.
     side : float
         1 for the driver, -1 for the driven gear.
     base_radius : float
-        R [m].
+        Base radius R [m].
     arm : tuple of float
-        r: the pitch point from the gear's centre along x and y [m].
+        Position r of the pitch point from the gear's centre along x and y [m].
     """
 
     push: tuple[float, float]
@@ -79,11 +79,11 @@ class LineOfAction:
     Attributes
     ----------
     angle : float
-        Of e from x [rad].
+        Angle of e from x [rad].
     axial : float
-        h, axial part of the force on the driven gear over its transverse part.
+        Axial part h of the force on the driven gear over its transverse part.
     sense : int
-        s, by which the driver closes these flanks: 1 counter-clockwise, -1 clockwise.
+        Sense s of rotation by which the driver closes these flanks: 1 counter-clockwise, -1 clockwise.
     driver, driven : FlankMotion
         Parts of the compression by the motions of both gears.
     """
@@ -107,9 +107,9 @@ def line_of_action(geometry: GearPairGeometry, centre_line: Sequence[float], sen
     ----------
     geometry : GearPairGeometry
     centre_line : (x, y)
-        From the driver's centre to the driven gear's [m]; zeros leave the pitch point on the axes.
+        Vector from the driver's centre to the driven gear's [m]; zeros leave the pitch point on the axes.
     sense : int
-        Of the rotation by which the driver closes the flanks: 1 counter-clockwise, -1 clockwise.
+        Sense of rotation by which the driver closes the flanks: 1 counter-clockwise, -1 clockwise.
     """
     x, y = (float(part) for part in centre_line)
     distance = math.hypot(x, y)

@@ -28,7 +28,7 @@ class Shaft:
     Attributes
     ----------
     rotor : rotors.Rotor
-        Its name is the shaft's.
+        Rotor, whose name is the shaft's name.
     axis : tuple of float
         x and y of the shaft's line [m].
     start : float
@@ -110,7 +110,7 @@ class Driving:
     Attributes
     ----------
     torques : sequence of coupling torques, or None
-        In place of the constant torques that follow from the machine's torque; with stations on their rotors.
+        Torques with stations on their rotors, in place of the constant torques that follow from the machine's torque.
     drives : sequence of Drive
         Stations of the torques that accelerate a train.
     speed_range : tuple of float
@@ -200,7 +200,7 @@ def _core(mounted: ShaftGear, rotor: Rotor) -> tuple[tuple[float, float], tuple[
 
 
 def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiameter]:
-    """Root circle, and the section with teeth, over the part of the face in which each carries."""
+    """Stiffness diameters of a gear on its shaft: root circle, and section with teeth, over their parts of the face."""
     if not mounted.in_one_piece:
         return []
     root, section = 2.0 * mounted.gear.root_circle_radius, toothed_section(mounted.gear)
@@ -217,14 +217,14 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
     """Polar inertia of a gear with the discs at its station [kg m²], for the damping ratio of its mesh.
 
-    That of the whole rotor where the gear and these discs have none, and of the gear's geometry where the rotor has
-    none either.
+    Where gear and discs have no inertia, it is that of the whole rotor; where the rotor has none either, that of the
+    gear's geometry.
 
     Parameters
     ----------
     gear : ShaftGear
     rotor : Rotor
-        Its rotor without gears.
+        Rotor of the gear, without gears.
     gears : sequence of ShaftGear
         All gears on the rotor.
     """
@@ -255,8 +255,8 @@ def require_names(machine: MachineParts) -> None:
     needed += [("a force", "shaft", one.rotor) for one in machine.forces]
     for where, kind, name in needed:
         if name not in kinds[kind]:
-            known = ", ".join(map(repr, kinds[kind])) or "none"
-            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {known}")
+            named = ", ".join(map(repr, kinds[kind])) or "none"
+            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {named}")
     gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
     for number, pair in enumerate(machine.gear_pairs):
         if any({pair.driver, pair.driven} == {one.driver, one.driven} for one in machine.gear_pairs[:number]):
@@ -278,8 +278,8 @@ def require_stations(machine: MachineParts) -> None:
     if machine.gear_pairs:
         first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
         stations.append(("the input torque", first, machine.torque_at))
-    for what, shaft, at in stations:
-        shafts[shaft].rotor.require_on_shaft(what, at)
+    for part, shaft, at in stations:
+        shafts[shaft].rotor.require_on_shaft(part, at)
 
 
 def require_seats(machine: MachineParts, housing: HousingComponent | None) -> None:
@@ -293,9 +293,9 @@ def require_seats(machine: MachineParts, housing: HousingComponent | None) -> No
                 "which moves with the housing"
             )
         if mounted.seat is not None and mounted.seat not in seats:
-            known = ", ".join(map(repr, seats)) or "none"
+            names = ", ".join(map(repr, seats)) or "none"
             raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {known}, "
+                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {names}, "
                 "or None for the ground"
             )
         if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:

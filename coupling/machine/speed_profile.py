@@ -37,9 +37,9 @@ class SpeedProfile:
     Attributes
     ----------
     times : ndarray, shape (k,)
-        [s], ascending.
+        Times [s], ascending.
     rates : ndarray, shape (k,)
-        s', not negative: reversed rotation would load the other flanks.
+        Relative speeds s', not negative: reversed rotation would load the other flanks.
     """
 
     times: FloatArray
@@ -70,7 +70,7 @@ class SpeedProfile:
 
     @cached_property
     def _pieces(self) -> FloatArray:
-        """Rows t, s, s' and s'' at the start of each piece; the first begins in the infinite past."""
+        """Rows t, s, s' and s'' at the start of each interval; the first interval begins in the infinite past."""
         gaps = np.diff(self.times)
         slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
         nominal_time = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
@@ -93,7 +93,7 @@ class SpeedProfile:
         return rows[:, 1] + after * (rows[:, 2] + 0.5 * rows[:, 3] * after), rows[:, 2] + rows[:, 3] * after, rows[:, 3]
 
     def at(self, times: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Evaluate s [s], s' and s'' [1/s] just after some times [s], shapes (m,)."""
+        """Evaluate s [s], s' and s'' [1/s] just after times (m,) [s], shape (m,) each."""
         return self._through(self._pieces, np.atleast_1d(np.asarray(times, dtype=np.float64)))
 
     def times_of(self, nominal_time: FloatArray) -> FloatArray:
@@ -129,11 +129,11 @@ def free_speed(
     motor, load : callable
         Torque [N m] by speed [rad/s], at the first driver's rotor.
     inertia : float
-        Of the train, at the same rotor [kg m²].
+        Inertia of the train, reduced to the same rotor [kg m²].
     start : float
         Speed at t = 0 [rad/s], not negative.
     duration : float
-        [s].
+        Duration [s].
     nominal : float
         Nominal speed, to which the result is relative [rad/s], positive.
 
@@ -158,8 +158,8 @@ def free_speed(
             f"{load(0.0):.6g} N m; lower the load at rest, or start from a speed at which the motor is the stronger"
         )
     times = duration * np.arange(_PIECES + 1) / _PIECES
-    # Torque lines have corners: steps no longer than a piece keep their places.
-    found = solve_ivp(
+    # Torque lines have corners: steps no longer than an interval do not skip them.
+    solution = solve_ivp(
         lambda _, state: [surplus(float(state[0])) / inertia],
         (0.0, duration),
         [start],
@@ -169,14 +169,14 @@ def free_speed(
         atol=1e-12 * nominal,
         max_step=duration / _PIECES,
     )
-    if found.status == 1:
-        assert found.t_events is not None
-        when = float(found.t_events[0][0])
+    if solution.status == 1:
+        assert solution.t_events is not None
+        when = float(solution.t_events[0][0])
         raise TransientError(
             f"the machine stalls at t = {when:.6g} s: it started at {start * _RPM:.6g} rpm and stands still, its "
             f"motor giving {motor(0.0):.6g} N m against a load of {load(0.0):.6g} N m; lower the load, or end the "
             "run before"
         )
-    if not found.success:
-        raise TransientError(f"the free speed cannot be followed beyond t = {found.t[-1]:.6g} s: {found.message}")
-    return SpeedProfile(times, np.maximum(found.y[0], 0.0) / nominal)
+    if not solution.success:
+        raise TransientError(f"the free speed cannot be followed beyond t = {solution.t[-1]:.6g} s: {solution.message}")
+    return SpeedProfile(times, np.maximum(solution.y[0], 0.0) / nominal)

@@ -35,9 +35,9 @@ class AxialForces:
     Attributes
     ----------
     gears : tuple of str
-        Those with a helix angle.
+        Names of the gears with a helix angle.
     forces : tuple of float
-        Along z on each of them [N].
+        Force along z on each of these gears [N].
     """
 
     gears: tuple[str, ...]
@@ -45,13 +45,13 @@ class AxialForces:
 
     @property
     def net(self) -> float:
-        """Their sum [N]; zero where they cancel but for rounding."""
+        """Sum of the forces [N]; zero where they cancel within rounding."""
         total = sum(self.forces)
         return total if abs(total) > _CANCELLED * max(map(abs, self.forces), default=0.0) else 0.0
 
 
 def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float], among: Container[str]) -> set[str]:
-    """Those of the given rotors ``among`` that a bearing with axial stiffness holds at their speeds [rad/s]."""
+    """Rotors of ``among`` that a bearing with axial stiffness holds at their speeds [rad/s]."""
     return {
         mounted.rotor
         for mounted in bearings
@@ -60,7 +60,7 @@ def axially_held(bearings: Sequence[MountedBearing], speeds: Mapping[str, float]
 
 
 def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
-    """Whether a bearing holds its rotor in motion: by its stiffness, or, until that is found, by its elements.
+    """Whether a bearing holds its rotor axially in motion: by its stiffness, or by its elements until that is known.
 
     An operating point asks the elements wherever there are any, see
     :func:`coupling.machine.axial_location.axial_support`.
@@ -78,12 +78,12 @@ def axial_forces(
 
     Parameters
     ----------
-    pairs
+    pairs : sequence of ThrustPair
         All gear pairs.
-    speeds
+    speeds : mapping of str to float
         Signed speed of each rotor [rad/s].
-    torques
-        About z on each rotor [N m]; a rotor without one is free to turn.
+    torques : mapping of str to float
+        Torque about z on each rotor [N m]; a rotor without one is free to turn.
 
     Notes
     -----
@@ -97,17 +97,17 @@ def axial_forces(
             moments[names.index(rotor), number] += sense * gear.base_radius
     acting = np.array([torques.get(name, 0.0) for name in names])
     mesh_forces = np.linalg.lstsq(moments, acting, rcond=None)[0] if pairs else np.zeros(0)
-    found: dict[str, list[tuple[str, float]]] = {}
+    by_rotor: dict[str, list[tuple[str, float]]] = {}
     for pair, sense, force in zip(pairs, senses, mesh_forces.tolist(), strict=True):
         helix = pair.geometry.driver.base_helix_angle
         if helix == 0.0:
             continue
         thrust = sense * force * float(np.tan(helix))
         for rotor, name, side in zip(pair.rotors, pair.gears, (1.0, -1.0), strict=True):
-            found.setdefault(rotor, []).append((name, side * thrust))
+            by_rotor.setdefault(rotor, []).append((name, side * thrust))
     return {
-        rotor: AxialForces(tuple(gear for gear, _ in here), tuple(force for _, force in here))
-        for rotor, here in found.items()
+        rotor: AxialForces(tuple(gear for gear, _ in gear_forces), tuple(force for _, force in gear_forces))
+        for rotor, gear_forces in by_rotor.items()
     }
 
 
@@ -123,24 +123,24 @@ def require_thrust_carried(
     Parameters
     ----------
     pairs, speeds, torques
-        As of :func:`axial_forces`.
-    bearings
-        Those with axial stiffness carry thrust.
-    movable
+        See :func:`axial_forces`.
+    bearings : sequence of MountedBearing
+        All bearings; those with axial stiffness carry thrust.
+    movable : container of str, optional
         Rotors with an axial coordinate; by default all.
 
     Raises
     ------
     CouplingError
-        With the rotors, the gears and the forces [N].
+        Naming the rotors, the gears and the forces [N].
     """
     forces = axial_forces(pairs, speeds, torques)
-    held = axially_held(bearings, speeds, forces)
+    held_rotors = axially_held(bearings, speeds, forces)
     loose = [
-        f"rotor {rotor!r}: its gears {', '.join(map(repr, dict.fromkeys(here.gears)))} push it along its axis with "
-        f"{abs(here.net):.4g} N, and none of its bearings has axial stiffness"
-        for rotor, here in forces.items()
-        if here.net != 0.0 and not (rotor in held and (movable is None or rotor in movable))
+        f"rotor {rotor!r}: its gears {', '.join(map(repr, dict.fromkeys(axial.gears)))} push it along its axis with "
+        f"{abs(axial.net):.4g} N, and none of its bearings has axial stiffness"
+        for rotor, axial in forces.items()
+        if axial.net != 0.0 and not (rotor in held_rotors and (movable is None or rotor in movable))
     ]
     if loose:
         raise CouplingError(

@@ -79,7 +79,7 @@ def friction_of(
     nominal_time, speed_ratios : ndarray, shape (s,)
         Nominal time [s], and speed as a part of the nominal one.
     compression, force : ndarray, shape (s,)
-        Of the contact [m], [N].
+        Compression of the contact [m] and its force [N].
 
     Returns
     -------

@@ -21,12 +21,12 @@ FloatArray = npt.NDArray[np.float64]
 
 _CORRECTIONS = 8
 _CLOSED = 1e-10  # closure relative to the motion
-_HIGHEST = 4  # halvings of the elements beyond those that a branch began with
-# Points after which coarser ones are tried again: twice as many after each failure.
+_HIGHEST = 4  # largest number of halvings of the elements beyond that at the branch's start
+# Number of points after which coarser elements are tried again; it doubles after each failure.
 _PATIENCE, _LONGEST_PATIENCE = 3, 48
-_LOWEST = 1  # halvings: with fewer, multipliers err by more than the states
+_LOWEST = 1  # least number of halvings: with fewer, multipliers err by more than the states
 _TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err tens to hundreds of times as much
-_DIFFERENCE = 1e-7  # of the speed range, for the derivative by speed: flanks may begin to graze within a hair of it
+_DIFFERENCE = 1e-7  # step of the derivative by speed over the speed range, short as flanks may begin to graze
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,13 @@ class Point:
     ready : Problem
     states : ndarray, shape (K, 2 k)
     speed : float
-    found : PeriodMotion
-        With the pieces of the monodromy.
+    motion : PeriodMotion
+        Motion with the monodromy matrices of its segments.
     response : PeriodicResponse
-        With its proof.
+        Response with its proof.
     corrections : int
     missed : float
-        Distance of the prediction.
+        Distance of the point from its prediction.
     branch : Branch
     towards : tuple of ndarray and float, optional
         Direction of the step to this point, states and speed; by default that of rising speed.
@@ -55,7 +55,7 @@ class Point:
     ready: Problem
     states: FloatArray
     speed: float
-    found: PeriodMotion
+    motion: PeriodMotion
     response: PeriodicResponse
     corrections: int
     missed: float
@@ -66,14 +66,14 @@ class Point:
     @cached_property
     def tangent(self) -> tuple[FloatArray, float]:
         """Tangent of the branch: states and speed in their units, of norm 1."""
-        branch, found = self.branch, self.found
+        branch, motion = self.branch, self.motion
         change = self.change
         if change is None:
-            change = branch.by_speed(self.ready, self.states, self.speed, found, self.response.level)
-        zero, up = np.zeros_like(found.misses), lift(self.ready)
+            change = branch.by_speed(self.ready, self.states, self.speed, motion, self.response.level)
+        zero, up = np.zeros_like(motion.misses), lift(self.ready)
         along, pace = (zero, 1.0) if self.towards is None else (self.towards[0] @ up / len(zero), self.towards[1])
         by_speed = change * (branch.span / branch.unit)
-        moves, speed = found.bordered_correction(zero, by_speed, along, pace, 1.0)
+        moves, speed = motion.bordered_correction(zero, by_speed, along, pace, 1.0)
         states = moves @ up.T
         length = np.sqrt(np.mean(np.sum(states**2, axis=1)) + speed**2)
         return states / length, speed / length
@@ -97,14 +97,14 @@ class Branch:
         self.calm, self.patience = 0, _PATIENCE
 
     def _raise(self) -> None:
-        """Finer elements from here on; past a flank that grazes only shorter steps lead."""
+        """Refine the elements from here on; only shorter steps lead past a flank that grazes."""
         if self.level < self.highest:
             self.level += 1
             self.patience = min(2 * self.patience, _LONGEST_PATIENCE) if self.calm < self.patience else _PATIENCE
             self.calm = 0
 
     def accept(self, error: float) -> None:
-        """Count an accepted point; after some of them, or one of very small error, coarser elements are tried again."""
+        """Count an accepted point; after several, or one of very small error, coarser elements are tried again."""
         self.calm += 1
         if self.level > self.lowest and (self.calm >= self.patience or error < _TOO_GOOD * self.tolerance):
             self.level -= 1
@@ -116,9 +116,9 @@ class Branch:
         period = None if self.periods == 1 else self.periods * problem(system, like=like).period
         return problem(system, period, like)
 
-    def distance(self, one: FloatArray, other: FloatArray) -> float:
+    def distance(self, states: FloatArray, others: FloatArray) -> float:
         """Distance between the states of two motions, in the branch's unit."""
-        return float(np.sqrt(np.mean(np.sum((one - other) ** 2, axis=1)))) / self.unit
+        return float(np.sqrt(np.mean(np.sum((states - others) ** 2, axis=1)))) / self.unit
 
     def first(self, response: PeriodicResponse, speed: float) -> Point:
         """Point of a known motion."""
@@ -136,17 +136,17 @@ class Branch:
                 )
 
     def hold(self, among: Sequence[Point], speed: float, within: float) -> Point | None:
-        """Point at a given speed, predicted by the polynomial through others; None where it is not found near there.
+        """Point at a given speed, predicted by the polynomial through other points; None where none is close to it.
 
-        The step begins at the last of them. A correction by more than ``within``, in the branch's unit, would lead to
+        The step begins at the last point. A correction by more than ``within``, in the branch's unit, would lead to
         another branch.
         """
-        here = among[-1]
+        last = among[-1]
         try:
-            ready = self.ready(speed, here.ready)
+            ready = self.ready(speed, last.ready)
             if len(among) == 1:
-                along, pace = here.tangent
-                states = here.states + (self.unit * (speed - here.speed) / (self.span * pace)) * along
+                along, pace = last.tangent
+                states = last.states + (self.unit * (speed - last.speed) / (self.span * pace)) * along
                 return self._close(ready, states, speed, within)
             weights = interpolation(np.array([point.speed for point in among]), speed)
             return self._close(ready, np.tensordot(weights, [point.states for point in among], 1), speed, within)
@@ -165,58 +165,60 @@ class Branch:
         linear: PeriodMotion | None = None
         for turn in range(_CORRECTIONS):
             # After the first correction the same pieces serve once more, and the last ones are exact.
-            found = integrate_period(ready.part, ready.contacts, elements, starts, varied=turn != 1)
-            closed = found.missing <= _CLOSED * ready.scale(found.start)
+            motion = integrate_period(ready.part, ready.contacts, elements, starts, varied=turn != 1)
+            closed = motion.missing <= _CLOSED * ready.scale(motion.start)
             if closed and turn == 1:
-                found = integrate_period(ready.part, ready.contacts, elements, starts)
+                motion = integrate_period(ready.part, ready.contacts, elements, starts)
             if closed:
-                return self._proved(ready, above(ready, starts), speed, found, turn, predicted)
-            if found.missing > before:
+                return self._proved(ready, above(ready, starts), speed, motion, turn, predicted)
+            if motion.missing > before:
                 return None
-            before = found.missing
+            before = motion.missing
             if linear is None or turn != 1:
-                linear = found
-            starts = starts + linear.correction(found.misses)
+                linear = motion
+            starts = starts + linear.correction(motion.misses)
             if not float(np.linalg.norm(starts - begin)) < limit:
                 return None
         return None
 
-    def along(self, here: Point, ds: float) -> Point | None:
+    def along(self, point: Point, ds: float) -> Point | None:
         """Point a length ``ds`` along the branch; None where the corrections do not converge.
 
         A negative length goes against the tangent; the tangent of the point found goes with the step.
         """
         try:
-            along, pace = here.tangent
+            along, pace = point.tangent
             if ds < 0.0:
                 along, pace, ds = -along, -pace, -ds
-            predicted = here.states + ds * self.unit * along
-            speed = here.speed + ds * self.span * pace
-            return self._correct(here, predicted, speed, along, pace, ds)
+            predicted = point.states + ds * self.unit * along
+            speed = point.speed + ds * self.span * pace
+            return self._correct(point, predicted, speed, along, pace, ds)
         except (PeriodicError, np.linalg.LinAlgError):
             return None
 
     def _correct(
-        self, here: Point, predicted: FloatArray, speed: float, along: FloatArray, pace: float, ds: float
+        self, point: Point, predicted: FloatArray, speed: float, along: FloatArray, pace: float, ds: float
     ) -> Point | None:
         states, count = predicted, len(predicted)
-        ready = self.ready(speed, here.ready)
+        ready = self.ready(speed, point.ready)
         by_speed: FloatArray | None = None
         before = np.inf
         for turn in range(_CORRECTIONS):
             elements = ready.elements(self.level)
-            found = integrate_period(ready.part, ready.contacts, elements, below(ready, states))
+            motion = integrate_period(ready.part, ready.contacts, elements, below(ready, states))
             if by_speed is None:
-                by_speed = self.by_speed(ready, states, speed, found, self.level) @ lift(ready).T
-            behind = float(np.sum(along * (states - here.states))) / (count * self.unit)
-            behind += pace * (speed - here.speed) / self.span - ds
-            if turn > 0 and abs(behind) < 1e-9 and found.missing <= _CLOSED * ready.scale(found.start):
-                return self._proved(ready, states, speed, found, turn, predicted, (along, pace), by_speed @ lift(ready))
-            if found.missing > 10.0 * before:
+                by_speed = self.by_speed(ready, states, speed, motion, self.level) @ lift(ready).T
+            behind = float(np.sum(along * (states - point.states))) / (count * self.unit)
+            behind += pace * (speed - point.speed) / self.span - ds
+            if turn > 0 and abs(behind) < 1e-9 and motion.missing <= _CLOSED * ready.scale(motion.start):
+                return self._proved(
+                    ready, states, speed, motion, turn, predicted, (along, pace), by_speed @ lift(ready)
+                )
+            if motion.missing > 10.0 * before:
                 return None
-            before = found.missing
-            moves, change = found.bordered_correction(
-                found.misses / self.unit,
+            before = motion.missing
+            moves, change = motion.bordered_correction(
+                motion.misses / self.unit,
                 by_speed @ lift(ready) * (self.span / self.unit),
                 along @ lift(ready) / count,
                 pace,
@@ -229,23 +231,25 @@ class Branch:
             ready = self.ready(speed, ready)
         return None
 
-    def by_speed(self, ready: Problem, states: FloatArray, speed: float, found: PeriodMotion, level: int) -> FloatArray:
+    def by_speed(
+        self, ready: Problem, states: FloatArray, speed: float, motion: PeriodMotion, level: int
+    ) -> FloatArray:
         """Differentiate the closure errors by speed, the states held, shape (K, 2 N).
 
-        The elements are those of ``found``: the error of others would differ, over a tiny difference of speed.
+        The elements are those of ``motion``: with other elements, the change of the error would exceed the difference.
         """
         change = _DIFFERENCE * self.span
         other = self.ready(speed + change, ready)
         start = below(other, states)
-        there = integrate_period(other.part, other.contacts, other.elements(level), start, varied=False)
-        return np.asarray((there.misses @ (lift(other).T @ lift(ready)) - found.misses) / change)
+        stepped = integrate_period(other.part, other.contacts, other.elements(level), start, varied=False)
+        return np.asarray((stepped.misses @ (lift(other).T @ lift(ready)) - motion.misses) / change)
 
     def _proved(
         self,
         ready: Problem,
         states: FloatArray,
         speed: float,
-        found: PeriodMotion,
+        motion: PeriodMotion,
         corrections: int,
         predicted: FloatArray,
         towards: tuple[FloatArray, float] | None = None,
@@ -253,14 +257,14 @@ class Branch:
     ) -> Point | None:
         """Verify a corrected point with elements half as large; else return None and refine from here on."""
         elements: Elements = ready.elements(self.level + 1)
-        finer = integrate_period(ready.part, ready.contacts, elements, found.starts, varied=False)
-        error = float(np.linalg.norm(finer.ends - found.ends)) / ready.scale(found.start)
+        finer = integrate_period(ready.part, ready.contacts, elements, motion.starts, varied=False)
+        error = float(np.linalg.norm(finer.ends - motion.ends)) / ready.scale(motion.start)
         if error > self.tolerance:
             self._raise()
             return None
-        response = response_of(ready, found, self.level, error, corrections)
+        response = response_of(ready, motion, self.level, error, corrections)
         missed = self.distance(states, predicted)
-        return Point(ready, states, speed, found, response, corrections, missed, self, towards, change)
+        return Point(ready, states, speed, motion, response, corrections, missed, self, towards, change)
 
 
 def interpolation(at: FloatArray, where: float) -> FloatArray:
@@ -273,9 +277,9 @@ def interpolation(at: FloatArray, where: float) -> FloatArray:
 def lift(ready: Problem) -> FloatArray:
     """Lift of states without rigid-body motions to all condensed coordinates, shape (2 k, 2 N)."""
     k, half = ready.part.basis.shape
-    found = np.zeros((2 * k, 2 * half))
-    found[:k, :half] = found[k:, half:] = ready.part.basis
-    return found
+    matrix = np.zeros((2 * k, 2 * half))
+    matrix[:k, :half] = matrix[k:, half:] = ready.part.basis
+    return matrix
 
 
 def below(ready: Problem, states: FloatArray) -> FloatArray:

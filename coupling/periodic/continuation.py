@@ -46,13 +46,13 @@ class Bifurcation:
     Attributes
     ----------
     index : int
-        Index of its point on the curve.
+        Index of the bifurcation's point on the curve.
     kind : str
         ``fold`` where the branch turns back and a real machine jumps; ``period doubling`` where a multiplier passes
         -1, ``Neimark-Sacker`` where a pair leaves the unit circle, ``branch point`` where one passes +1 on a branch
         that goes on.
     speed : float
-        In the unit of the curve.
+        Speed in the unit of the curve.
     """
 
     index: int
@@ -67,7 +67,7 @@ class ResponseCurve:
     Attributes
     ----------
     speeds : ndarray, shape (p,)
-        In the unit that ``system_at`` takes.
+        Speeds in the unit of ``system_at``.
     responses : tuple of BranchMotion
         Summary of each motion; :meth:`motion` computes its course over time.
     bifurcations : tuple of Bifurcation
@@ -110,7 +110,7 @@ class ResponseCurve:
 
     @property
     def folds(self) -> tuple[Bifurcation, ...]:
-        """Where the branch turns back in speed."""
+        """Folds, at which the branch turns back in speed."""
         return tuple(event for event in self.bifurcations if event.kind == "fold")
 
     @property
@@ -135,8 +135,10 @@ class ResponseCurve:
 
     def motion(self, index: int) -> PeriodicResponse:
         """Integrate the periodic motion of a point again, from the starts of its segments."""
-        kept = self.responses[index]
-        return integrated_again(self.system_at(float(self.speeds[index])), self._period(kept.period), kept)
+        branch_motion = self.responses[index]
+        return integrated_again(
+            self.system_at(float(self.speeds[index])), self._period(branch_motion.period), branch_motion
+        )
 
     def at(self, speed: float, tolerance: float = 1e-8) -> list[PeriodicResponse]:
         """Every motion of the branch at a speed, in the branch's order.
@@ -149,15 +151,15 @@ class ResponseCurve:
             Where a motion between two points is not found from them, or the tolerance is not met.
         """
         away = self.speeds - speed
-        found = [(float(i), self.motion(int(i))) for i in np.flatnonzero(away == 0.0)]
+        motions = [(float(i), self.motion(int(i))) for i in np.flatnonzero(away == 0.0)]
         for i in np.flatnonzero(away[:-1] * away[1:] < 0.0):
             part = away[i] / (away[i] - away[i + 1])
-            found.append((i + part, self._between(int(i), part, speed, tolerance)))
-        if not found:
+            motions.append((i + part, self._between(int(i), part, speed, tolerance)))
+        if not motions:
             raise CouplingError(
                 f"no motion at {speed:g}: the branch was followed from {self.speeds.min():g} to {self.speeds.max():g}"
             )
-        return [response for _, response in sorted(found, key=lambda one: one[0])]
+        return [response for _, response in sorted(motions, key=lambda one: one[0])]
 
     def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
         """Solve for the motion at a speed that is a part of the way from one point to the next."""
@@ -173,19 +175,19 @@ class ResponseCurve:
         return None if self.periods == 1 else length
 
 
-_COARSER = 2  # levels below that of the first motion, whose monodromy is proved too
-_KEPT = 5  # points that predict the next
-_MISSED = 3e-3  # error aimed at for a prediction, relative to a motion ...
-_ASIDE = 1.2e-2  # ... and largest one, beyond which it leads to another branch
-_FARTHEST = 0.3  # part of a motion by which a step along the branch may change it
-_SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points there
-_SMOOTH = 0.97  # and beyond which the next step is longer
-_FEW = 4  # corrections there
-_FAILURES = 3  # of steps with the speed held, each half as long, before the branch is followed along its length ...
-_SMALL = 0.05  # ... or of the largest step, below which it is
-_SHORTEST = 1e-4  # of the largest step, below which the branch is lost
-_LOCATIONS = 30  # steps in the location of a fold or a loss of stability
-_LOCATED = 1e-5  # of a step: the speed of a fold errs by the square
+_COARSER = 2  # number of levels below that of the first motion, whose monodromy is proved too
+_KEPT = 5  # number of points that predict the next point
+_MISSED = 3e-3  # target error of a prediction, relative to a motion
+_ASIDE = 1.2e-2  # largest error of a prediction, beyond which it leads to another branch
+_FARTHEST = 0.3  # largest relative change of a motion by a step along the branch
+_SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points along the branch
+_SMOOTH = 0.97  # cosine beyond which the next step is longer
+_FEW = 4  # largest number of corrections with which the next step is longer
+_FAILURES = 3  # failed steps at given speed, each half as long, before pseudo-arclength steps
+_SMALL = 0.05  # part of the largest step below which pseudo-arclength steps begin
+_SHORTEST = 1e-4  # part of the largest step below which the branch is lost
+_LOCATIONS = 30  # largest number of steps in the location of a bifurcation
+_LOCATED = 1e-5  # tolerance of a located point over the step; the speed of a fold errs by its square
 
 
 Seen = Callable[[float, PeriodicResponse], None]
@@ -228,31 +230,31 @@ class _Follower:
             if self.by_arclength and self.ds < _SHORTEST * self.largest:
                 return "lost"
             self.tries += 1
-            there = self._along() if self.by_arclength else self._at_given_speed()
-            if there is None:
+            point = self._along() if self.by_arclength else self._at_given_speed()
+            if point is None:
                 continue
-            position = self.position(there.speed)
+            position = self.position(point.speed)
             progress(min(max(position, 0.0), 1.0))
             if position in (0.0, 1.0):
                 return "end" if position == 1.0 else "start"
 
     def _at_given_speed(self) -> Point | None:
         """Take a continuation step at a given speed."""
-        here = self.recent[-1]
+        last = self.recent[-1]
         among = self.recent[-1 - self.order :]
-        position = self.position(here.speed) + self.sense * self.stride
+        position = self.position(last.speed) + self.sense * self.stride
         level = self.branch.level
-        there = self.branch.hold(among, self.speed(min(max(position, 0.0), 1.0)), self._within(here))
-        if there is None:
+        point = self.branch.hold(among, self.speed(min(max(position, 0.0), 1.0)), self._within(last))
+        if point is None:
             if self.branch.level <= level:
                 self._failed()
             return None
-        missed = max(there.missed / self._motion(there), 1e-12)
-        self._accept(there, False)
+        missed = max(point.missed / self._motion(point), 1e-12)
+        self._accept(point, False)
         self.failures = 0
         grown = (_MISSED / missed) ** (1.0 / (1 + len(among)))
         self.stride = min(self.stride * min(max(grown, 0.5), 2.0), self.largest)
-        return there
+        return point
 
     def _failed(self) -> None:
         """Shorten the continuation step, or change to pseudo-arclength."""
@@ -260,65 +262,65 @@ class _Follower:
         self.order = min(self.order, 1)
         self.failures += 1
         if self.failures == _FAILURES or self.stride < _SMALL * self.largest:
-            here = self.recent[-1]
+            last = self.recent[-1]
             try:
-                pace = abs(here.tangent[1])
+                pace = abs(last.tangent[1])
             except (PeriodicError, np.linalg.LinAlgError):
-                # No motion beside it, or a fold: only shorter steps are left.
+                # There is no neighbouring motion, or a fold: only shorter steps are left.
                 pace = 1.0
             self.by_arclength, self.failures = True, 0
-            self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(here))
+            self.ds = min(self.stride / max(pace, 1e-9), _FARTHEST * self._motion(last))
 
     def _along(self) -> Point | None:
         """Take a pseudo-arclength step along the branch."""
-        here = self.recent[-1]
-        forwards = 1.0 if here.towards is not None else self.sense * np.sign(self.end - self.start)
+        last = self.recent[-1]
+        forwards = 1.0 if last.towards is not None else self.sense * np.sign(self.end - self.start)
         level = self.branch.level
-        there = self.branch.along(here, forwards * self.ds)
-        if there is None and self.branch.level > level:
+        point = self.branch.along(last, forwards * self.ds)
+        if point is None and self.branch.level > level:
             return None
-        turn = 0.0 if there is None else forwards * _cosine(here, there)
-        if there is None or turn < _SHARPEST_TURN:
+        turn = 0.0 if point is None else forwards * _cosine(last, point)
+        if point is None or turn < _SHARPEST_TURN:
             self.ds *= 0.5
             return None
-        position = self.position(there.speed)
+        position = self.position(point.speed)
         if not 0.0 < position < 1.0:
-            there = self.branch.hold(self.recent[-2:], self.end if position >= 1.0 else self.start, self._within(here))
-            if there is None:
+            point = self.branch.hold(self.recent[-2:], self.end if position >= 1.0 else self.start, self._within(last))
+            if point is None:
                 self.ds *= 0.5
                 return None
-        gone = abs(self.position(there.speed) - self.position(here.speed))
-        is_fold = self._accept(there, True)
-        if turn > _SMOOTH and there.corrections <= _FEW:
+        gone = abs(self.position(point.speed) - self.position(last.speed))
+        is_fold = self._accept(point, True)
+        if turn > _SMOOTH and point.corrections <= _FEW:
             self.ds *= 1.5
-        self.ds = min(self.ds, _FARTHEST * self._motion(there))
+        self.ds = min(self.ds, _FARTHEST * self._motion(point))
         if not is_fold and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
             self.by_arclength, self.order = False, 1
             self.stride = min(gone, self.largest)
-        return there
+        return point
 
-    def _accept(self, there: Point, along: bool) -> bool:
-        """Add a point to the branch, after the bifurcation before it; returns whether the branch turned."""
-        here = self.recent[-1]
+    def _accept(self, point: Point, along: bool) -> bool:
+        """Add a point to the branch, after any bifurcation before it; returns whether the branch turned."""
+        last = self.recent[-1]
         forwards = np.sign(self.end - self.start)
         is_fold = False
-        if along and there.towards is not None:
-            sense = float(np.sign(there.tangent[1]) * forwards)
+        if along and point.towards is not None:
+            sense = float(np.sign(point.tangent[1]) * forwards)
             is_fold = sense != self.sense
             self.sense = sense
-        event, between = self._event(here, there, is_fold, along)
+        event, between = self._event(last, point, is_fold, along)
         if event is not None and between is not None:
             self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
             self._keep(between)
-        self._keep(there)
+        self._keep(point)
         # The bifurcation before it was located with the elements of this point.
-        self.branch.accept(there.response.error)
+        self.branch.accept(point.response.error)
         if is_fold:
-            self.recent = [there]
+            self.recent = [point]
             return True
         if not along:
-            self.order = self._best_order(there)
-        self.recent = [*self.recent, there][-_KEPT:]
+            self.order = self._best_order(point)
+        self.recent = [*self.recent, point][-_KEPT:]
         return False
 
     def _keep(self, point: Point) -> None:
@@ -327,14 +329,14 @@ class _Follower:
         self.speeds.append(point.speed)
         self.motions.append(motion_summary(point.response, point.ready.segments))
 
-    def _best_order(self, there: Point) -> int:
-        """Order of the polynomial through the last points that would have predicted this one best."""
+    def _best_order(self, latest: Point) -> int:
+        """Order of the polynomial through the last points that would have predicted ``latest`` best."""
         at = np.array([point.speed for point in self.recent])
         best, least = 1, np.inf
         for order in range(1, len(self.recent)):
-            weights = interpolation(at[-1 - order :], there.speed)
+            weights = interpolation(at[-1 - order :], latest.speed)
             states = np.tensordot(weights, [point.states for point in self.recent[-1 - order :]], 1)
-            missed = self.branch.distance(states, there.states)
+            missed = self.branch.distance(states, latest.states)
             if missed < least:
                 best, least = order, missed
         return best
@@ -348,9 +350,9 @@ class _Follower:
         """Largest correction of a prediction from a point."""
         return _ASIDE * self._motion(point)
 
-    def _event(self, here: Point, there: Point, is_fold: bool, along: bool) -> tuple[Event | None, Point | None]:
+    def _event(self, before: Point, after: Point, is_fold: bool, along: bool) -> tuple[Event | None, Point | None]:
         """Bifurcation between two points, and its location."""
-        few, many = sorted((here.response.floquet.growing, there.response.floquet.growing))
+        few, many = sorted((before.response.floquet.growing, after.response.floquet.growing))
         if not is_fold and few == many:
             return None, None
 
@@ -360,12 +362,12 @@ class _Follower:
             return float(np.abs(point.response.floquet.values[many - 1]) - 1.0)
 
         forwards = 1.0
-        if is_fold and here.towards is None:
-            forwards = float(np.sign(here.tangent[1] * -there.tangent[1]))
+        if is_fold and before.towards is None:
+            forwards = float(np.sign(before.tangent[1] * -after.tangent[1]))
         whole = self.ds if along else 1.0
         low, high = 0.0, whole
-        at_low, at_high = forwards * test(here) if is_fold else test(here), test(there)
-        best = there
+        at_low, at_high = forwards * test(before) if is_fold else test(before), test(after)
+        best = after
         if at_low * at_high < 0.0:
             for turn in range(_LOCATIONS):
                 # False position, and bisection every third time so that no side is kept for ever.
@@ -374,14 +376,14 @@ class _Follower:
                 self.tries += 1
                 level = self.branch.level
                 if along:
-                    sense = forwards if is_fold or here.towards is not None else np.sign(there.speed - here.speed)
-                    point = self.branch.along(here, sense * middle)
+                    sense = forwards if is_fold or before.towards is not None else np.sign(after.speed - before.speed)
+                    point = self.branch.along(before, sense * middle)
                 else:
-                    speed = here.speed + middle * (there.speed - here.speed)
-                    point = self.branch.hold([*self.recent[-3:-1], there, here], speed, self._within(here))
+                    speed = before.speed + middle * (after.speed - before.speed)
+                    point = self.branch.hold([*self.recent[-3:-1], after, before], speed, self._within(before))
                 if point is None:
                     if self.branch.level > level:
-                        continue  # with finer elements
+                        continue  # again with finer elements
                     break
                 best, value = point, test(point)
                 if value == 0.0 or high - low <= _LOCATED * whole or abs(value) < 1e-8:
@@ -421,11 +423,11 @@ def response_curve(
     start, end : float
         Speeds between which the branch is followed; ``end`` may be the lower.
     first : tuple of ndarray, or PeriodicResponse, optional
-        Start of the search of the first motion, as ``start`` of :func:`periodic_response`.
+        Start of the search for the first motion, see ``start`` of :func:`periodic_response`.
     points : int
         Number of points on a straight branch; more are taken where it turns.
     most_points, most_tries : int
-        Largest numbers of points and of steps tried for them.
+        Largest numbers of points and of attempted steps.
     periods : int
         Period of the motion in periods of the excitation: 2 follows a motion of twice the excitation's period.
     tolerance : float
@@ -439,8 +441,8 @@ def response_curve(
     Returns
     -------
     ResponseCurve
-        Its first point is at ``start``, its last at ``end``, unless the branch comes back to ``start`` before or is
-        left: see its ``ending``, and its ``account`` in words.
+        Curve whose first point is at ``start`` and whose last is at ``end``, unless the branch comes back to ``start``
+        or is lost: see its ``ending``, and its ``account`` in words.
 
     Raises
     ------
@@ -454,15 +456,15 @@ def response_curve(
         raise CouplingError(f"a branch from {start} to {end} in {points} points; expected a range and some points")
     begin = system_at(start)
     period = None if periods == 1 else periods * problem(begin).period
-    known = periodic_response(begin, period=period, start=first, tolerance=tolerance)
+    solved = periodic_response(begin, period=period, start=first, tolerance=tolerance)
     ready = problem(begin, period)
-    q, v = known.at_nodes(ready.segments)
+    q, v = solved.at_nodes(ready.segments)
     still = ready.part.mean
     moving = np.concatenate([q[:, ready.kept] - still, v[:, ready.kept] / ready.part.rate_unit], axis=1)
     unit = np.sqrt(np.mean(np.sum(moving**2, axis=1)))
     unit = max(float(unit), 0.1 * float(np.linalg.norm(still))) or 1.0
-    branch = Branch(system_at, periods, abs(span), max(known.level - 1 - _COARSER, 0), tolerance, unit)
-    follower = _Follower(branch, branch.first(known, start), start, end, points, most_tries, seen)
+    branch = Branch(system_at, periods, abs(span), max(solved.level - 1 - _COARSER, 0), tolerance, unit)
+    follower = _Follower(branch, branch.first(solved, start), start, end, points, most_tries, seen)
     ending = follower.follow(most_points, progress)
     if len(follower.speeds) == 1:
         raise PeriodicError(
@@ -480,6 +482,6 @@ def response_curve(
     )
 
 
-def _cosine(one: Point, other: Point) -> float:
-    (states, speed), (others, pace) = one.tangent, other.tangent
+def _cosine(point: Point, other: Point) -> float:
+    (states, speed), (others, pace) = point.tangent, other.tangent
     return float(np.sum(states * others)) / len(states) + speed * pace

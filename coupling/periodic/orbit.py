@@ -39,17 +39,17 @@ def product(pieces: FloatArray) -> FloatArray:
 
 def carried(pieces: FloatArray, first: FloatArray, sources: FloatArray) -> FloatArray:
     """d_0 ... d_K of d_{k+1} = A_k d_k + source k, shape (K + 1, 2 N)."""
-    found = np.empty((len(pieces) + 1, len(first)))
-    found[0] = first
+    states = np.empty((len(pieces) + 1, len(first)))
+    states[0] = first
     for k, (piece, source) in enumerate(zip(pieces, sources, strict=True)):
-        found[k + 1] = piece @ found[k] + source
-    return found
+        states[k + 1] = piece @ states[k] + source
+    return states
 
 
 def correction(pieces: FloatArray, misses: FloatArray, monodromy: FloatArray, *, least: bool = False) -> FloatArray:
     """Newton correction that closes a motion at its speed, shape (K, 2 N).
 
-    With ``least``, the smallest one where a multiplier is 1.
+    With ``least``, it is the smallest correction where a multiplier is 1.
 
     Raises
     ------
@@ -78,12 +78,12 @@ def bordered_correction(
     ----------
     pieces : ndarray, shape (K, 2 N, 2 N)
     monodromy : ndarray, shape (2 N, 2 N)
-        Their product.
+        Product of the pieces.
     misses, by_speed : ndarray, shape (K, 2 N)
-        r and s.
+        Closure errors r and their derivative s by speed.
     along : ndarray, shape (K, 2 N)
     along_speed : float
-        The direction among the states and the speed.
+        Components of the direction along the states and the speed.
     behind : float
         Required growth of Σ along · d + along_speed p.
 
@@ -91,7 +91,7 @@ def bordered_correction(
     -------
     corrections : ndarray, shape (K, 2 N)
     change : float
-        Of the speed.
+        Change of the speed.
 
     Raises
     ------
@@ -111,14 +111,14 @@ def bordered_correction(
     right = np.append(-rest[-1], behind - float(np.sum(along * rest[:-1])))
     # Growth over the period would swamp the row of the direction.
     scale = np.abs(matrix).max(axis=1)
-    found = np.linalg.solve(matrix / scale[:, None], right / scale)
-    move = float(found[size])
-    return carried(pieces, found[:size], misses + move * by_speed)[:-1], move
+    solution = np.linalg.solve(matrix / scale[:, None], right / scale)
+    move = float(solution[size])
+    return carried(pieces, solution[:size], misses + move * by_speed)[:-1], move
 
 
-_ROOM_FOR_CUTS = 400  # at first at least; as many as there are elements, if these are more
-_MOST_CUTS = 41  # of one element, a few more than the kernel makes: a whole period never needs more room
-_PER_CYCLE = 4  # coarsest elements in a mesh period or in the shortest cycle of a load
+_ROOM_FOR_CUTS = 400  # least number of cuts that the first attempt has room for
+_MOST_CUTS = 41  # cuts of one element for which there is room, above the kernel's largest number
+_PER_CYCLE = 4  # number of coarsest elements in a mesh period or in the shortest cycle of a load
 _SAME_TIME = 1e-9  # part of the period within which two events are one
 _SAME_SIZE = 1e-11  # parts of the largest element by which elements of one size may differ
 
@@ -130,14 +130,14 @@ class Elements:
     Attributes
     ----------
     starts : ndarray, shape (e,)
-        [s].
+        Starts of the elements [s].
     sizes : ndarray, shape (e,)
-        [s].
+        Sizes of the elements [s].
     slots : ndarray of int, shape (e,)
-        Slot of each one's size.
+        Slot of each element's size.
     steps : Steps
     nodes : ndarray of int, shape (K + 1,)
-        The first element of each segment; e.
+        First element of each segment, and e.
     """
 
     starts: FloatArray
@@ -157,10 +157,10 @@ class PeriodMotion:
     starts, ends : ndarray, shape (K, 2 N)
         States, see :class:`coupling.collocation.linear_part.LinearPart`.
     pieces : ndarray, shape (K, 2 N, 2 N)
-        Derivative of each end by its start, both in amplitudes, as :attr:`LinearPart.to_amplitudes` gives them; of no
-        segments without disturbances.
+        Derivative of each end by its start, both in amplitudes (:attr:`LinearPart.to_amplitudes`); shape (0, 2 N, 2 N)
+        without disturbances.
     trace : Trace
-        Cut to the elements that it holds.
+        Trace, trimmed to its elements.
     switches : int
         Number of changes of the branch of a contact law.
     """
@@ -194,7 +194,7 @@ class PeriodMotion:
 
     @cached_property
     def misses(self) -> FloatArray:
-        """Closure errors: each end less the next start, of the last one the first, shape (K, 2 N)."""
+        """Closure errors: each end less the next start, the last end less the first start, shape (K, 2 N)."""
         return self.ends - np.roll(self.starts, -1, axis=0)
 
     @property
@@ -214,9 +214,9 @@ class PeriodMotion:
         self, misses: FloatArray, by_speed: FloatArray, along: FloatArray, along_speed: float, behind: float
     ) -> tuple[FloatArray, float]:
         """Newton correction along a direction, see :func:`coupling.periodic.orbit.bordered_correction`."""
-        there, back = self.part.to_amplitudes.T, self.part.from_amplitudes
+        forth, back = self.part.to_amplitudes.T, self.part.from_amplitudes
         moves, change = bordered_correction(
-            self.pieces, self.turn, misses @ there, by_speed @ there, along @ back, along_speed, behind
+            self.pieces, self.turn, misses @ forth, by_speed @ forth, along @ back, along_speed, behind
         )
         return np.asarray(moves @ back.T), change
 
@@ -272,9 +272,9 @@ def integrate_period(
     """
     room = max(_ROOM_FOR_CUTS, len(elements.starts))
     while True:
-        found = _pass_within(part, contacts, elements, start, room, varied=varied)
-        if found is not None:
-            return found
+        motion = _pass_within(part, contacts, elements, start, room, varied=varied)
+        if motion is not None:
+            return motion
         # Long periods with many teeth and slices of their faces change branches often, which is no fault.
         room *= 4
 
@@ -282,7 +282,7 @@ def integrate_period(
 def _pass_within(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
 ) -> PeriodMotion | None:
-    """Integration with room for some changes of contact; None where there are more."""
+    """Integrate with room for a limited number of changes of contact; None where there are more."""
     from coupling.collocation.integration_kernels import NO_ROOM, integrate_elements
 
     modes, count = len(part.eigenvalues), len(elements.nodes) - 1
@@ -292,31 +292,31 @@ def _pass_within(
     pieces = np.empty((count if varied else 0, size, size))
     trace = empty_trace(len(elements.starts) + room, m, ORDER, c)
     # One disturbance of each amplitude; real eigenvalues have no imaginary part.
-    there = np.concatenate([np.arange(modes), m + np.flatnonzero(part.eigenvalues.imag > 0.0)])
-    begun = np.eye(2 * m)[there if varied else []]
+    upper = np.concatenate([np.arange(modes), m + np.flatnonzero(part.eigenvalues.imag > 0.0)])
+    begun = np.eye(2 * m)[upper if varied else []]
     columns = np.empty_like(begun)
     work, rows = element_work(m, ORDER, c, varied=varied), real_rows(part.right)
     moving = np.concatenate([np.arange(modes), m + np.arange(modes)])
-    length = switches = 0
+    stored = switches = 0
     times = elements.starts[elements.nodes[:-1]]
     amplitudes = part.amplitudes_of(start, times) if start.ndim == 2 else None
     for k in range(count):
         starts[k] = start[k] if start.ndim == 2 else start if k == 0 else ends[k - 1]
-        here = slice(elements.nodes[k], elements.nodes[k + 1])
+        elements_of_segment = slice(elements.nodes[k], elements.nodes[k + 1])
         z = part.amplitudes_of(starts[k], float(times[k])) if amplitudes is None else amplitudes[k]
         columns[:] = begun
-        held, cuts, wrong = integrate_elements(
+        length, cuts, wrong = integrate_elements(
             part.reference,
             contacts,
             elements.steps,
-            elements.starts[here],
-            elements.sizes[here],
-            elements.slots[here],
+            elements.starts[elements_of_segment],
+            elements.sizes[elements_of_segment],
+            elements.slots[elements_of_segment],
             z,
             columns,
             modes,
             trace,
-            length,
+            stored,
             work,
         )
         if wrong == NO_ROOM and room < _MOST_CUTS * len(elements.starts):
@@ -325,14 +325,14 @@ def _pass_within(
             _refuse(wrong, room)
         ends[k] = rows @ z[moving]
         if varied:
-            pieces[k] = columns.T[there]
-        length = int(held)
+            pieces[k] = columns.T[upper]
+        stored = int(length)
         switches += int(cuts)
     if not np.all(np.isfinite(ends)):
         raise PeriodicError("the motion grew beyond all bounds within a period; look for unstable coupled modes")
     # The result has no room to spare.
-    kept = Trace._make(values.copy() for values in first_elements(trace, length))
-    return PeriodMotion(part, starts, ends, pieces, kept, switches)
+    trimmed = Trace._make(values.copy() for values in first_elements(trace, stored))
+    return PeriodMotion(part, starts, ends, pieces, trimmed, switches)
 
 
 def _refuse(wrong: int, room: int) -> None:

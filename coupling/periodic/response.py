@@ -38,7 +38,7 @@ class FloquetMultipliers:
     values : ndarray of complex, shape (2 N,)
         A disturbance along the eigenvector number i is multiplied by values[i] every period.
     period : float
-        [s].
+        Period [s].
     """
 
     values: ComplexArray
@@ -52,7 +52,7 @@ class FloquetMultipliers:
 
     @property
     def largest(self) -> float:
-        """Largest modulus; 0 where there is nothing to disturb."""
+        """Largest modulus; 0 for a system without states."""
         return float(np.abs(self.values).max(initial=0.0))
 
     @property
@@ -86,8 +86,8 @@ def multipliers(monodromy: FloatArray, period: float) -> FloquetMultipliers:
     return FloquetMultipliers(values[np.argsort(-np.abs(values), kind="stable")], period)
 
 
-_LOOKS = 16  # at each element for the peak
-_MAY_MISS = 0.02  # error of the peak of a force's polynomial, relative to its range in an element
+_LOOKS = 16  # number of evaluations in each element for the peak
+_MAY_MISS = 0.02  # largest error of the peak of a force's polynomial, relative to its range in an element
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +98,9 @@ class PeriodicResponse:
     ----------
     system : CoupledSystem
     period : float
-        [s].
+        Period [s].
     displacement, velocity : ndarray, shape (n,)
-        At t = 0. Rigid-body motions have a mean of zero.
+        Displacements and rates at t = 0. Rigid-body motions have a mean of zero.
     floquet : FloquetMultipliers
         Stability.
     residual : float
@@ -111,7 +111,7 @@ class PeriodicResponse:
     elements, switches : int
         Number of elements in the period, and of changes of a contact law's branch between events.
     level : int
-        Halvings of the coarsest element.
+        Number of halvings of the coarsest element.
     newton_steps : int
     """
 
@@ -172,7 +172,7 @@ class PeriodicResponse:
         Parameters
         ----------
         outputs : TransientOutputs
-            As for the transient.
+            Output rows, as for a transient.
         samples : int
             Number of samples at even spacing; spectral lines up to half of it are exact but for aliasing from above.
         """
@@ -210,7 +210,7 @@ class PeriodicResponse:
         Parameters
         ----------
         times : ndarray, shape (t,)
-            Within the period, in any order [s].
+            Times within the period, in any order [s].
         """
         order = np.argsort(times, kind="stable")
         amplitudes = np.empty((len(times), 2 * len(self.part.reference.eigenvalue)))
@@ -260,13 +260,13 @@ class BranchMotion:
     Attributes
     ----------
     period, floquet, residual, error, elements, switches, level, newton_steps
-        Of the response.
+        See :class:`PeriodicResponse`.
     displacements, velocities : ndarray, shape (K, n)
-        At the starts of the segments, the first at t = 0.
+        Displacements and rates at the starts of the segments, the first at t = 0.
     mean_force, peak_force : ndarray, shape (c,)
-        Of each contact over the period [N].
+        Mean and largest force of each contact over the period [N].
     mean_compression, rms_compression : ndarray, shape (c,)
-        The mean, and the root mean square about it [m].
+        Mean compression of each contact, and its root mean square about the mean [m].
     contact_loss : ndarray, shape (c,)
         Part of the period in which the flanks are apart.
     """
@@ -304,7 +304,7 @@ class BranchMotion:
 
 
 def motion_summary(response: PeriodicResponse, segments: int) -> BranchMotion:
-    """Summary of a response whose period is cut into some segments."""
+    """Summary of a response, with states at the starts of ``segments`` equal segments."""
     displacements, velocities = response.at_nodes(segments)
     return BranchMotion(
         period=response.period,

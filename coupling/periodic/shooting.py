@@ -42,9 +42,9 @@ _NEWTON_STEPS = 25
 _SHORTEST_STEP = 1.0 / 64.0
 _MOST_SEGMENTS = 32
 _ROUNDING = 1e-11  # closure error of a closed motion, relative
-_FINEST = 12  # halvings of the coarsest element
-_ROUNDS = 6  # of time integration before giving up ...
-_PERIODS = 8  # ... periods in the first of them, doubled every time
+_FINEST = 12  # largest number of halvings of the coarsest element
+_ROUNDS = 6  # rounds of time integration before the search fails
+_PERIODS = 8  # periods of the first round, doubled in every further one
 
 
 def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
@@ -52,17 +52,17 @@ def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
 
     A contact whose pairs of teeth differ repeats after its hunting period alone.
     """
-    found = {}
+    frequencies = {}
     for contact in system.contacts:
         if contact.mesh_frequency != 0.0 and _varies(contact.contact):
-            found[f"contact {contact.name!r}"] = abs(contact.mesh_frequency) / contact.contact.hunting_period
+            frequencies[f"contact {contact.name!r}"] = abs(contact.mesh_frequency) / contact.contact.hunting_period
         for number, (amplitude, frequency, _) in enumerate(contact.errors):
             if amplitude != 0.0 and frequency != 0.0:
-                found[f"runout {number + 1} of {contact.name!r}"] = abs(frequency) / (2.0 * np.pi)
+                frequencies[f"runout {number + 1} of {contact.name!r}"] = abs(frequency) / (2.0 * np.pi)
     for number, load in enumerate(system.harmonic_loads):
         if load.frequency != 0.0 and np.any(load.amplitude != 0.0):
-            found[f"harmonic load {number + 1}"] = abs(load.frequency) / (2.0 * np.pi)
-    return found
+            frequencies[f"harmonic load {number + 1}"] = abs(load.frequency) / (2.0 * np.pi)
+    return frequencies
 
 
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
@@ -83,12 +83,12 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
     if period is not None:
         if not 0.0 < period < np.inf:
             raise CouplingError(f"a period of {period} s; expected a positive number")
-        for what, frequency in frequencies.items():
+        for source, frequency in frequencies.items():
             cycles = frequency * period
             if round(cycles) < 1 or abs(cycles - round(cycles)) > _WHOLE:
                 raise CouplingError(
-                    f"{what} at {frequency:.9g} Hz makes {cycles:.9g} cycles in the period of {period:.9g} s; expected "
-                    "a whole number"
+                    f"{source} at {frequency:.9g} Hz makes {cycles:.9g} cycles in the period of {period:.9g} s; "
+                    "expected a whole number"
                 )
         return period
     if not frequencies:
@@ -98,17 +98,17 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
         )
     first = next(iter(frequencies))
     ratios = []
-    for what, frequency in frequencies.items():
+    for source, frequency in frequencies.items():
         exact = frequency / frequencies[first]
         ratio = Fraction(exact).limit_denominator(_LARGEST_NUMBER)
         if ratio == 0 or abs(float(ratio) / exact - 1.0) > _SAME or ratio.numerator > _LARGEST_NUMBER**2:
             raise CouplingError(
-                f"{what} at {frequency:.9g} Hz and {first} at {frequencies[first]:.9g} Hz have no common period: their "
-                f"ratio {exact:.12g} is no fraction of whole numbers up to {_LARGEST_NUMBER}; the motion does not "
-                "repeat, leave one of them out or integrate in time"
+                f"{source} at {frequency:.9g} Hz and {first} at {frequencies[first]:.9g} Hz have no common period: "
+                f"their ratio {exact:.12g} is no fraction of whole numbers up to {_LARGEST_NUMBER}; the motion does "
+                "not repeat, leave one of them out or integrate in time"
             )
         ratios.append(ratio)
-    # Cycles of the first in which all make whole ones.
+    # Number of cycles of the first frequency in which all make whole cycles.
     return lcm(*(ratio.denominator for ratio in ratios)) / frequencies[first] / _common_factor(ratios)
 
 
@@ -135,15 +135,15 @@ class Problem:
     Attributes
     ----------
     system : CoupledSystem
-        As given.
+        System as given.
     recovery : ndarray, shape (n, k)
-        Its coordinates from the condensed ones.
+        Coordinates of the system from the condensed coordinates.
     kept : ndarray of int, shape (k,)
         Numbers of the condensed coordinates.
     period : float
-        [s].
+        Period [s].
     part : LinearPart
-        Of the condensed system.
+        Linear part of the condensed system.
     contacts : Contacts
         Contacts as arrays for the kernels.
     segments : int
@@ -185,9 +185,9 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
         Where the system has laws that the method does not know.
     """
     if not system.is_smooth:
-        what = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
+        nonlinearity = "nonlinear bearings" if system.nonlinear else "friction between its teeth"
         raise PeriodicError(
-            f"the periodic response does not know {what}; expected a system without: leave that out, or "
+            f"the periodic response does not know {nonlinearity}; expected a system without: leave that out, or "
             "integrate in time until the motion is steady"
         )
     length = common_period(system, period)
@@ -200,7 +200,7 @@ def problem(system: CoupledSystem, period: float | None = None, like: Problem | 
 
 
 def _segments(system: CoupledSystem, period: float) -> int:
-    """Count the segments of multiple shooting: a mesh period each, or several where there are many."""
+    """Count the segments of multiple shooting: one mesh period each, or several where the period has many."""
     cycles = round(period * max([abs(contact.mesh_frequency) for contact in system.contacts], default=0.0))
     return max(1, math.ceil(cycles / math.ceil(cycles / _MOST_SEGMENTS))) if cycles else 1
 
@@ -224,16 +224,16 @@ def periodic_response(
     Parameters
     ----------
     system : CoupledSystem
-        At constant speed.
+        System at constant speed.
     period : float, optional
-        [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple of it
+        Period [s]; by default the shortest common one of mesh phases, runout errors and harmonic loads. A multiple
         finds subharmonic motions too.
     start : tuple of ndarray, or PeriodicResponse, optional
         Start of the search: displacements and rates at t = 0, shape (n,) each, or at the starts of all segments of the
         period, shape (K, n); or a motion of a neighbouring system. Where contact is lost several motions may exist, and
         the start selects one. By default the response at the mean mesh stiffness.
     tolerance : float
-        Of state and monodromy, relative: elements are halved until another halving changes neither by more.
+        Relative tolerance of state and monodromy: elements are halved until another halving changes neither by more.
 
     Returns
     -------
@@ -251,8 +251,8 @@ def periodic_response(
     ready = problem(system, period)
     level = 0 if not isinstance(start, PeriodicResponse) else max(start.level - 1, 0)
     state = np.zeros((ready.segments, ready.part.states)) if start is None else _states(ready, start)
-    found, steps = _search(ready, level, state)
-    return refined(ready, found, level, tolerance, steps)
+    motion, steps = _search(ready, level, state)
+    return refined(ready, motion, level, tolerance, steps)
 
 
 def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicResponse) -> FloatArray:
@@ -263,10 +263,10 @@ def _states(ready: Problem, start: tuple[FloatArray, FloatArray] | PeriodicRespo
             raise CouplingError(f"a motion of {start.system.size} coordinates to start from; expected {size}")
         start = start.at_nodes(ready.segments)
     q, v = np.asarray(start[0]), np.asarray(start[1])
-    for what, given in (("displacements", q), ("rates", v)):
-        if given.shape not in ((size,), (ready.segments, size)):
+    for label, states in (("displacements", q), ("rates", v)):
+        if states.shape not in ((size,), (ready.segments, size)):
             raise CouplingError(
-                f"{what} of shape {given.shape} to start from; expected ({size},) or ({ready.segments}, {size})"
+                f"{label} of shape {states.shape} to start from; expected ({size},) or ({ready.segments}, {size})"
             )
     if q.ndim == 1 or v.ndim == 1:
         return ready.part.state(q[ready.kept], v[ready.kept])
@@ -285,108 +285,108 @@ def response_near(
         Where Newton's method alone does not find it: time integration would depart from an unstable motion.
     """
     ready = problem(system, period)
-    found = close(ready, ready.elements(level), _states(ready, start))
-    if found is None:
+    closed = close(ready, ready.elements(level), _states(ready, start))
+    if closed is None:
         raise PeriodicError("no motion is found next to where it was looked for; take points that are closer together")
-    return refined(ready, found[0], level, tolerance, found[1], near=True)
+    return refined(ready, closed[0], level, tolerance, closed[1], near=True)
 
 
-def integrated_again(system: CoupledSystem, period: float | None, kept: BranchMotion) -> PeriodicResponse:
+def integrated_again(system: CoupledSystem, period: float | None, stored: BranchMotion) -> PeriodicResponse:
     """Integrate the whole motion again from the starts of its segments."""
     ready = problem(system, period)
-    states = _states(ready, (kept.displacements, kept.velocities))
-    found = integrate_period(ready.part, ready.contacts, ready.elements(kept.level), states)
-    return response_of(ready, found, kept.level, kept.error, kept.newton_steps)
+    states = _states(ready, (stored.displacements, stored.velocities))
+    motion = integrate_period(ready.part, ready.contacts, ready.elements(stored.level), states)
+    return response_of(ready, motion, stored.level, stored.error, stored.newton_steps)
 
 
 def refined(
-    ready: Problem, found: PeriodMotion, level: int, tolerance: float, steps: int, *, near: bool = False
+    ready: Problem, motion: PeriodMotion, level: int, tolerance: float, steps: int, *, near: bool = False
 ) -> PeriodicResponse:
     """Halve the elements until neither state nor monodromy changes by more than the tolerance.
 
     A motion that must stay ``near`` is not searched by time integration.
     """
     while level < _FINEST:
-        finer = close(ready, ready.elements(level + 1), found.starts)
+        finer = close(ready, ready.elements(level + 1), motion.starts)
         if finer is None:
             if near:
                 raise PeriodicError("elements half as large find no motion near that of the larger ones")
-            again, more = _search(ready, level + 1, found.starts)
+            again, more = _search(ready, level + 1, motion.starts)
             finer = again, more
         better, more = finer
         steps += more
         level += 1
         # Rounding sets a floor to what a halving can show.
-        moved = float(np.linalg.norm(better.starts - found.starts, axis=1).max()) / ready.scale(better.start)
-        monodromy_change = float(np.abs(better.monodromy - found.monodromy).max(initial=0.0))
+        moved = float(np.linalg.norm(better.starts - motion.starts, axis=1).max()) / ready.scale(better.start)
+        monodromy_change = float(np.abs(better.monodromy - motion.monodromy).max(initial=0.0))
         monodromy_change /= max(float(np.abs(better.monodromy).max(initial=0.0)), 1.0)
         error = max(moved, monodromy_change)
-        found = better
+        motion = better
         if error <= tolerance:
-            return response_of(ready, found, level, error, steps)
+            return response_of(ready, motion, level, error, steps)
     raise PeriodicError(
-        f"elements of {ready.period / len(found.trace.start):.1e} s still change the motion by {error:.1e}, more than "
+        f"elements of {ready.period / len(motion.trace.start):.1e} s still change the motion by {error:.1e}, more than "
         f"the tolerance {tolerance:g}; raise it, or look for contact that grazes"
     )
 
 
-def response_of(ready: Problem, found: PeriodMotion, level: int, error: float, steps: int) -> PeriodicResponse:
+def response_of(ready: Problem, motion: PeriodMotion, level: int, error: float, steps: int) -> PeriodicResponse:
     """Response of a closed motion, with its proof."""
-    q, v = ready.part.motion(found.start)
+    q, v = ready.part.motion(motion.start)
     return PeriodicResponse(
         system=ready.system,
         period=ready.period,
         displacement=ready.recovery @ q,
         velocity=ready.recovery @ v,
-        floquet=multipliers(found.turn, ready.period),
-        residual=found.missing / ready.scale(found.start),
+        floquet=multipliers(motion.turn, ready.period),
+        residual=motion.missing / ready.scale(motion.start),
         error=error,
-        elements=len(found.trace.start),
-        switches=found.switches,
+        elements=len(motion.trace.start),
+        switches=motion.switches,
         level=level,
         newton_steps=steps,
         part=ready.part,
         recovery=ready.recovery,
         contacts=ready.contacts,
-        trace=found.trace,
+        trace=motion.trace,
     )
 
 
 def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[PeriodMotion, int] | None:
     """Newton's method on the closure error, with step halving; None where it stagnates."""
-    here = integrate_period(ready.part, ready.contacts, elements, state)
-    best = here.missing
+    motion = integrate_period(ready.part, ready.contacts, elements, state)
+    best = motion.missing
     for step in range(_NEWTON_STEPS):
-        if best <= _ROUNDING * ready.scale(here.start):
-            return here, step
-        move = here.correction(least=True)
+        if best <= _ROUNDING * ready.scale(motion.start):
+            return motion, step
+        move = motion.correction(least=True)
         part = 1.0
         while True:
-            there = integrate_period(ready.part, ready.contacts, elements, here.starts + part * move)
-            missing = there.missing
+            trial = integrate_period(ready.part, ready.contacts, elements, motion.starts + part * move)
+            missing = trial.missing
             if missing < (1.0 - 0.1 * part) * best:
                 break
             part *= 0.5
             if part < _SHORTEST_STEP:
                 # The rest may be rounding, which no step removes.
-                return (here, step) if best <= 1e3 * _ROUNDING * ready.scale(here.start) else None
-        here, best = there, missing
+                return (motion, step) if best <= 1e3 * _ROUNDING * ready.scale(motion.start) else None
+        motion, best = trial, missing
     return None
 
 
 def _search(ready: Problem, level: int, state: FloatArray) -> tuple[PeriodMotion, int]:
-    """Newton's method; where it stagnates, some periods of time integration before it is tried again."""
+    """Search by Newton's method; where it stagnates, it is repeated after some periods of time integration."""
     elements = ready.elements(level)
-    found = close(ready, elements, state)
-    here = state if state.ndim == 1 else state[0]
+    closed = close(ready, elements, state)
+    nearer = state if state.ndim == 1 else state[0]
     for turn in range(_ROUNDS):
-        if found is not None:
-            return found
+        if closed is not None:
+            return closed
         for _ in range(_PERIODS * 2**turn):
-            here = integrate_period(ready.part, ready.contacts, elements, here, varied=False).end
-        found = close(ready, elements, here)
-    if found is not None:
-        return found
+            nearer = integrate_period(ready.part, ready.contacts, elements, nearer, varied=False).end
+        closed = close(ready, elements, nearer)
+    if closed is not None:
+        return closed
     raise PeriodicError(
         f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in "
         "time: it may be chaotic or repeat after several periods (give a multiple as period), or the start is far from "

@@ -42,11 +42,11 @@ from coupling.time.step_matrices import contact_arrays
 FloatArray = npt.NDArray[np.float64]
 
 LONGEST_COMMON_PERIOD = 40
-"""Cycles of the fastest mesh in a common period beyond which excitations are superposed by default: the cost of a
-periodic motion is in proportion to them, and most pairs' hunting period is beyond."""
+"""Number of cycles of the fastest mesh in a common period beyond which excitations are superposed by default: the cost
+of a periodic motion is proportional to it, and most pairs' hunting periods are longer."""
 
-_PHASES = 8192  # at which the neglected force is evaluated
-_SPACING = 0.6180339887498949  # of the slowest period: its multiples cover the phases of all evenly
+_PHASES = 8192  # number of phases at which the neglected force is evaluated
+_SPACING = 0.6180339887498949  # sample spacing over the slowest period: its multiples cover all phases evenly
 _SAME_FREQUENCY = 1e-9
 
 
@@ -73,10 +73,10 @@ class GroupMotion:
     Attributes
     ----------
     name : str
-        Its excitations.
+        Name of the group's excitations.
     group : ExcitationGroup
     response : PeriodicResponse
-        Of the machine with the other meshes linear. Their compression counts from the point where their force is zero.
+        Response with the other meshes linear; their compression counts from the point where their force is zero.
     """
 
     name: str
@@ -92,11 +92,11 @@ class SuperposedResponse:
     ----------
     system : CoupledSystem
     motions : tuple of GroupMotion
-        The fastest first.
+        Motions, the fastest first.
     means : tuple of MeanMesh
-        Of each contact; of back flanks, all zero.
+        Mean mesh of each contact; all zero for back flanks.
     rest : ndarray, shape (n,)
-        q0.
+        Rest position q0.
     """
 
     system: CoupledSystem
@@ -137,7 +137,7 @@ class SuperposedResponse:
 
     @property
     def mean_force(self) -> FloatArray:
-        """Of each contact over all phases [N], shape (c,)."""
+        """Mean force of each contact over all phases [N], shape (c,)."""
         return np.asarray(self._sampled[2].mean(axis=0))
 
     @property
@@ -152,7 +152,7 @@ class SuperposedResponse:
 
     @property
     def mean_compression(self) -> FloatArray:
-        """Of each contact [m], shape (c,)."""
+        """Mean compression of each contact [m], shape (c,)."""
         return np.asarray(self._sampled[0].mean(axis=0))
 
     @property
@@ -191,7 +191,7 @@ def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PER
     ----------
     system : CoupledSystem
     longest : float
-        Cycles of the fastest excitation in a group's common period.
+        Largest number of cycles of the fastest excitation in a group's common period.
     """
     groups: list[ExcitationGroup] = []
     for atom in _atoms(system):
@@ -216,11 +216,11 @@ def superposed_response(
     Parameters
     ----------
     system : CoupledSystem
-        At constant speed.
+        System at constant speed.
     groups : sequence of ExcitationGroup, optional
-        Those of :func:`excitation_groups` by default.
+        Groups; by default those of :func:`excitation_groups`.
     tolerance : float
-        As for :func:`periodic_response`.
+        Tolerance as for :func:`periodic_response`.
 
     Raises
     ------
@@ -244,8 +244,8 @@ def superposed_response(
     rest = _rest_position(replace(system, contacts=linear))
     motions = []
     for group in chosen:
-        own = _driven_by(system, group, linear)
-        motions.append(GroupMotion(_name_of(system, group), group, periodic_response(own, tolerance=tolerance)))
+        driven = _driven_by(system, group, linear)
+        motions.append(GroupMotion(_name_of(system, group), group, periodic_response(driven, tolerance=tolerance)))
     motions.sort(key=lambda motion: motion.response.period)
     return SuperposedResponse(system, tuple(motions), tuple(means), rest)
 
@@ -255,10 +255,10 @@ def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
     loaded = [i for i, contact in enumerate(system.contacts) if contact.loaded]
     meshes = [i for i in loaded if driving_frequencies(_driven_by(system, ExcitationGroup((i,))))]
     meshes.sort(key=lambda i: -abs(system.contacts[i].mesh_frequency))
-    given = [abs(load.frequency) for load in system.harmonic_loads if np.any(load.amplitude != 0.0)]
-    given += [abs(row[1]) for contact in system.contacts for row in contact.errors if row[0] != 0.0]
+    load_frequencies = [abs(load.frequency) for load in system.harmonic_loads if np.any(load.amplitude != 0.0)]
+    load_frequencies += [abs(row[1]) for contact in system.contacts for row in contact.errors if row[0] != 0.0]
     frequencies: list[float] = []
-    for frequency in sorted(given, reverse=True):
+    for frequency in sorted(load_frequencies, reverse=True):
         if frequency != 0.0 and not any(abs(frequency - one) <= _SAME_FREQUENCY * one for one in frequencies):
             frequencies.append(frequency)
     return [*(ExcitationGroup((i,)) for i in meshes), *(ExcitationGroup((), (one,)) for one in frequencies)]
@@ -267,19 +267,19 @@ def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
 def _driven_by(
     system: CoupledSystem, group: ExcitationGroup, linear: Sequence[ContactConnector] | None = None
 ) -> CoupledSystem:
-    """Return the system with the excitations of a group alone; other contacts as given, else unchanging."""
+    """Return the system with the excitations of one group; other contacts are those of ``linear``, or constant."""
     names = {system.contacts[i].name for i in group.meshes}
     contacts = []
     for number, contact in enumerate(system.contacts):
-        own = contact.name.removesuffix(", back") in names
-        if own:
+        drives = contact.name.removesuffix(", back") in names
+        if drives:
             stands = contact
         elif linear is not None:
             stands = linear[number]
         else:
             stands = _linear_mesh(contact, MeanMesh(1.0, 1.0, 0.0, 1.0))
-        kept = [row for row in contact.errors if row[1] == 0.0 or _among(row[1], group.frequencies)]
-        contacts.append(replace(stands, errors=np.array(kept, dtype=np.float64).reshape(-1, 3)))
+        errors = [row for row in contact.errors if row[1] == 0.0 or _among(row[1], group.frequencies)]
+        contacts.append(replace(stands, errors=np.array(errors, dtype=np.float64).reshape(-1, 3)))
     loads: list[HarmonicLoad] = [
         load for load in system.harmonic_loads if load.frequency == 0.0 or _among(load.frequency, group.frequencies)
     ]
@@ -303,7 +303,7 @@ def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
 
 
 def _rest_position(linear: CoupledSystem) -> FloatArray:
-    """q0, shape (n,): under the constant load, all meshes linear; zero in motions that nothing resists."""
+    """Rest position q0, shape (n,), under the constant load, all meshes linear; zero in rigid-body motions."""
     from coupling.statics.static_equilibrium import static_equilibrium
 
     still = tuple(replace(contact, errors=np.zeros((0, 3))) for contact in linear.contacts)
@@ -311,7 +311,7 @@ def _rest_position(linear: CoupledSystem) -> FloatArray:
 
 
 def _name_of(system: CoupledSystem, group: ExcitationGroup) -> str:
-    """Name of a group, of its excitations."""
+    """Name of a group by its excitations."""
     names = [f"mesh {system.contacts[i].name}" for i in group.meshes]
     rates = [2.0 * np.pi * abs(system.contacts[i].mesh_frequency) for i in group.meshes]
     for frequency in group.frequencies:

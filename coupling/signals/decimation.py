@@ -29,9 +29,9 @@ class Decimation:
     Attributes
     ----------
     factor : int
-        D.
+        Decimation factor D.
     taps : ndarray, shape (2H + 1,)
-        h, symmetric, of sum 1.
+        Taps h of the filter, symmetric, of sum 1.
     """
 
     factor: int
@@ -39,29 +39,29 @@ class Decimation:
 
     @cached_property
     def delay(self) -> int:
-        """H: the first kept value stands for this sample."""
+        """Delay H: number of the sample that the first decimated value stands for."""
         return len(self.taps) // 2
 
     def kept(self, samples: int) -> int:
         """Return the number of values from a record of ``samples`` samples."""
         return max((samples - len(self.taps)) // self.factor + 1, 0)
 
-    def through(self, held: FloatArray, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def through(self, history: FloatArray, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Filter and decimate the next piece of a record.
 
         Parameters
         ----------
-        held : ndarray, shape (p, k)
-            Remainder of the piece before; none at the start of the record, p = 0.
+        history : ndarray, shape (p, k)
+            Remainder of the previous piece; empty (p = 0) at the start of the record.
         samples : ndarray, shape (s, k)
 
         Returns
         -------
         kept : ndarray, shape (m, k)
-        held : ndarray
+        history : ndarray
             Remainder for the next piece.
         """
-        record = np.concatenate([held, samples])
+        record = np.concatenate([history, samples])
         count = self.kept(len(record))
         if not count:
             return record[:0], record
@@ -83,7 +83,7 @@ def decimation(factor: int, band: float) -> Decimation:
     Parameters
     ----------
     factor : int
-        Samples for one of the result; 1 changes nothing.
+        Number of samples for one decimated value; 1 changes nothing.
     band : float
         Upper end of the band, as a part of the decimated sampling rate; below 1/2.
 
@@ -100,6 +100,6 @@ def decimation(factor: int, band: float) -> Decimation:
         return Decimation(1, np.ones(1))
     transition = 2.0 * math.pi * (1.0 - 2.0 * band) / factor
     half = math.ceil((_REJECTION - 7.95) / (2.285 * transition) / 2.0)
-    # Not scipy.signal.firwin, which is the same: that import takes longer than a short transient.
+    # scipy.signal.firwin gives the same, but its import takes longer than a short transient.
     taps = np.sinc(np.arange(-half, half + 1) / factor) * np.kaiser(2 * half + 1, 0.1102 * (_REJECTION - 8.7))
     return Decimation(factor, taps / taps.sum())

@@ -19,7 +19,7 @@ from coupling.linear.excitation_orders import excitation_lines
 
 LineKind = Literal["mean", "mesh", "shaft", "bearing", "sideband", "mode", "other"]
 
-_SHAFT_ORDERS = 4  # that take precedence over a sideband of the same frequency
+_SHAFT_ORDERS = 4  # highest shaft order that takes precedence over a sideband of the same frequency
 _SIDEBANDS = 4
 _ELEMENT_PASSES = 4
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
@@ -34,11 +34,11 @@ class LineName:
     kind : str
         ``mean``, ``mesh``, ``shaft``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
-        Such as ``1× pinion -> wheel``, several joined by commas where they coincide.
+        Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas.
     order : float
         Cycles per revolution of the leading shaft.
     mode : int or None
-        Of the coupled modes, the nearest one, where the line lies within two half-power widths of it.
+        Number of the nearest coupled mode, where the line lies within two half-power widths of it.
     """
 
     kind: LineKind
@@ -56,7 +56,7 @@ def line_names(
     ----------
     machine : CoupledMachine
     frequencies : sequence of float
-        [Hz].
+        Frequencies [Hz].
     tolerance : float
         Largest distance of a line from the frequency of its cause [Hz]: a small part of the spacing where the record
         holds whole periods, half of it otherwise.
@@ -82,12 +82,12 @@ def line_names(
         sidebands=_SIDEBANDS,
         element_passes=range(1, _ELEMENT_PASSES + 1),
     )
-    found = []
+    line_name_list = []
     for frequency in frequencies:
         order = frequency / shaft_frequency
         mode = _near(modes, frequency, tolerance)
         if frequency <= 0.5 * tolerance:
-            found.append(LineName("mean", "mean", order, None))
+            line_name_list.append(LineName("mean", "mean", order, None))
             continue
         names = {
             kind: [
@@ -100,18 +100,18 @@ def line_names(
         kind = next((kind for kind in names if names[kind]), None)
         if kind is not None:
             text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
-            found.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
+            line_name_list.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
         elif whole := _whole_order(machine, frequency, tolerance):
-            found.append(LineName("shaft", whole, order, mode))
+            line_name_list.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:
-            found.append(LineName("mode", _label(modes, mode), order, mode))
+            line_name_list.append(LineName("mode", _label(modes, mode), order, mode))
         else:
-            found.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
-    return found
+            line_name_list.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
+    return line_name_list
 
 
 def _label(modes: CoupledModes, mode: int) -> str:
-    """Kind and place of a mode, once where they are one word."""
+    """Kind and place of a mode, in one word where they are equal."""
     kind, place = modes.kinds[mode], modes.where[mode]
     return f"{kind} mode" if place in ("", kind) else f"{kind} mode of {place}"
 
@@ -136,10 +136,13 @@ def _nearest(names: list[str]) -> list[str]:
 
 def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
     """Return a multiple of a shaft's speed, the slowest multiple first."""
-    found = []
+    orders = []
     for name, speed in machine.speeds.items():
-        each = abs(speed) / (2.0 * np.pi)
+        rotation_frequency = abs(speed) / (2.0 * np.pi)
         # Every line is near some multiple of a very slow shaft.
-        if each > 2.5 * tolerance and abs(frequency - round(frequency / each) * each) <= tolerance:
-            found.append((round(frequency / each), f"{round(frequency / each)}× {name}"))
-    return min(found)[1] if found else None
+        if (
+            rotation_frequency > 2.5 * tolerance
+            and abs(frequency - round(frequency / rotation_frequency) * rotation_frequency) <= tolerance
+        ):
+            orders.append((round(frequency / rotation_frequency), f"{round(frequency / rotation_frequency)}× {name}"))
+    return min(orders)[1] if orders else None

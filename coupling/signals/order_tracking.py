@@ -20,7 +20,7 @@ from coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, line
 
 FloatArray = npt.NDArray[np.float64]
 
-_MOST_SAMPLES = 50_000_000  # by angle
+_MOST_SAMPLES = 50_000_000  # largest number of samples by angle
 _DEGREE = 5
 _BAND = 0.4  # orders that an anti-aliasing filter passes, over the samples per revolution
 
@@ -32,10 +32,10 @@ class AngleSignal:
     Attributes
     ----------
     turns : ndarray, shape (s,)
-        Revolutions since t = 0, beginning with a whole one.
+        Revolutions since t = 0, beginning with a whole number.
     times : ndarray, shape (s,)
         [s].
-    speeds : ndarray, shape (s,)
+    Times [s].
         Revolutions per second [Hz].
     values : ndarray, shape (..., s)
     per_turn : int
@@ -63,7 +63,7 @@ def resample_by_angle(
     ----------
     signal : ndarray, shape (..., s)
     times : ndarray, shape (s,)
-        [s], evenly spaced, s at least 6.
+        Times [s], evenly spaced, s at least 6.
     turning : SpeedProfile
         Speed of the machine over time, relative to the nominal one.
     turns_per_second : float
@@ -143,7 +143,7 @@ class OrderMap:
     Attributes
     ----------
     times : ndarray, shape (w,)
-        Of the middle turn [s].
+        Time of the middle of each window [s].
     speeds : ndarray, shape (w,)
         Mean speed of the leading shaft over each window [Hz].
     orders : ndarray, shape (m,)

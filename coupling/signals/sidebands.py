@@ -6,8 +6,8 @@ a = m cos(Ωt + α) and b = β cos(Ωt + γ), has the lines C u at w + Ω and C 
 
     m = |u + l*|    and    β = |u - l*|,
 
-the former exactly for a pure modulation of amplitude, the latter to first order in β (exactly 2 J₁(β)/J₀(β)); see
-Randall, *Vibration-based Condition Monitoring*, 2011.
+m exactly for a pure modulation of amplitude, β to first order (exactly 2 J₁(β)/J₀(β)); see Randall, *Vibration-based
+Condition Monitoring*, 2011.
 """
 
 from collections.abc import Sequence
@@ -31,15 +31,15 @@ class Sideband:
     carrier : float
         Frequency [Hz].
     number : int
-        1 for the lines next to the carrier, at the distance of the modulating frequency; 2 for those at twice that.
+        Number of the pair: n for the lines at n times the modulating frequency from the carrier.
     distance : float
-        From the carrier [Hz].
+        Distance from the carrier [Hz].
     carrier_amplitude, lower, upper : float
         Peak amplitudes in the signal's unit.
     amplitude_modulation : float
-        m, a part of the carrier; NaN without one.
+        Amplitude modulation m, relative to the carrier; NaN without a carrier.
     phase_modulation : float
-        β [rad].
+        Phase modulation β [rad].
     """
 
     carrier: float
@@ -73,9 +73,9 @@ def sidebands(
     modulating : float
         Frequency of a shaft [Hz].
     count : int
-        Pairs for each carrier. Those that would reach 0 Hz or half the sampling rate are left out.
+        Number of pairs for each carrier. Pairs that would reach 0 Hz or half the sampling rate are left out.
     window : {"uniform", "hann"}
-        Uniform where the record holds whole periods of all these lines.
+        Window of the spectrum; uniform where the record holds whole periods of all these lines.
 
     Raises
     ------
@@ -95,11 +95,11 @@ def sidebands(
         if carrier - number * modulating > 0.0 and carrier + number * modulating < 0.5 / interval
     ]
     wanted = sorted({carrier + sign * n * modulating for carrier, n in places for sign in (-1, 0, 1)})
-    found = dict(zip(wanted, lines_at(signal, interval, np.array(wanted), window).tolist(), strict=True))
+    amplitudes = dict(zip(wanted, lines_at(signal, interval, np.array(wanted), window).tolist(), strict=True))
     result = []
     for carrier, number in places:
-        middle = found[carrier]
-        lower, upper = found[carrier - number * modulating], found[carrier + number * modulating]
+        middle = amplitudes[carrier]
+        lower, upper = amplitudes[carrier - number * modulating], amplitudes[carrier + number * modulating]
         below, above = (complex(np.nan, np.nan),) * 2 if middle == 0.0 else (lower / middle, upper / middle)
         result.append(
             Sideband(

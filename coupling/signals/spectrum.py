@@ -23,11 +23,11 @@ from coupling.errors import CouplingError
 FloatArray = npt.NDArray[np.float64]
 
 ACCELERATION_REFERENCE = 1e-6
-"""Of vibratory acceleration levels [m/s²], ISO 1683."""
+"""Reference of vibratory acceleration levels [m/s²], ISO 1683."""
 ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
-_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # of the window, over the spacing of lines
+_NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # bandwidth of the window over the spacing of lines
 
 
 def rms_of_peak(amplitude: npt.ArrayLike) -> FloatArray:
@@ -77,12 +77,12 @@ class Spectrum:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        [Hz].
+        Frequencies [Hz].
     amplitude : ndarray, shape (..., m)
         Peak amplitude of each line, in the signal's unit: a sine a·sin(2πft) of whole periods in the record has
         the line a. The line at 0 Hz is the mean.
     phase : ndarray, shape (..., m)
-        Of the cosine, at the start of the record [rad].
+        Phase of the cosine at the start of the record [rad].
     window : {"uniform", "hann"}
     averages : int
         Number of averaged stretches of the record, see :func:`averaged_spectrum`.
@@ -101,7 +101,7 @@ class Spectrum:
 
     @property
     def spacing(self) -> float:
-        """Between lines [Hz]: the inverse of the record's length."""
+        """Spacing of the lines [Hz]: the inverse of the record's length."""
         return float(self.frequencies[1]) if self.frequencies.size > 1 else 0.0
 
     def rms(self, limit: float) -> FloatArray:
@@ -141,9 +141,9 @@ def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: 
     Parameters
     ----------
     stretches : iterable of ndarray, shape (..., s)
-        At least one, all of the same shape.
+        Stretches of the signal, at least one, all of the same shape.
     interval, window
-        As for :func:`amplitude_spectrum`, of which this is the mean.
+        See :func:`amplitude_spectrum`.
     """
     count = samples = 0
     together, power = np.zeros(0, dtype=np.complex128), np.zeros(0)
@@ -192,7 +192,7 @@ def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, windo
     interval : float
         Between samples [s].
     frequencies : ndarray, shape (f,)
-        [Hz], above 0 and below half the sampling rate.
+        Frequencies [Hz], above 0 and below half the sampling rate.
     window : {"uniform", "hann"}
     """
     count = signal.shape[-1]
@@ -214,9 +214,9 @@ class SignalParts:
     Attributes
     ----------
     mean : ndarray
-        The d.c. part.
+        Mean, the d.c. part.
     rms : ndarray
-        Of the a.c. part.
+        Root mean square of the a.c. part.
     peak : ndarray
         Largest departure from the mean.
     """
@@ -249,13 +249,13 @@ def spectrum_peaks(
     Parameters
     ----------
     spectrum : Spectrum
-        Of one signal.
+        Spectrum of one signal.
     count : int
         Largest number of peaks.
     above, limit : float
-        Between these frequencies [Hz].
+        Range of frequencies [Hz].
     floor : float
-        Only lines above this part of the highest.
+        Least height of a peak, relative to the highest line.
     """
     a, f = spectrum.amplitude, spectrum.frequencies
     inner = np.arange(1, len(a) - 1)
@@ -272,9 +272,9 @@ class PowerDensity:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        [Hz], without 0.
+        Frequencies [Hz], without 0.
     density : ndarray, shape (..., m)
-        Square of the signal's unit by Hz: its integral is the mean square.
+        Power density in the signal's unit squared per Hz: its integral is the mean square.
     stretches : int
         Number of averaged stretches.
     window : {"uniform", "hann"}
@@ -308,9 +308,9 @@ def power_density(
     interval : float
         Between samples [s].
     length : int
-        Samples of a stretch, at most s.
+        Number of samples of a stretch, at most s.
     overlap : float
-        Of neighbouring stretches, a part of their length from 0 to below 1; half of it wastes nothing under Hann's
+        Overlap of neighbouring stretches over their length, from 0 to below 1; half of it wastes nothing under Hann's
         window.
     window : {"uniform", "hann"}
 
@@ -337,7 +337,7 @@ class Spectrogram:
     times : ndarray, shape (t,)
         Middles of the stretches [s].
     frequencies : ndarray, shape (m,)
-        [Hz].
+        Frequencies [Hz].
     amplitude : ndarray, shape (t, m)
         Peak amplitudes in the signal's unit; the mean of the stretch at 0 Hz.
     window : {"uniform", "hann"}
@@ -360,8 +360,8 @@ def spectrogram(
     interval : float
         Between samples [s].
     length, step : int
-        Samples of a stretch, and from the start of one to the next. Frequencies are told apart by 1 / (length
-        interval), and the speed should change little meanwhile.
+        Number of samples of a stretch, and from the start of one to the next. The frequency resolution is
+        1 / (length interval); the speed should change little within a stretch.
     start : float
         Time of the first sample [s].
     window : {"uniform", "hann"}

@@ -25,8 +25,8 @@ from coupling.signals.spectrum import Spectrum
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_PASSES = 4  # in which the leakage of other tones is taken away
-_LEAKING = 200  # highest tones whose leakage is
+_PASSES = 4  # number of passes that subtract the leakage of other tones
+_LEAKING = 200  # number of the highest tones whose leakage is subtracted
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Tones:
     Attributes
     ----------
     frequencies : ndarray, shape (t,)
-        [Hz], ascending.
+        Frequencies [Hz], ascending.
     amplitudes : ndarray of complex, shape (n, t)
-        Of each signal in its unit: it is the sum of Re a e^{2πift}.
+        Amplitudes a in the unit of each signal, which is the sum of Re a e^{2πift}.
     """
 
     frequencies: FloatArray
@@ -53,9 +53,9 @@ def hann_tones(spectrum: Spectrum, weights: npt.ArrayLike, floor: float = 1e-6) 
     Parameters
     ----------
     spectrum : Spectrum
-        Of the signals, shape (n, m), under Hann's window.
+        Spectrum of the signals, shape (n, m), under Hann's window.
     weights : array_like, shape (n,)
-        Of each signal's amplitude in the sum; 0 for one that is of another unit.
+        Weight of each signal's amplitude in the sum; 0 for a signal of another unit.
     floor : float
         Part of the highest tone below which a maximum is rounding.
 
@@ -66,23 +66,23 @@ def hann_tones(spectrum: Spectrum, weights: npt.ArrayLike, floor: float = 1e-6) 
     """
     if spectrum.window != "hann":
         raise CouplingError(f"tones of a spectrum under the window {spectrum.window!r}; expected 'hann'")
-    lines, own = spectrum.lines, np.asarray(weights, dtype=np.float64)
-    size = _size(lines, own)
+    lines, weight = spectrum.lines, np.asarray(weights, dtype=np.float64)
+    size = _size(lines, weight)
     inner = np.arange(2, len(size) - 1)  # below are the mean and its leakage
     peaks = inner[(size[inner] >= size[inner - 1]) & (size[inner] > size[inner + 1])]
     peaks = peaks[size[peaks] > floor * size[inner].max(initial=0.0)]
     low = np.where(size[peaks + 1] >= size[peaks - 1], peaks, peaks - 1)
     pair = lines[:, low], lines[:, low + 1]
-    offset, amplitudes = _interpolated(*pair, own)
+    offset, amplitudes = _interpolated(*pair, weight)
     for _ in range(_PASSES):
-        loud = np.argsort(-_size(amplitudes, own), kind="stable")[:_LEAKING]
+        loud = np.argsort(-_size(amplitudes, weight), kind="stable")[:_LEAKING]
         distance = low[:, None] - (low + offset)[loud]
         itself = np.arange(len(low))[:, None] == loud
         lower, upper = (
-            held - amplitudes[:, loud] @ np.where(itself, 0.0, _hann(distance + side)).T
-            for held, side in zip(pair, (0.0, 1.0), strict=True)
+            raw - amplitudes[:, loud] @ np.where(itself, 0.0, _hann(distance + side)).T
+            for raw, side in zip(pair, (0.0, 1.0), strict=True)
         )
-        offset, amplitudes = _interpolated(lower, upper, own)
+        offset, amplitudes = _interpolated(lower, upper, weight)
     return Tones(spectrum.spacing * (low + offset), amplitudes)
 
 
@@ -96,12 +96,12 @@ def _interpolated(lower: ComplexArray, upper: ComplexArray, weights: FloatArray)
     below, above = _size(lower, weights), _size(upper, weights)
     ratio = above / np.maximum(below, np.finfo(float).tiny)
     offset = np.clip((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 1.0)
-    # By least squares over both lines, so that neither counts where it is small.
+    # Least squares over both lines, so that a small line counts little.
     low, high = _hann(-offset), _hann(1.0 - offset)
     return offset, (low.conj() * lower + high.conj() * upper) / (np.abs(low) ** 2 + np.abs(high) ** 2)
 
 
 def _hann(distance: FloatArray) -> ComplexArray:
-    """Line of a tone of amplitude 1 at some line spacings above it, h(x)."""
+    """Value h(x) of the line x spacings above a tone of amplitude 1."""
     height = np.sinc(distance) + 0.5 * (np.sinc(distance - 1.0) + np.sinc(distance + 1.0))
     return np.asarray(height * np.exp(-1j * np.pi * distance))

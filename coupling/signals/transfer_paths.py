@@ -34,7 +34,7 @@ class SensorPaths:
     sensor : str
     bearings : tuple of str
     table : ndarray of complex, shape (l, b, m + 1)
-        By each bearing through each housing mode, and last through the residual compliance.
+        Contribution of each bearing through each housing mode, and last through the residual compliance.
     """
 
     sensor: str
@@ -68,9 +68,9 @@ class HousingPaths:
     bearings : tuple of str
         Bearings on the housing, b of them.
     modes : int
-        m: number of the n coordinates that are modes; the others are residual compliance.
+        Number m of the n coordinates that are modes; the others are residual compliance.
     acceleration : ndarray of complex, shape (l, b, n)
-        Of the housing's coordinates by each bearing's force.
+        Acceleration of the housing's coordinates by each bearing's force.
     sensors : mapping of str to ndarray, shape (n,)
         Rows of the sensors.
     """
@@ -99,7 +99,8 @@ class HousingPaths:
 def mode_parts(housing: HousingComponent, sensor: str, modal: ComplexArray, lines: ComplexArray) -> ComplexArray:
     """Contributions of recorded housing modes to a sensor's lines, free vibration included, shape (l, m + 1).
 
-    The last is the residual compliance, the line less its modes. The sum is the line.
+    The last part is that of the residual compliance: the line less the parts of the modes. The parts add up to the
+    line.
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapp
     Parameters
     ----------
     machine : CoupledMachine
-        With a housing.
+        Machine with a housing.
     frequencies : ndarray, shape (l,)
         w [rad/s], above 0.
     forces : mapping of str to ndarray of complex, shape (l, d)
@@ -140,16 +141,16 @@ def housing_paths(machine: CoupledMachine, frequencies: FloatArray, forces: Mapp
     housing = machine.housing
     names = [component.name for component in machine.system.components]
     start = sum(part.size for part in machine.system.components[: names.index(housing.name)])
-    own = slice(start, start + housing.size)
+    coordinates = slice(start, start + housing.size)
     loads, bearings = [], []
     for connector in machine.system.linear:
-        directions = connector.directions[own]
+        directions = connector.directions[coordinates]
         if not np.any(directions):
             continue
         shape = (len(frequencies), directions.shape[1])
         if connector.name not in forces or forces[connector.name].shape != shape:
-            given = forces[connector.name].shape if connector.name in forces else "none"
-            raise CouplingError(f"{connector.name}: forces of shape {given}; expected {shape}")
+            given_shape = forces[connector.name].shape if connector.name in forces else "none"
+            raise CouplingError(f"{connector.name}: forces of shape {given_shape}; expected {shape}")
         loads.append(-forces[connector.name] @ directions.T)
         bearings.append(connector.name)
     pushing = np.array(loads).reshape(len(bearings), len(frequencies), housing.size).transpose(1, 2, 0)

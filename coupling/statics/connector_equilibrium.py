@@ -36,14 +36,14 @@ _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
-_ROUNDED = 1e-11  # part of the deflections below which steps are whole, and end where their error hardly falls
-_FALLS = 0.5  # part of the error that a step beyond rounding leaves at most
+_ROUNDED = 1e-11  # error over the deflections below which steps are not halved, and end where it hardly falls
+_FALLS = 0.5  # largest part of the error that a step leaves, unless the error is rounding
 _NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class _Imbalance:
-    """Deflections less those of the motions that their forces cause, over `size`; derivative and norm."""
+    """Deflections minus those under the forces that they cause, over `size`; derivative and norm."""
 
     difference: FloatArray
     slope: FloatArray
@@ -57,18 +57,18 @@ class ConnectedStructure:
     Attributes
     ----------
     stiffness : ndarray, shape (n, n)
-        K, without the connectors.
+        Stiffness K without the connectors.
     load : ndarray, shape (n,)
-        f.
+        Loads f.
     directions : ndarray, shape (n, d)
-        E, of all connectors one beside the other.
+        Directions E of all connectors, side by side.
     laws : sequence of ConnectorLaw
     parts : sequence of slice
         Deflections of each law among all d.
     nominal : ndarray, shape (d, d)
-        k₀.
+        Nominal stiffness k₀.
     offset : ndarray, shape (d,)
-        z₀.
+        Offset z₀.
     """
 
     stiffness: FloatArray
@@ -82,14 +82,14 @@ class ConnectedStructure:
     def equilibrium(self) -> tuple[FloatArray, int]:
         """Coordinates x in equilibrium, as nearly as rounding allows, shape (n,), and the number of steps.
 
-        The balance of forces is for the caller to prove: without an equilibrium this is where the search ended.
+        The caller has to prove the balance of forces: without an equilibrium this is the end of the search.
         """
-        # The scale of motions under the loads: the first radius of the search.
+        # The first radius of the search is the size of the motions under the loads.
         radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
-        found = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
-        z, steps = self._polished(self._start + self._spread @ found.place)
+        minimum = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
+        z, steps = self._polished(self._start + self._spread @ minimum.place)
         x, _ = self._motions(z)
-        return x, found.iterations + steps
+        return x, minimum.iterations + steps
 
     @cached_property
     def _held(self) -> FloatArray:
@@ -100,7 +100,7 @@ class ConnectedStructure:
         return linalg.lu_factor(self._held)
 
     def _answer_to(self, loads: FloatArray) -> FloatArray:
-        """K₀⁻¹ times loads; refined, so that a short span's stiffness costs a soft bearing no digits."""
+        """Solve K₀ x = loads with iterative refinement, as short spans are far stiffer than soft bearings."""
         x = linalg.lu_solve(self._factor, loads)
         for _ in range(_REFINEMENTS):
             x = x + linalg.lu_solve(self._factor, loads - self._held @ x)
@@ -108,7 +108,7 @@ class ConnectedStructure:
 
     @cached_property
     def _shift(self) -> FloatArray:
-        """k₀ z₀."""
+        """Force k₀ z₀ of the offsets, (d,)."""
         return np.asarray(self.nominal @ self.offset)
 
     @cached_property
@@ -118,20 +118,20 @@ class ConnectedStructure:
 
     @cached_property
     def _start(self) -> FloatArray:
-        """z_f."""
+        """Deflections z_f under the nominal laws, (d,)."""
         return np.asarray(self.directions.T @ self._under_nominal_laws)
 
     @cached_property
     def _compliance(self) -> FloatArray:
-        """C."""
+        """Compliance C between the connectors, (d, d)."""
         return np.asarray(self.directions.T @ self._answer_to(self.directions))
 
     @cached_property
     def _spread(self) -> FloatArray:
-        """S."""
+        """Factor S of the compliance, C = S Sᵀ."""
         values, vectors = np.linalg.eigh(0.5 * (self._compliance + self._compliance.T))
-        kept = values > _NO_COMPLIANCE * values[-1]
-        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+        compliant = values > _NO_COMPLIANCE * values[-1]
+        return np.asarray(vectors[:, compliant] * np.sqrt(values[compliant]))
 
     @cached_property
     def _size(self) -> FloatArray:
@@ -140,18 +140,18 @@ class ConnectedStructure:
         return np.where(size > 0.0, size, 1.0)
 
     def _beyond_nominal(self, z: FloatArray, laws: Sequence[ConnectorLaw]) -> tuple[float, FloatArray, FloatArray]:
-        """Energy, force and tangent of the laws at deflections, beyond the nominal ones."""
+        """Energy, force and tangent of the laws at deflections, minus those of the nominal laws."""
         energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
         for part, law in zip(self.parts, laws, strict=True):
-            stored, own, slope = law.at(z[part])
-            energy, force[part], tangent[part, part] = energy + stored, own, slope
+            stored, law_force, slope = law.at(z[part])
+            energy, force[part], tangent[part, part] = energy + stored, law_force, slope
         linear = self.nominal @ z - self._shift
         stored = 0.5 * float(z @ (self.nominal @ z)) - float(self._shift @ z)
         return energy - stored, force - linear, tangent - self.nominal
 
     @cached_property
     def _conservative_laws(self) -> list[ConnectorLaw]:
-        # Forces of an unsymmetric stiffness have no energy; its nominal one stands for it until Newton's method.
+        # An unsymmetric stiffness has no energy; its nominal stiffness replaces it until Newton's method.
         return [
             LinearLaw(self.nominal[part, part]) if isinstance(law, LinearLaw) else law
             for part, law in zip(self.parts, self.laws, strict=True)
@@ -174,7 +174,7 @@ class ConnectedStructure:
     def _motions(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Coordinates under the loads and the connectors' forces at deflections z, and the tangents beyond nominal."""
         _, force, tangent = self._beyond_nominal(z, self.laws)
-        # In one solution, as the difference of two large ones would lose digits.
+        # One solution, as the difference of two large ones would lose digits.
         return self._answer_to(self.load + self.directions @ (self._shift - force)), tangent
 
     def _imbalance(self, z: FloatArray) -> _Imbalance:
@@ -185,17 +185,17 @@ class ConnectedStructure:
 
     def _polished(self, z: FloatArray) -> tuple[FloatArray, int]:
         """Newton's method with halved steps, to rounding: deflections and the number of steps."""
-        here, steps = self._imbalance(z), 0
+        imbalance, steps = self._imbalance(z), 0
         for _ in range(_NEWTON_STEPS):
-            before = here.norm
-            step = self._size * np.linalg.lstsq(here.slope, here.difference, rcond=None)[0]
+            before = imbalance.norm
+            step = self._size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
             rounded = before <= _ROUNDED * float(np.linalg.norm(z / self._size))
             for halving in range(1 if rounded else _HALVINGS):
                 nearer = z - 0.5**halving * step
                 trial = self._imbalance(nearer)
                 if trial.norm < before:
-                    z, here, steps = nearer, trial, steps + 1
+                    z, imbalance, steps = nearer, trial, steps + 1
                     break
-            if here.norm == before or (rounded and here.norm > _FALLS * before):
+            if imbalance.norm == before or (rounded and imbalance.norm > _FALLS * before):
                 break
         return z, steps

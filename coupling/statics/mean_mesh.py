@@ -1,9 +1,9 @@
 """Mean mesh stiffness of each contact under its mean mesh force.
 
 Over a mesh period the number of loaded teeth changes, while the mean force of a contact stays that of the torques. So a
-contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the period,
-and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the torques alone
-give F; where meshes share a torque, their stiffness and deviations divide it.
+contact under its mean force F is replaced by its mean curve δ̄(F), the loaded transmission error's mean over the
+period, and the machine rests where K q + Σ d F = f with dᵀ q = δ̄(F). In a train of gears one after the other the
+torques alone give F; where meshes share a torque, their stiffness and deviations divide it.
 
 Linear analyses take the tooth contacts as mesh stiffness and damping about the mean load, or at an instant
 (`ContactState`).
@@ -22,7 +22,7 @@ from coupling.statics.static_equilibrium import load_balances, static_equilibriu
 
 FloatArray = npt.NDArray[np.float64]
 
-_POINTS = 200  # phases of a mesh period, beside its events
+_POINTS = 200  # number of phases of a mesh period, in addition to its events
 _CONVERGED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
 _ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
 _LOOSE = 1e-12  # part of the largest stiffness below which a stiffness is zero
@@ -42,7 +42,7 @@ class MeanMesh:
     deflection : float
         Mean loaded transmission error δ̄ [m].
     secant : float
-        dF/dδ̄ [N/m]: the harmonic mean of the tangent.
+        Derivative dF/dδ̄ [N/m]: the harmonic mean of the tangent.
     """
 
     force: float
@@ -61,7 +61,7 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
     ----------
     contact : ToothContact
     force : float
-        Along the line of action, above 0 [N].
+        Force along the line of action, above 0 [N].
 
     Raises
     ------
@@ -79,26 +79,26 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
 def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     """Mean mesh of each contact under the constant load; None without a mean force or where the load cannot balance.
 
-    Newton's method on the contacts' mean curves, from their stiffness without load. A contact that the mean load opens
-    while others carry it has no force and no stiffness.
+    Newton's method is applied to the contacts' mean curves, starting with their stiffness without load. A contact that
+    the mean load opens while others carry the load has no force and no stiffness.
     """
     without_force: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
     if not driving or not np.any(system.load) or not load_balances(system):
         return without_force
     rigid, stiffest = system.rigid_body_motions
-    held = system.stiffness + stiffest * rigid @ rigid.T
+    stiffness_held = system.stiffness + stiffest * rigid @ rigid.T
     directions = system.contact_directions[:, driving]
     laws = [system.contacts[number].contact for number in driving]
     stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
     before = np.full(len(driving), np.nan)
     loaded = np.ones(len(driving), dtype=bool)
-    found: list[MeanMesh | None] = [None] * len(driving)
+    meshes: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
-        matrix = held + (directions * (stiffness * loaded)) @ directions.T
+        matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.T
         if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
-            # The mean load parts flanks and without_force else holds the train.
+            # The mean load opens flanks, and nothing else holds the train.
             return without_force
         q = np.linalg.solve(matrix, system.load + directions @ (stiffness * loaded * offset))
         force = stiffness * (directions.T @ q - offset)
@@ -110,19 +110,19 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
         before, loaded = force, ~parted
         for number, law in enumerate(laws):
             if force[number] <= rounding[number]:
-                found[number] = _PARTED if parted[number] else None
+                meshes[number] = _PARTED if parted[number] else None
                 continue
             try:
                 mean = mean_mesh(law, float(force[number]))
             except GearError:
-                found[number] = None
+                meshes[number] = None
                 continue
-            found[number] = mean
+            meshes[number] = mean
             stiffness[number] = mean.secant
             clearance = system.contacts[driving[number]].clearance
             offset[number] = clearance + mean.deflection - mean.force / mean.secant
-    for number, one in zip(driving, found, strict=True):
-        without_force[number] = one
+    for number, mesh in zip(driving, meshes, strict=True):
+        without_force[number] = mesh
     return without_force
 
 
@@ -133,9 +133,9 @@ class ContactState:
     Attributes
     ----------
     stiffness : ndarray, shape (c,)
-        Of each contact of the system, drive flanks and back flanks [N/m]; 0 without contact.
+        Stiffness of each contact of the system, drive flanks and back flanks [N/m]; 0 without contact.
     damping : ndarray, shape (c,)
-        [N s/m].
+        Damping of each contact [N s/m].
     force : ndarray, shape (c,), or None
         Mean force about which the contact is linearised [N]; 0 for the stiffness without load.
     """
@@ -188,7 +188,7 @@ def contact_at(system: CoupledSystem, time: float) -> ContactState:
         compression = float(contact.direction @ q) - contact.runout(time) - contact.clearance
         law = contact.contact.kernel_arguments
         force, *tangent = tooth_force(contact.phase_after(time), compression, 0.0, *law)[:3]
-        # Of a contact that is held apart the law gives the coefficient of its losses, which act on no force.
+        # For open flanks the law returns the coefficient of losses, which is no damping force.
         tangents.append(tangent if force > 0.0 else [0.0, 0.0])
     stiffness, damping = np.array(tangents).reshape(-1, 2).T
     return ContactState(stiffness, damping)

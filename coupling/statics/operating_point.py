@@ -47,7 +47,7 @@ FloatArray = npt.NDArray[np.float64]
 RESIDUAL_BAR = 1e-9
 """Largest force out of balance, relative to the largest load, beyond the rounding of elastic forces."""
 
-_ROUNDINGS = 8.0  # units of rounding of the terms of an elastic force
+_ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its terms
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
 _FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
@@ -63,9 +63,9 @@ class ShaftDeflection:
     ----------
     part : StaticShaftPart
     displacement : ndarray, shape (6 N,)
-        Of the nodes: along and about x, y, z [m, rad].
+        Displacement of the nodes along and about x, y, z [m, rad].
     gravity : tuple of float or None
-        Under which it stands [m/s²].
+        Acceleration of free fall [m/s²].
     """
 
     part: StaticShaftPart
@@ -90,15 +90,15 @@ class BearingLoad:
     ----------
     mounted : MountedBearing
     force : ndarray, shape (5,)
-        Of the shaft on the seat [N, N m].
+        Force of the shaft on the seat [N, N m].
     deflection : ndarray, shape (5,)
-        Of the shaft against the seat [m, rad].
+        Deflection of the shaft relative to the seat [m, rad].
     seat_motion : ndarray, shape (5,)
-        Of the seat or pedestal [m, rad]; zero on rigid ground.
+        Motion of the seat or pedestal [m, rad]; zero on rigid ground.
     stiffness : ndarray, shape (5, 5)
-        Tangent: N/m among x, y, z; N/rad and N m/m between these and rotations; N m/rad among rotations.
+        Tangent stiffness: N/m among x, y, z; N/rad and N m/m between these and rotations; N m/rad among rotations.
     rolling : RollingState or None
-        Of a rolling bearing: loads, angles and pressures of its elements.
+        Loads, angles and pressures of the elements of a rolling bearing.
     """
 
     mounted: MountedBearing
@@ -120,7 +120,7 @@ class BearingLoad:
 
     @property
     def linearised(self) -> MountedBearing:
-        """The bearing linearised about its load, where its stiffness is left to that; else as it is.
+        """The bearing linearised about its load where its stiffness follows from that; else the bearing as it is.
 
         Raises
         ------
@@ -129,8 +129,8 @@ class BearingLoad:
         """
         if not self.mounted.needs_load or self.rolling is None:
             return self.mounted
-        given, law = self.mounted.bearing, self.mounted.law
-        bearing = replace(given, stiffness=linearised_bearing(self.rolling, given.name, given.at).stiffness)
+        nominal, law = self.mounted.bearing, self.mounted.law
+        bearing = replace(nominal, stiffness=linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness)
         if isinstance(law, RollingLaw):
             return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
         return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
@@ -156,11 +156,11 @@ class PairLoad:
         Angle between the flanks in the plane of action, open towards +z [rad]: minus the slope of the approach's best
         straight line over the face.
     misalignment_by_cause : dict of str to float
-        Its parts by `CAUSES`, whose sum it is [rad].
+        Parts of the misalignment by `CAUSES`, which add up to it [rad].
     mean : FaceLoad
-        Over the phases of a mesh period.
+        Face load at the phases of a mesh period for the means.
     fine : FaceLoad
-        At 200 phases of it, for the transmission error.
+        Face load at 200 phases of the mesh period, for the transmission error.
     """
 
     pair: StaticPair
@@ -183,13 +183,13 @@ class PairLoad:
 
     @property
     def gap(self) -> FloatArray:
-        """Gap of the flanks over the face by the machine's deflection, its mean taken off [m], shape (s,)."""
+        """Gap of the flanks over the face by the machine's deflection, less its mean [m], shape (s,)."""
         over = self.pair.contact.over_face @ self.approach[:-1]
         return np.asarray(over.mean() - over)
 
     @property
     def station_gap(self) -> tuple[float, ...]:
-        """The same gap at the stations of the face [m], for :attr:`coupling.GearPair.face_gap`."""
+        """Gap of the flanks at the stations of the face, less its mean [m], for :attr:`coupling.GearPair.face_gap`."""
         mean = float(self.pair.contact.face_mean @ self.approach)
         return tuple((mean - self.approach[:-1]).tolist())
 
@@ -200,20 +200,20 @@ class PairLoad:
 
     @cached_property
     def even(self) -> FaceLoad:
-        """Load of the same flanks, if they approached evenly and had no helix modifications, at ``fine.phases``."""
+        """Load of the flanks under an even approach and without helix modifications, at ``fine.phases``."""
         return self.pair.contact.evenly(self.fine.force, self.fine.phases)
 
     @cached_property
     def k_h_beta(self) -> float:
         """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over that of an even approach.
 
-        At the mean torque, without application and dynamic factor, tolerances and running-in.
+        It refers to the mean torque, without application and dynamic factor, tolerances and running-in.
         """
         return face_load_factor(self.fine, self.even)
 
     @property
     def transmission_error(self) -> FloatArray:
-        """Static transmission error under load at ``fine.phases`` [m]: of the teeth and their gaps, without shafts."""
+        """Static transmission error under load at ``fine.phases`` [m], of teeth and gaps without shafts."""
         return self.fine.deflection
 
     @property
@@ -250,7 +250,7 @@ class StaticTangent:
     Attributes
     ----------
     stiffness : ndarray, shape (n, n)
-        Derivative of the forces by the coordinates, tangents of bearings and flanks included; free motions are held.
+        Derivative of the forces by the coordinates, tangents of bearings and flanks included; free motions are fixed.
     shafts : mapping of str to slice
         Coordinates of each shaft, six at each station.
     housing : slice
@@ -283,7 +283,7 @@ class OperatingPoint:
         Largest force out of balance over the largest load; moments over that load times the longest shaft. Beyond the
         rounding of the elastic forces it is at most `RESIDUAL_BAR`.
     iterations : int
-        Of the trust region and Newton's method.
+        Number of steps of the trust region and Newton's method.
     free : tuple of str
         Motions that nothing holds and no load drives, in words.
     tangent : StaticTangent
@@ -312,12 +312,12 @@ class OperatingPoint:
     def gear_forces(self, number: int) -> tuple[FloatArray, FloatArray]:
         """Return the forces of a pair's flanks on the shafts of driver and driven gear, (6,) each.
 
-        Along x, y, z [N] and about them [N m], at the middle of the common face. The thrust acts at the pitch point and
-        the load of an uneven face off its middle, so that both have moments.
+        Components are along x, y, z [N] and about them [N m], at the middle of the common face. The thrust acts at the
+        pitch point, and the load of an uneven face off its middle, so that both have moments.
         """
         pair = self.pairs[number]
         _, loads, _ = FaceContactLaw(pair.pair.contact, pair.pair.clearance).at(pair.approach)
-        found = []
+        forces = []
         for gear in (pair.pair.driver, pair.pair.driven):
             part = self.shaft(gear.shaft).part
             nodes = -(self.tangent.pairs[number] @ loads)[self.tangent.shafts[gear.shaft]].reshape(-1, 6)
@@ -325,8 +325,8 @@ class OperatingPoint:
             whole = nodes.sum(axis=0)
             whole[3] -= float(arm @ nodes[:, 1])
             whole[4] += float(arm @ nodes[:, 0])
-            found.append(whole)
-        return found[0], found[1]
+            forces.append(whole)
+        return forces[0], forces[1]
 
     def bearing(self, name: str) -> BearingLoad:
         """Return the load of the bearing of this name."""
@@ -338,7 +338,7 @@ class OperatingPoint:
         Parameters
         ----------
         unaligned : sequence of str
-            Labels of the pairs whose misalignment has to follow from this point.
+            Labels of the pairs whose misalignment follows from this point.
 
         Raises
         ------
@@ -369,7 +369,7 @@ def solve_operating_point(
     shafts, bearings, pairs
         The static model; :meth:`coupling.Machine.operating_point` makes it.
     housing : HousingComponent or None
-        With its residual modes.
+        Housing with its residual modes.
     torques : sequence of Torque
         Constant ones.
     gravity : sequence of float, optional
@@ -396,13 +396,13 @@ class _StaticModel:
     first : dict of str to int
         First coordinate of each shaft: six of each of its nodes, along and about x, y, z.
     housing_first, pedestal_first : int, dict of str to int
-        That of the housing's modes, and of each pedestal's motion along x and y.
+        First coordinate of the housing's modes, and of each pedestal's motion along x and y.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
-        Without the connectors.
+        Stiffness and load without the connectors.
     laws : list of ConnectorLaw
-        Of bearings, gear pairs and pedestals, in this order.
+        Laws of bearings, gear pairs and pedestals, in this order.
     directions : list of ndarray, shape (n, d)
         Deflections of each connector by the coordinates.
     twists : list of ndarray, shape (n, d)
@@ -433,23 +433,23 @@ class _StaticModel:
         self.housing_first = size
         size += 0 if housing is None else housing.size
         pedestals = {
-            one.mounted.bearing.name: LinearLaw(one.mounted.bearing.pedestal.stiffness)
-            for one in bearings
-            if one.mounted.bearing.pedestal is not None
+            bearing.mounted.bearing.name: LinearLaw(bearing.mounted.bearing.pedestal.stiffness)
+            for bearing in bearings
+            if bearing.mounted.bearing.pedestal is not None
         }
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
         self.size = size + 2 * len(pedestals)
         self.stiffness = self._linear_stiffness()
         self.load = self._loads(torques, forces)
-        self.directions = [self._bearing_directions(one.mounted) for one in bearings]
+        self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.twists = [twist for _, twist in approaches]
-        self.laws: list[ConnectorLaw] = [one.law for one in bearings]
+        self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
-        nominal = [one.nominal for one in bearings]
+        nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
         nominal += [law.nominal for law in pedestals.values()]
         self.nominal: FloatArray = linalg.block_diag(*nominal)
@@ -460,11 +460,11 @@ class _StaticModel:
     def _linear_stiffness(self) -> FloatArray:
         whole = np.zeros((self.size, self.size))
         for part in self.shafts:
-            own = self._own(part.name)
-            whole[own, own] = part.shaft.stiffness
+            rows = self._own(part.name)
+            whole[rows, rows] = part.shaft.stiffness
         if self.housing is not None:
-            own = slice(self.housing_first, self.housing_first + self.housing.size)
-            whole[own, own] = self.housing.stiffness
+            rows = slice(self.housing_first, self.housing_first + self.housing.size)
+            whole[rows, rows] = self.housing.stiffness
         return whole
 
     def _loads(self, torques: Sequence[Torque], forces: Sequence[ShaftForce]) -> FloatArray:
@@ -481,8 +481,8 @@ class _StaticModel:
         if self.housing is not None:
             if self.housing.participation is None:
                 raise CouplingError(f"{self.housing.name}: expected its participation in rigid motions, for its weight")
-            own = slice(self.housing_first, self.housing_first + self.housing.size)
-            load[own] += self.housing.participation[:, :3] @ np.array(self.gravity)
+            rows = slice(self.housing_first, self.housing_first + self.housing.size)
+            load[rows] += self.housing.participation[:, :3] @ np.array(self.gravity)
         return load
 
     def _part(self, shaft: str) -> StaticShaftPart:
@@ -505,8 +505,8 @@ class _StaticModel:
         if mounted.seat is not None:
             assert self.housing is not None
             z = self._part(mounted.rotor).start + mounted.bearing.at
-            own = slice(self.housing_first, self.housing_first + self.housing.size)
-            rows[:, own] = self.housing.seat_motions(mounted.seat, z)
+            columns = slice(self.housing_first, self.housing_first + self.housing.size)
+            rows[:, columns] = self.housing.seat_motions(mounted.seat, z)
         elif mounted.bearing.pedestal is not None:
             first = self.pedestal_first[mounted.bearing.name]
             rows[0, first] = rows[1, first + 1] = 1.0
@@ -518,7 +518,7 @@ class _StaticModel:
     def _pair_directions(self, pair: StaticPair) -> tuple[FloatArray, FloatArray]:
         """Approach of the flanks at the stations of the face, and relative tilt, by all coordinates, (n, j + 1).
 
-        And the part of it that is rotation about z, of the same shape: its slope is the twist over the face.
+        The second array, of the same shape, is the part by rotation about z: its slope is the twist over the face.
         """
         stations = pair.contact.stations
         rows, twist = np.zeros((stations.size + 1, self.size)), np.zeros((stations.size + 1, self.size))
@@ -534,20 +534,20 @@ class _StaticModel:
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
-        """Stiffness that holds the motions which nothing else does, (n, n), and these motions in words.
+        """Stiffness that fixes the motions which no connector holds, (n, n), and these motions in words.
 
         Every motion without elastic energy is a rigid one of the shafts, or one of the housing's modes at rest.
         """
         motions, words = self._rigid_motions()
-        held = motions.T @ self.all_directions
-        whole = held @ self.nominal @ held.T
+        connected = motions.T @ self.all_directions
+        whole = connected @ self.nominal @ connected.T
         whole = 0.5 * (whole + whole.T)
         values, vectors = np.linalg.eigh(whole)
         # Without any connector, every rigid motion is free.
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
-        # A spring as soft as the softest of the others leaves least rounding in the balance of forces.
+        # A spring as soft as the softest connector leaves the least rounding in the balance of forces.
         spring = float(min(values[values > _FREE * stiff], default=stiff))
-        # A row for each free motion, which is any mixture of theirs where several are free.
+        # One row for each free motion; where several are free, rows are any mixture of them.
         free = vectors.T[values <= _FREE * stiff]
         works = free @ motions.T @ self.load
         # Rounding leaves parts of other motions in a free one, which the loads drive as well.
@@ -616,31 +616,33 @@ class _StaticModel:
         residual = self._require_balance(x, extra, deflections, [force for _, force, _ in states], iterations)
         bearings = tuple(
             BearingLoad(
-                one.mounted,
+                bearing.mounted,
                 force,
                 deflection,
-                self.seat_motion(one.mounted) @ x,
+                self.seat_motion(bearing.mounted) @ x,
                 tangent,
-                _rolling_state(one, deflection),
+                _rolling_state(bearing, deflection),
             )
-            for one, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
+            for bearing, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
         )
-        own = slice(self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size))
+        housing_rows = slice(
+            self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size)
+        )
         of_pairs = slice(len(self.bearings), len(self.bearings) + len(self.pairs))
         tangent = StaticTangent(
             self.stiffness
             + extra
             + sum(rows @ slope @ rows.T for rows, (_, _, slope) in zip(self.directions, states, strict=True)),
             {part.name: self._own(part.name) for part in self.shafts},
-            own,
-            {one.mounted.bearing.name: rows for one, rows in zip(self.bearings, self.directions, strict=False)},
+            housing_rows,
+            {bearing.mounted.bearing.name: rows for bearing, rows in zip(self.bearings, self.directions, strict=False)},
             tuple(self.directions[of_pairs]),
         )
         return OperatingPoint(
             tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts),
             bearings,
             self._pair_loads(x, deflections[of_pairs], [loads for _, loads, _ in states[of_pairs]], bearings),
-            None if self.housing is None else x[own],
+            None if self.housing is None else x[housing_rows],
             residual,
             iterations,
             free,
@@ -659,8 +661,8 @@ class _StaticModel:
         residual = self.load - (self.stiffness + extra) @ x
         for rows, force in zip(self.directions, forces, strict=True):
             residual = residual - rows @ force
-        # Elastic forces are differences of large ones where a part is short and stiff: their rounding is no imbalance,
-        # on whatever node it is left.
+        # Where a part is short and stiff, elastic forces are differences of large ones: their rounding, on whatever
+        # node, is no imbalance.
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
         # Without loads the preloads are the scale, also of rows that press each other within a bearing.
         laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
@@ -712,48 +714,48 @@ class _StaticModel:
             for part in self.shafts:
                 on_shaft = (rows @ force)[self._own(part.name)].reshape(-1, 6)
                 largest = max(largest, float(np.abs(on_shaft[:, :3]).max()))
-        found = []
+        imbalances = []
         for part in self.shafts:
             left = residual[self._own(part.name)].reshape(-1, 6)
             moment = float(np.abs(left[:, 3:]).max()) / longest
-            found.append((max(float(np.abs(left[:, :3]).max()), moment), f"shaft {part.name!r}"))
+            imbalances.append((max(float(np.abs(left[:, :3]).max()), moment), f"shaft {part.name!r}"))
         if self.housing is not None:
-            own = slice(self.housing_first, self.housing_first + self.housing.size)
-            # A modal force is one of a shape of the size of its largest seat motion.
-            size = max(float(np.abs(rows[own]).max()) for rows in self.directions) or 1.0
-            found.append((float(np.abs(residual[own]).max(initial=0.0)) / size, "the housing"))
+            housing_rows = slice(self.housing_first, self.housing_first + self.housing.size)
+            # A modal force is scaled by the largest seat motion of its shape.
+            size = max(float(np.abs(rows[housing_rows]).max()) for rows in self.directions) or 1.0
+            imbalances.append((float(np.abs(residual[housing_rows]).max(initial=0.0)) / size, "the housing"))
         for name, first in self.pedestal_first.items():
-            found.append((float(np.abs(residual[first : first + 2]).max()), f"the pedestal of bearing {name!r}"))
-        worst, where = max(found)
+            imbalances.append((float(np.abs(residual[first : first + 2]).max()), f"the pedestal of bearing {name!r}"))
+        worst, where = max(imbalances)
         return worst / largest, where
 
     def _causes(self, x: FloatArray, bearings: Sequence[BearingLoad]) -> dict[str, FloatArray]:
         """Parts of the shafts' motion by `CAUSES`, (n,) each; their sum is that of all stations.
 
         The rigid motion of a shaft is the one that fits the motion at its bearings, with their tangent stiffness as
-        weights; it is linear in the motions of the seats and the deflections of the bearings. What is left is elastic.
-        The twist is told apart by `_pair`.
+        weights; it is linear in the motions of the seats and the deflections of the bearings. The rest is elastic.
+        `_pair` separates the twist.
         """
         parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing")}
         for part in self.shafts:
-            own = self._own(part.name)
+            columns = self._own(part.name)
             places = part.shaft.places
-            here = [one for one in bearings if one.mounted.rotor == part.name]
+            bearings_of_shaft = [bearing for bearing in bearings if bearing.mounted.rotor == part.name]
             rigid_by = {"bearings": np.zeros(5), "housing": np.zeros(5)}
             matrix = np.zeros((5, 5))
-            for one in here:
-                moved = _rigid_rows(one.mounted.bearing.at)
-                metric = 0.5 * (one.stiffness + one.stiffness.T)
+            for bearing in bearings_of_shaft:
+                moved = _rigid_rows(bearing.mounted.bearing.at)
+                metric = 0.5 * (bearing.stiffness + bearing.stiffness.T)
                 matrix += moved.T @ metric @ moved
-                rigid_by["bearings"] += moved.T @ metric @ one.deflection
-                rigid_by["housing"] += moved.T @ metric @ one.seat_motion
+                rigid_by["bearings"] += moved.T @ metric @ bearing.deflection
+                rigid_by["housing"] += moved.T @ metric @ bearing.seat_motion
             whole = np.zeros((places.size, 6))
             for cause, side in rigid_by.items():
                 rigid = np.linalg.lstsq(matrix, side, rcond=1e-12)[0]
                 moved = np.array([_rigid_rows(at) @ rigid for at in places.tolist()])
-                parts[cause][own] = np.pad(moved, ((0, 0), (0, 1))).ravel()
+                parts[cause][columns] = np.pad(moved, ((0, 0), (0, 1))).ravel()
                 whole[:, :5] += moved
-            parts["shafts"][own] = x[own] - whole.ravel()
+            parts["shafts"][columns] = x[columns] - whole.ravel()
         return parts
 
     def _pair(
@@ -782,12 +784,12 @@ class _StaticModel:
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)
 
 
-def _rolling_state(one: StaticBearing, deflection: FloatArray) -> RollingState | None:
-    if not isinstance(one.law, RollingElementLaw):
+def _rolling_state(bearing: StaticBearing, deflection: FloatArray) -> RollingState | None:
+    if not isinstance(bearing.law, RollingElementLaw):
         return None
-    elements = one.law.elements
+    elements = bearing.law.elements
     # Messages name the bearing by its place in the machine.
-    named = replace(elements.bearing, name=f"bearing {one.mounted.bearing.name!r}")
+    named = replace(elements.bearing, name=f"bearing {bearing.mounted.bearing.name!r}")
     return rolling_state(named, deflection, speed=elements.speed)
 
 

@@ -30,8 +30,8 @@ FloatArray = npt.NDArray[np.float64]
 OUTCOMES = ("misalignment", "k_h_beta", "transmission_error")
 """Outcomes of a gear pair: misalignment [rad], K_Hβ, and peak-to-peak transmission error under load [m]."""
 
-_STEP = 1e-6  # of the flanks' compression under load, in the differences of K_Hβ and transmission error
-_SHAFT_STEP = 1e-6  # of the shaft's length, in the one-sided differences of its motions
+_STEP = 1e-6  # step over the flanks' compression under load, in the differences of K_Hβ and transmission error
+_SHAFT_STEP = 1e-6  # step over the shaft's length, in the one-sided differences of its motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Adjoint:
     ----------
     point : OperatingPoint
     values : ndarray, shape (n,)
-        λ by the coordinates of the static machine: the outcome per unit of a load [outcome/N, outcome/(N m)].
+        Adjoint state λ by the coordinates of the static machine: outcome per load [outcome/N, outcome/(N m)].
     """
 
     point: OperatingPoint
@@ -50,15 +50,15 @@ class Adjoint:
 
     @property
     def housing(self) -> FloatArray:
-        """λ by the housing's coordinates, shape (h,)."""
+        """Adjoint state λ by the housing's coordinates, shape (h,)."""
         return self.values[self.point.tangent.housing]
 
     def deflection(self, bearing: str) -> FloatArray:
-        """Eᵀ λ of a bearing, shape (5,)."""
+        """Deflection Eᵀ λ of a bearing in the adjoint field, shape (5,)."""
         return np.asarray(self.point.tangent.bearings[bearing].T @ self.values)
 
     def force(self, bearing: str) -> FloatArray:
-        """tᵀ Eᵀ λ of a bearing, shape (5,)."""
+        """Force tᵀ Eᵀ λ of a bearing in the adjoint field, shape (5,)."""
         return np.asarray(self.point.bearing(bearing).stiffness.T @ self.deflection(bearing))
 
     def by_bearing_stiffness(self, bearing: str) -> float:
@@ -81,20 +81,20 @@ def adjoint(point: OperatingPoint, gradient: FloatArray) -> Adjoint:
     ----------
     point : OperatingPoint
     gradient : ndarray, shape (n,)
-        c, the outcome's gradient by the coordinates of the static machine.
+        Gradient c of the outcome by the coordinates of the static machine.
     """
     return Adjoint(point, np.asarray(linalg.solve(point.tangent.stiffness.T, gradient)))
 
 
 def pair_adjoints(point: OperatingPoint) -> tuple[dict[str, Adjoint], ...]:
-    """Solve the adjoint states of the `OUTCOMES` of each gear pair; of an idle pair, of its misalignment alone."""
-    found = []
+    """Solve the adjoint states of the `OUTCOMES` of each gear pair; for an idle pair only that of misalignment."""
+    adjoints = []
     for pair, rows in zip(point.pairs, point.tangent.pairs, strict=True):
         gradients = {"misalignment": -pair.pair.contact.face_slope}
         if pair.force > 0.0:
             gradients |= dict(zip(OUTCOMES[1:], _face_gradients(pair), strict=True))
-        found.append({name: adjoint(point, rows @ gradient) for name, gradient in gradients.items()})
-    return tuple(found)
+        adjoints.append({name: adjoint(point, rows @ gradient) for name, gradient in gradients.items()})
+    return tuple(adjoints)
 
 
 def tilt_adjoint(point: OperatingPoint, bearing: str) -> Adjoint:
@@ -120,7 +120,7 @@ def _face_gradients(pair: PairLoad) -> FloatArray:
 
     step = _STEP * pair.force / pair.mean_stiffness
     steps = step * np.eye(contact.size)
-    # The tilt has another unit; at its step the ends of the path of contact approach as much.
+    # The tilt has another unit; its step moves the ends of the path of contact by as much.
     steps[-1] /= pair.pair.geometry.base_pitch
     sizes = np.diag(steps)
     return np.array(
@@ -134,16 +134,16 @@ def _face_gradients(pair: PairLoad) -> FloatArray:
 def _slope(shaft: ShaftDeflection, load: BearingLoad) -> FloatArray:
     """Differentiate a shaft's motions at a bearing along z, as the mean of its two sides, shape (5,)."""
     at, step = load.mounted.bearing.at, _SHAFT_STEP * shaft.part.shaft.length
-    here = shaft.motions([at])[:5, 0]
+    middle = shaft.motions([at])[:5, 0]
     sides = []
     for way in (1.0, -1.0):
         places = at + way * step * np.array([1.0, 2.0])
         if 0.0 <= places[1] <= shaft.part.shaft.length:
             near, far = shaft.motions(places)[:5].T
-            sides.append((4.0 * near - far - 3.0 * here) / (2.0 * way * step))
+            sides.append((4.0 * near - far - 3.0 * middle) / (2.0 * way * step))
         else:
-            # Beyond the end nothing strains.
-            sides.append(_rigid_slope(here[3:]))
+            # Beyond the shaft's end there is no strain.
+            sides.append(_rigid_slope(middle[3:]))
     return np.asarray(0.5 * (sides[0] + sides[1]))
 
 

@@ -23,14 +23,14 @@ FloatArray = npt.NDArray[np.float64]
 _ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
 _PUSHED = 1e-9  # part of a load below which its share in a rigid-body motion is rounding
 _STEPS = 60
-_HALVINGS = 12  # of a Newton step that increases the residual
+_HALVINGS = 12  # largest number of halvings of a Newton step that increases the residual
 
 
 def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
     """Coordinates in static equilibrium under the constant load, at the mesh phases and cage angles of a time.
 
-    Newton's method on K q + Σ d f(dᵀ q) = F, with the friction of the sliding teeth. Rigid-body motions, such as gears
-    that roll together, must carry no load; they stay at zero.
+    Newton's method solves K q + Σ d f(dᵀ q) = F, with the friction of the sliding teeth. Rigid-body motions, such as
+    gears that roll together, must carry no load; they stay at zero.
 
     Returns
     -------
@@ -128,8 +128,8 @@ def _out_of_balance(
         tangent = tangent + np.outer(rise, contact.direction)
     for bearing in system.nonlinear:
         deflection = bearing.directions.T @ q
-        own, stiffness = _bearing(bearing, deflection, time)
-        residual = residual - bearing.directions @ (own - bearing.stiffness @ deflection)
+        force_on_shaft, stiffness = _bearing(bearing, deflection, time)
+        residual = residual - bearing.directions @ (force_on_shaft - bearing.stiffness @ deflection)
         tangent = tangent + bearing.directions @ (stiffness - bearing.stiffness) @ bearing.directions.T
     return residual, tangent
 

@@ -23,7 +23,7 @@ from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equ
 
 FloatArray = npt.NDArray[np.float64]
 
-_TRIAL_LOAD = 0.05  # of the static rating, at which a rolling bearing has its nominal stiffness
+_TRIAL_LOAD = 0.05  # load over the static rating at which a rolling bearing has its nominal stiffness
 
 
 class ConnectorLaw(Protocol):
@@ -42,7 +42,7 @@ class LinearLaw:
 
     @property
     def nominal(self) -> FloatArray:
-        """The symmetric factor of the polar decomposition, which holds the same motions and is never indefinite."""
+        """The symmetric factor of the polar decomposition, which resists the same motions and is never indefinite."""
         _, values, rows = np.linalg.svd(self.stiffness)
         return np.asarray((rows.T * values) @ rows)
 
@@ -60,13 +60,13 @@ class RollingElementLaw:
 
     def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Energy, force and tangent."""
-        here = self.elements.at(deflection)
-        return here.value, here.gradient, here.hessian
+        state = self.elements.at(deflection)
+        return state.value, state.gradient, state.hessian
 
 
 @dataclass(frozen=True, eq=False)
 class RadialGapLaw:
-    """A ring around the shaft that it touches beyond a gap, see :class:`coupling.machine.connectors.GapLaw`."""
+    """A ring around the shaft, touched beyond a gap, see :class:`coupling.machine.connectors.GapLaw`."""
 
     law: GapLaw
 
@@ -117,9 +117,9 @@ def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
     load = np.array([trial, 0.0, 0.0, 0.0, 0.0])
     # Held along its axis, a row that carries thrust one way only does not slide open.
     state = rolling_equilibrium(rolling, load, held={"z": 0.0, "rx": 0.0, "ry": 0.0})
-    own = np.diag(state.stiffness)
-    radial, tilt = max(own[0], own[1]), max(own[3], own[4])
-    return np.diag([radial, radial, own[2], tilt, tilt])
+    diagonal = np.diag(state.stiffness)
+    radial, tilt = max(diagonal[0], diagonal[1]), max(diagonal[3], diagonal[4])
+    return np.diag([radial, radial, diagonal[2], tilt, tilt])
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,11 +164,11 @@ class StaticPair:
     driver, driven : StaticGear
     geometry : GearPairGeometry
     contact : FaceContact
-        Of the loaded flanks.
+        Contact of the loaded flanks.
     clearance : float
-        Their gap without load [m]: 0, or the backlash where the back flanks carry.
+        Gap of these flanks without load [m]: 0, or the backlash where the back flanks carry.
     line : LineOfAction
-        Of these flanks.
+        Line of action of these flanks.
     nominal : float
         Mean mesh stiffness for the search [N/m].
     """
@@ -208,17 +208,19 @@ def static_pair(
     pair : GearPair
     geometry : GearPairGeometry
     gears : two of StaticGear
-        Driver and driven.
+        Driver and driven gear.
     axes : two of (x, y)
-        Of their shafts [m].
+        Axes of their shafts [m].
     rotation : int
         Sense of rotation of the driver about z: 1 or -1.
     torque : float
-        That the pair takes off its driver [N m], positive where power flows to the driven gear.
+        Torque that the pair takes from its driver [N m], positive where power flows to the driven gear.
     """
     force = abs(torque) / geometry.driver.base_radius
-    given = pair.stiffness
-    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
+    tooth_stiffness = pair.stiffness
+    model = (
+        stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness
+    )
     driver, driven = (replace(gear, faults=(), pitch_deviations=()) for gear in (geometry.driver, geometry.driven))
     sound = replace(geometry, driver=driver, driven=driven)
     faces = face_slices(sound, sense=rotation)
@@ -231,14 +233,14 @@ def static_pair(
     sense = -rotation if backwards else rotation
     backlash = pair.backlash_of(geometry)
     line = line_of_action(geometry, (axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]), sense)
-    own = contact.back_flanks if backwards else contact
+    loaded_contact = contact.back_flanks if backwards else contact
     return StaticPair(
         label=pair.label,
         driver=gears[0],
         driven=gears[1],
         geometry=geometry,
-        contact=FaceContact(own, geometry, face_stations(geometry.face_width), line.axial),
+        contact=FaceContact(loaded_contact, geometry, face_stations(geometry.face_width), line.axial),
         clearance=(backlash or 0.0) if backwards else 0.0,
         line=line,
-        nominal=own.unloaded_mean_mesh_stiffness,
+        nominal=loaded_contact.unloaded_mean_mesh_stiffness,
     )

@@ -57,11 +57,11 @@ class Condensed:
     Attributes
     ----------
     system : CoupledSystem
-        Of the m retained coordinates, in their order, with one connector in place of all linear ones.
+        System of the m retained coordinates, in their order, with one connector in place of all linear ones.
     kept : ndarray of int, shape (m,)
-        Their numbers among the n coordinates.
+        Numbers of the retained coordinates among the n coordinates.
     recovery : ndarray, shape (n, m)
-        T: all coordinates from the retained ones.
+        Matrix T from the retained coordinates to all coordinates.
     """
 
     system: CoupledSystem
@@ -70,29 +70,36 @@ class Condensed:
 
 
 def condensed(system: CoupledSystem) -> Condensed:
-    """Condense the residual coordinates that are stiffer than all others; a system without any is returned as it is.
+    """Condense the residual coordinates that are stiffer than all others.
 
-    So is a system whose connectors change with the speed: the condensation would have to change with them.
+    A system without such coordinates is returned as it is, as is one whose connectors change with the speed: the
+    condensation would have to change with them.
     """
     stiff = _stiff(system)
     if not stiff.any() or len(system.connector_speed_ratios) > 1:
         return Condensed(system, np.arange(system.size), np.eye(system.size))
-    kept = ~stiff
-    held, left = np.flatnonzero(stiff), np.flatnonzero(kept)
+    is_retained = ~stiff
+    condensed_coordinates, retained = np.flatnonzero(stiff), np.flatnonzero(is_retained)
     stiffness, damping = system.stiffness, system.damping
-    follow = -np.linalg.solve(stiffness[np.ix_(held, held)], stiffness[np.ix_(held, left)])
-    recovery = np.zeros((system.size, len(left)))
-    recovery[left], recovery[held] = np.eye(len(left)), follow
+    follow = -np.linalg.solve(
+        stiffness[np.ix_(condensed_coordinates, condensed_coordinates)],
+        stiffness[np.ix_(condensed_coordinates, retained)],
+    )
+    recovery = np.zeros((system.size, len(retained)))
+    recovery[retained], recovery[condensed_coordinates] = np.eye(len(retained)), follow
     # Retained coordinates gain connectors between them that act in few directions.
-    crossing = damping[np.ix_(left, held)] @ follow
-    linked = [part[np.ix_(left, left)] for part in system.connector_matrices()]
-    linked[0] = linked[0] + stiffness[np.ix_(left, held)] @ follow
+    crossing = damping[np.ix_(retained, condensed_coordinates)] @ follow
+    linked = [part[np.ix_(retained, retained)] for part in system.connector_matrices()]
+    linked[0] = linked[0] + stiffness[np.ix_(retained, condensed_coordinates)] @ follow
     linked[1] = (
-        linked[1] + crossing + follow.T @ damping[np.ix_(held, left)] + follow.T @ damping[np.ix_(held, held)] @ follow
+        linked[1]
+        + crossing
+        + follow.T @ damping[np.ix_(condensed_coordinates, retained)]
+        + follow.T @ damping[np.ix_(condensed_coordinates, condensed_coordinates)] @ follow
     )
     directions, (connector_stiffness, connector_damping) = common_span(linked)
     less = CoupledSystem(
-        components=tuple(_part(component, among) for component, among in _members(system, kept)),
+        components=tuple(_part(component, among) for component, among in _members(system, is_retained)),
         speeds=system.speeds,
         linear=(LinearConnector("condensed", directions, connector_stiffness, connector_damping),),
         contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
@@ -102,14 +109,14 @@ def condensed(system: CoupledSystem) -> Condensed:
         acceleration_load=system.acceleration_load @ recovery,
         nonlinear=tuple(replace(one, directions=recovery.T @ one.directions) for one in system.nonlinear),
     )
-    return Condensed(less, left, recovery)
+    return Condensed(less, retained, recovery)
 
 
-def _members(system: CoupledSystem, kept: npt.NDArray[np.bool_]) -> Iterator[tuple[Component, npt.NDArray[np.int64]]]:
+def _members(system: CoupledSystem, mask: npt.NDArray[np.bool_]) -> Iterator[tuple[Component, npt.NDArray[np.int64]]]:
     """Each component, with the numbers of its retained coordinates."""
     start = 0
     for component in system.components:
-        yield component, np.flatnonzero(kept[start : start + component.size])
+        yield component, np.flatnonzero(mask[start : start + component.size])
         start += component.size
 
 

@@ -50,9 +50,9 @@ from coupling.time.step_matrices import kernel_arrays
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_STRETCHES, _ELEMENTS = 256, 1024  # approximate maximum between two looks at the error ...
-_FIRST_STRETCHES = 8  # ... and at first: most attempts that fail, fail there
-_SIZES = 64  # of elements with matrices of their own, besides the ladder's
+_STRETCHES, _ELEMENTS = 256, 1024  # approximate largest numbers between two checks of the error
+_FIRST_STRETCHES = 8  # number before the first check, where most failing attempts fail
+_SIZES = 64  # number of element sizes with exact matrices, in addition to the ladder's
 _SAME_SIZE = 1e-11  # parts of the coarsest element by which elements of one size may differ
 _MUCH_BETTER = 1e-2  # part of the tolerance below which elements may grow
 _CUTS = 400  # room for switches in a chunk, besides four for each element
@@ -68,13 +68,13 @@ class CollocationRecord:
         # frequencies.
         load = np.zeros((system.size, 2 * count))
         load[:, count - 1] = system.load
-        for one in system.harmonic_loads:
-            if one.frequency == 0.0:
-                load[:, count - 1] += one.amplitude.real
+        for harmonic in system.harmonic_loads:
+            if harmonic.frequency == 0.0:
+                load[:, count - 1] += harmonic.amplitude.real
                 continue
-            column = modes + int(np.searchsorted(part.frequencies, one.frequency))
-            load[:, column] += one.amplitude.real
-            load[:, count + column] -= one.amplitude.imag
+            column = modes + int(np.searchsorted(part.frequencies, harmonic.frequency))
+            load[:, column] += harmonic.amplitude.real
+            load[:, count + column] -= harmonic.amplitude.imag
         self._constant = load[:, count - 1]
         moving = load - system.stiffness @ part.displacement_rows - system.damping @ part.velocity_rows
         self._displacement = outputs.displacement @ part.displacement_rows, outputs.displacement @ part.rigid
@@ -195,7 +195,7 @@ def steady_part(system: CoupledSystem) -> LinearPart:
 class CollocationStepper:
     """Exponential collocation; see :class:`coupling.time.integration.Stepper`. An element of time is a step."""
 
-    steps_in_one = ORDER  # places in an element, as many as there would be steps
+    steps_in_one = ORDER  # an element has this many places and stands for as many steps
     order = 6.0  # at least, kinks in the laws' tables included
     too_fine = "elements below {step:.1e} s; raise the tolerance"
 
@@ -211,15 +211,15 @@ class CollocationStepper:
         self._shape = part.reference.eigenvalue.size, ORDER, len(part.system.contacts)
         self._trace = empty_trace(0, *self._shape)
         self._undisturbed = np.zeros((0, 2 * self._shape[0]))
-        # Below this the motion is rounding of the reference's.
-        own = float(np.linalg.norm(part.mean) + np.abs(part.amplitudes).sum())
-        self._quiet = (1e-9 * own) ** 2 + 1e-300
+        # Below this size the motion is rounding of the reference's response.
+        magnitude = float(np.linalg.norm(part.mean) + np.abs(part.amplitudes).sum())
+        self._quiet = (1e-9 * magnitude) ** 2 + 1e-300
 
     def begin_block(self, state: Checkpoint, bounds: FloatArray, samples: Samples, *, compiles: bool) -> None:
         """Prepare for a block.
 
-        New in every block, so that a run that continues from a checkpoint does just the same, are the sizes that have
-        matrices of their own and the forces that Newton's iteration begins with.
+        The sizes with exact matrices and the initial forces of Newton's iteration are new in every block, so that a run
+        that continues from a checkpoint does exactly the same.
         """
         self._sizes, self._work = _Sizes(self._steps, _SAME_SIZE * self._coarsest), element_work(*self._shape)
         self._free = self._record.free_motion(state)
@@ -261,7 +261,7 @@ class CollocationStepper:
     def _times_until(self, done: float, first: int) -> FloatArray:
         """Return times of the samples from number ``first`` on that are no later than ``done`` [s]."""
         settings = self._settings
-        # One more than rounding may leave out.
+        # One more sample than rounding may leave out.
         count = int((done - settings.record_from) / settings.sample_interval) + 2 - first
         times = sample_times(settings, first, max(min(count, settings.samples - first), 0))
         return times[times <= done]
@@ -298,14 +298,14 @@ def _pieces(bounds: FloatArray, size: float) -> IntArray:
 
 
 class _Sizes:
-    """Sizes of elements that have matrices of their own; all others take those of the ladder."""
+    """Sizes of elements with exact matrices; all other sizes take those of the ladder."""
 
     def __init__(self, steps: Steps, unit: float) -> None:
         self._steps, self._unit, self._known = steps, unit, dict[int, int]()
 
     def slots(self, lengths: FloatArray) -> IntArray:
         """Slot of each length, -1 for none: the first sizes get one, while there is room."""
-        # What rounding alone holds apart is one size.
+        # Sizes that differ by rounding are one.
         keys, first, which = np.unique(np.rint(lengths / self._unit), return_index=True, return_inverse=True)
         slots = np.full(len(keys), -1, dtype=np.int64)
         for i, key in enumerate(keys.astype(np.int64).tolist()):

@@ -39,7 +39,7 @@ class Histories:
     Attributes
     ----------
     times : ndarray, shape (s,)
-        [s].
+        Times [s].
     sensor_acceleration : dict of str to ndarray, shape (s,)
         Along each sensor [m/s²].
     gear_motion : dict of str to ndarray, shape (s, 3)
@@ -49,9 +49,9 @@ class Histories:
     mesh_force : dict of str to ndarray, shape (s,)
         Force along the line of action [N], drive flanks and back flanks apart.
     mesh_compression : dict of str to ndarray, shape (s,)
-        [m].
+        Compression of each mesh [m].
     mesh_friction : dict of str to ndarray, shape (s, 2)
-        Of every contact with friction: its force across the line of action [N], and its power loss from the nominal
+        Friction of each contact: force across the line of action [N], and power loss from the nominal
         rotation [W]; see :func:`coupling.machine.tooth_friction.friction_of`.
     bearing_axes : dict of str to tuple of int
         Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
@@ -77,11 +77,11 @@ class Histories:
 
         Components that a bearing does not hold are zero.
         """
-        found = {}
+        loads = {}
         for name, force in self.bearing_reaction.items():
-            found[name] = np.zeros((len(force), 5))
-            found[name][:, list(self.bearing_axes.get(name, range(force.shape[1])))] = force
-        return found
+            loads[name] = np.zeros((len(force), 5))
+            loads[name][:, list(self.bearing_axes.get(name, range(force.shape[1])))] = force
+        return loads
 
     @property
     def columns(self) -> FloatArray:
@@ -117,7 +117,7 @@ class HistoryQuantity:
     name : str
         Name of the variable.
     dimensions : tuple of str
-        The signals' own first, then ``time``.
+        Dimensions of the signals, then ``time``.
     of : callable
         Values of each signal of a record by its name, time along their first axis.
     unit : str
@@ -133,13 +133,13 @@ class HistoryQuantity:
 
     def coordinates(self, signals: Sequence[str]) -> dict[str, tuple[Any, Any, dict[str, Any]]]:
         """Labels along the dimensions: the names of the signals, and x and y."""
-        found: dict[str, tuple[Any, Any, dict[str, Any]]] = {
+        coordinates: dict[str, tuple[Any, Any, dict[str, Any]]] = {
             self.dimensions[0]: (self.dimensions[0], list(signals), {})
         }
         for axis in ("axis", "moment_axis"):
             if axis in self.dimensions:
-                found[axis] = (axis, ["x", "y"], {})
-        return found
+                coordinates[axis] = (axis, ["x", "y"], {})
+        return coordinates
 
 
 HISTORY_QUANTITIES = (
@@ -289,14 +289,17 @@ def _bearings(machine: CoupledMachine) -> tuple[LinearConnector, ...]:
 def _beside_linear(
     linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, nominal_time: FloatArray
 ) -> FloatArray:
-    """Nonlinear part of a bearing's force beside its tangent's, shape (s, d)."""
+    """Nonlinear part of a bearing's force, less that of its tangent, shape (s, d)."""
     from coupling.connector_forces.bearing_kernels import bearing_history
 
     # Directions in which nothing can move have no part in it.
     moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))
     force = np.zeros_like(deflection)
-    own = np.ascontiguousarray(deflection[:, moving])
-    force[:, moving] = bearing_history(bearing_arrays([connector]), 0, nominal_time, own) - own @ connector.stiffness.T
+    deflection_of_law = np.ascontiguousarray(deflection[:, moving])
+    force[:, moving] = (
+        bearing_history(bearing_arrays([connector]), 0, nominal_time, deflection_of_law)
+        - deflection_of_law @ connector.stiffness.T
+    )
     return force
 
 
@@ -309,9 +312,9 @@ def _force(connector: LinearConnector, deflection: FloatArray, velocity: FloatAr
     for row in range(len(table.speed_ratios)):
         # Weight of each speed of the table in the linear interpolation.
         share = np.interp(rates, table.speed_ratios, np.eye(len(table.speed_ratios))[row])
-        held = np.flatnonzero(share)
-        push = deflection[held] @ table.stiffness[row].T + velocity[held] @ table.damping[row].T
-        force[held] += share[held, None] * push
+        weighted = np.flatnonzero(share)
+        push = deflection[weighted] @ table.stiffness[row].T + velocity[weighted] @ table.damping[row].T
+        force[weighted] += share[weighted, None] * push
     return force
 
 
@@ -324,9 +327,9 @@ class ModalRows:
     Attributes
     ----------
     x, y : ndarray, shape (m, n)
-        A_i and B_i of the bending modes on averaged supports, ascending, without attachment vectors.
+        Rows of A_i and B_i of the bending modes on averaged supports, ascending, without attachment vectors.
     torsion : ndarray, shape (t, n)
-        D_i of the free shaft's torsional modes, the rigid rotation first, without attachment vectors.
+        Rows of D_i of the free shaft's torsional modes, the rigid rotation first, without attachment vectors.
     """
 
     x: FloatArray
@@ -348,9 +351,11 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
         raise CouplingError(f"no rotor is named {rotor!r}; there are: {names}")
     lateral, torsional = part.modal.lateral, part.modal.torsional
     planar, twisting = lateral.certificate.found, torsional.certificate.found
-    own = np.eye(part.size)
-    x, y = (part.plane_basis[:planar] @ own[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1))
-    torsion = own[2 * lateral.count : 2 * lateral.count + twisting]
+    identity = np.eye(part.size)
+    x, y = (
+        part.plane_basis[:planar] @ identity[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1)
+    )
+    torsion = identity[2 * lateral.count : 2 * lateral.count + twisting]
     return ModalRows(*(machine.rows(rotor, rows) for rows in (x, y, torsion)))
 
 
@@ -361,9 +366,9 @@ class ModalRecord:
     Attributes
     ----------
     coordinates : dict of str to ndarray, shape (s,)
-        Such as ``input: torsion 1`` [rad √(kg m²)], ``input: bending 1, x`` or ``housing: mode 1`` [m √kg].
+        Coordinates such as ``input: torsion 1`` [rad √(kg m²)], ``input: bending 1, x``, ``housing: mode 1`` [m √kg].
     housing_acceleration : ndarray, shape (s, m)
-        Of all modes of the housing [m √kg / s²].
+        Accelerations of all modes of the housing [m √kg / s²].
     """
 
     coordinates: dict[str, FloatArray]

@@ -25,9 +25,9 @@ from coupling.time.step_matrices import KernelArrays, stored_energy
 
 FloatArray = npt.NDArray[np.float64]
 
-_POINTS_PER_PERIOD = 6  # of the highest natural frequency; the tolerance refines motions that matter
-_STEPS_PER_SEGMENT = 64  # where no event cuts the time
-_SPEED_GAIN = 2e-4  # change of speed, as a part of the nominal one, within which a stretch's matrices stay the same
+_POINTS_PER_PERIOD = 6  # points in a period of the highest natural frequency; the tolerance refines motions that matter
+_STEPS_PER_SEGMENT = 64  # largest number of steps between two cuts where no event cuts the time
+_SPEED_GAIN = 2e-4  # change of speed over the nominal one within which a stretch's matrices stay the same
 _SAME_TIME = 1e-6  # part of the coarsest step within which two events are one
 SAMPLES_PER_BLOCK = 32768
 _STEPS_PER_BLOCK = 1 << 20
@@ -101,8 +101,8 @@ def _known_times(system: CoupledSystem, profile: SpeedProfile) -> Iterator[Float
 
 
 _FINEST_LEVEL = 24  # 4096 times finer than the coarsest step
-_RUNAWAY = 1e4  # times the motion at rest: beyond, the machine is unstable, not lively
-_GONE = 20.0  # mesh periods without a touch after which teeth that fly off count as lost
+_RUNAWAY = 1e4  # motion over the motion at rest beyond which the machine counts as unstable
+_GONE = 20.0  # number of mesh periods without contact after which separated teeth count as lost
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Checkpoint:
     sample : int
         Samples written.
     time : float
-        [s].
+        Time [s].
     q, v : ndarray, shape (n,)
         Coordinates and their rates, of the condensed system.
     stored : float
@@ -207,11 +207,11 @@ class Stepper(Protocol):
     ----------
     arrays : KernelArrays
     system : CoupledSystem
-        As it is stepped.
+        System that is integrated.
     steps_in_one : int
-        Steps of Newmark's method that one step of this method stands for.
+        Number of Newmark steps that one step of this method stands for.
     order : float
-        Power of the step by which the local error falls.
+        Power of the step size with which the local error falls.
     coarsen_below : float
         Local error below which steps may grow.
     too_fine : str
@@ -238,11 +238,11 @@ class Stepper(Protocol):
         """Return the state after the last attempt, with its work, contact figures and samples, up to ``done`` [s]."""
 
     def last_touch(self, state: Checkpoint, begin: float, done: float) -> tuple[FloatArray, float]:
-        """Time of the last touch of each contact before a divergence, shape (c,), and the end of what is known [s]."""
+        """Time of the last touch of each contact before a divergence, shape (c,), and the end of that record [s]."""
 
 
 class Integration:
-    """Driver of a time integration: what stays the same through it, and the loop over chunks of steps."""
+    """Driver of a time integration: its constant settings, and the loop over chunks of steps."""
 
     def __init__(
         self, stepper: Stepper, settings: TransientSettings, profile: SpeedProfile, samples_per_block: int
@@ -254,7 +254,7 @@ class Integration:
         self.base = step * stepper.steps_in_one
         self.ends = block_ends(settings.duration, settings.sample_interval, step, samples_per_block)
         self._cut = -1, np.zeros(0)
-        # A machine that stays together moves no further than a multiple of its static deflection.
+        # A stable machine moves no further than a multiple of its static deflection.
         applied = timed_amplitude(system) + np.abs(system.load)
         self.reach = float(_resting(system, profile, applied, settings.duration).max(initial=0.0))
 
@@ -339,7 +339,7 @@ class Integration:
     def _require_possible(self, q: FloatArray, peaks: FloatArray, begin: float, now: float) -> None:
         """Refuse a motion that compresses teeth further than teeth can deflect, somewhere between two times [s].
 
-        The compression is the larger of that at the end and the one that the largest force so far stands for.
+        The compression is the larger of that at the end and that of the largest force so far.
 
         Raises
         ------
@@ -359,7 +359,7 @@ class Integration:
                 )
 
     def limit(self, number: int, state: Checkpoint) -> float:
-        """Bound on every coordinate in a block of a machine that holds together."""
+        """Bound on every coordinate of a stable machine in a block."""
         bound = _RUNAWAY * (float(np.abs(state.q).max(initial=0.0)) + self.reach)
         bound += _RUNAWAY * float(np.linalg.norm(state.v)) * self.settings.duration if number == 0 else 0.0
         return bound if bound > 0.0 else np.inf

@@ -137,24 +137,24 @@ def evaluate_powers(
     springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
     """
     tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
-    given, lost, square = 0.0, 0.0, 0.0
+    by_loads, by_damping, square = 0.0, 0.0, 0.0
     for i in range(v.size):
-        given += scratch.load[i] * v[i]
-        lost += dynamics.damping[i] * v[i] * v[i]
+        by_loads += scratch.load[i] * v[i]
+        by_damping += dynamics.damping[i] * v[i] * v[i]
         square += v[i] * v[i]
     for i in range(tv.size):
         for j in range(tv.size):
-            lost += tv[i] * damping[i, j] * tv[j]
+            by_damping += tv[i] * damping[i, j] * tv[j]
     if dynamics.has_skew:
         for i in range(tv.size):
             for j in range(tv.size):
-                lost += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
-    rotating = scratch.bearing_work[BEARING_POWER] * speed
+                by_damping += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
+    by_rotation = scratch.bearing_work[BEARING_POWER] * speed
     for k in range(laws.shape[0]):
-        rotating += laws[k, PHASE_SLOPE] * contacts.mesh_frequency[k] * speed - laws[k, FORCE] * scratch.slip[k]
-        lost += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
+        by_rotation += laws[k, PHASE_SLOPE] * contacts.mesh_frequency[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        by_damping += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
-    powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = given, lost, rotating
+    powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = by_loads, by_damping, by_rotation
     powers[BY_FRICTION], powers[TWICE_KINETIC] = 0.0, square
     if scratch.push.size > scratch.delta.size:
         _add_friction(contacts, speed, scratch)
@@ -164,9 +164,9 @@ def evaluate_powers(
 def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
     """Add the powers of friction: from the nominal rotation, and to the coordinates [W].
 
-    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. The former,
-    Σ μ F_j |w_j| and never negative, comes from the drive of the machine. The latter is small, and excites the
-    coordinates as often as it brakes them.
+    The flanks slide by W s' in the nominal rotation and by w' beside it, and f (W s' + w') turns to heat. f W s', which
+    is Σ μ F_j |w_j| and never negative, comes from the drive of the machine. f w' is small, and excites the coordinates
+    as often as it brakes them.
     """
     push, dv, powers = scratch.push, scratch.dv, scratch.powers
     for k in range(contacts.friction_row.size):
@@ -196,7 +196,7 @@ def write_samples(
 ) -> int:
     """Write the samples that fall into the step from t to t + h.
 
-    Displacement and velocity by cubic Hermite interpolation, acceleration linear: errors below the step's own.
+    Displacement and velocity are cubic Hermite interpolants, acceleration is linear: errors are below the step's own.
     """
     q_predicted, v_predicted, a, a1, x, y = (
         scratch.q_predicted,
@@ -267,7 +267,7 @@ def newmark_steps(
     Parameters
     ----------
     q, v : ndarray, shape (n,)
-        State, in and out.
+        State at the start, replaced by that at the end.
     next_sample : int
         Number of the first sample not yet written.
     stored : float
@@ -284,7 +284,7 @@ def newmark_steps(
     -------
     next_sample : int
     stored : float
-        The same at the end [J].
+        Stored energy at the end [J].
     curvature : float
         Σ |a₁ - 2 a + a₋₁|² over the steps that have two before them, of the coordinates to be resolved.
     acceleration : float
@@ -318,7 +318,7 @@ def newmark_steps(
             _predict(q, v, dynamics, h, scratch)
             _accelerations_without_contact(dynamics, matrices, slot, h, alpha, scratch)
             if step == count - 1:
-                # The last look at the teeth is just inside the segment.
+                # The teeth are last evaluated just inside the segment.
                 speed = speed0 + alpha * (after - inside)
                 nominal_time = nominal_time0 + (after - inside) * (speed0 + 0.5 * alpha * (after - inside))
             if not _contact_response(dynamics, contacts, bearings, matrices, slot, h, nominal_time, speed, scratch):

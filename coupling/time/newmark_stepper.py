@@ -24,7 +24,7 @@ from coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_r
 
 FloatArray = npt.NDArray[np.float64]
 
-_SEGMENTS_PER_CHUNK = 48  # stretches between two looks at the error
+_SEGMENTS_PER_CHUNK = 48  # number of stretches between two checks of the error
 
 
 class NewmarkStepper:
@@ -48,7 +48,7 @@ class NewmarkStepper:
         """Prepare for a block."""
         if compiles:
             self._run(state, cut(self._cache, self._profile, bounds[:1], 1.0), samples)
-        # Forces too small to see: below this an acceleration is rounding, and its curvature means nothing.
+        # Below this an acceleration is rounding, and its curvature means nothing.
         self._quiet = (1e-9 * float(np.linalg.norm(self.system.stiffness @ state.q) + self._pushing)) ** 2
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
@@ -74,7 +74,7 @@ class NewmarkStepper:
         return state.contact_totals[:, LAST_TOUCH], begin
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
-        """Run the kernel on copies of what it changes."""
+        """Run the kernel on copies of the arrays that it changes."""
         from coupling.time.newmark import newmark_steps
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))

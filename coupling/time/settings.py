@@ -19,13 +19,13 @@ class TransientSettings:
     Attributes
     ----------
     duration : float
-        [s], from static equilibrium at t = 0.
+        Duration from static equilibrium at t = 0 [s].
     record_from : float
-        Samples and contact figures start here [s].
+        Start of samples and contact figures [s].
     sample_interval : float
-        [s]; outputs are written at this even spacing whatever the steps.
+        Even spacing at which outputs are written, whatever the steps [s].
     largest_step : float
-        [s].
+        Largest step [s].
     tolerance : float
         Largest local error of a step, relative; see :mod:`coupling.time.integration`.
     beta, gamma : float
@@ -48,10 +48,10 @@ class TransientSettings:
         """Require a recorded part of the duration, positive step sizes and tolerance, and a known method."""
         if not 0.0 <= self.record_from < self.duration < np.inf:
             raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
-        for what in ("sample_interval", "largest_step", "tolerance", "beta"):
-            value = getattr(self, what)
+        for attribute in ("sample_interval", "largest_step", "tolerance", "beta"):
+            value = getattr(self, attribute)
             if not 0.0 < value < np.inf:
-                raise CouplingError(f"{what} of {value}; expected a positive number")
+                raise CouplingError(f"{attribute} of {value}; expected a positive number")
         if self.method not in get_args(Method):
             raise CouplingError(f"a method {self.method!r}; expected one of {', '.join(get_args(Method))}")
 
@@ -68,13 +68,13 @@ class MotionRecord:
     Attributes
     ----------
     times : ndarray, shape (s,)
-        [s].
+        Times [s].
     displacement, velocity, acceleration : ndarray, shapes (s, k)
-        The output rows, see :class:`TransientOutputs`.
+        Output rows, see :class:`TransientOutputs`.
     compression : ndarray, shape (s, c)
-        δ of each contact [m].
+        Compression δ of each contact [m].
     force : ndarray, shape (s, c)
-        Of each contact [N].
+        Force of each contact [N].
     """
 
     times: FloatArray

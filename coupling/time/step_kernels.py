@@ -25,7 +25,7 @@ IntArray = npt.NDArray[np.int64]
 
 @inner()
 def connector_laws(dynamics: Dynamics, speed: float, stiffness: FloatArray, damping: FloatArray) -> None:
-    """K_t and C_t at a speed, linear between those at which they are given, into two arrays (r, r)."""
+    """Interpolate K_t and C_t linearly at a speed, into two arrays (r, r)."""
     ratios, last = dynamics.connector_speed_ratios, dynamics.connector_speed_ratios.size - 1
     at = 0
     while at < last - 1 and speed > ratios[at + 1]:
@@ -46,7 +46,7 @@ def connector_laws(dynamics: Dynamics, speed: float, stiffness: FloatArray, damp
 def add_gyroscopic(
     blocks: FloatArray, first: IntArray, size: IntArray, factor: float, x: FloatArray, out: FloatArray, work: FloatArray
 ) -> None:
-    """Add factor G x, by G's blocks; ``work`` (b,) is overwritten."""
+    """Add ``factor`` G x, block by block; ``work`` (b,) is overwritten."""
     for g in range(first.size):
         among = slice(first[g], first[g] + size[g])
         apply_block(blocks[g], x[among], factor, work)
@@ -57,7 +57,7 @@ def add_gyroscopic(
 
 @inner(forceinline=True)
 def apply_block(block: FloatArray, x: FloatArray, factor: float, out: FloatArray) -> None:
-    """Factor B x by the rows of Bᵀ, which are of the padded width: loops of sixteen vectorise."""
+    """Compute ``factor`` B x from the rows of Bᵀ, which have the padded width: loops of sixteen vectorise."""
     for i in range(out.size):
         out[i] = 0.0
     add_rows(block, x, factor, out)
@@ -73,7 +73,7 @@ def apply_base(
     out: FloatArray,
     work: FloatArray,
 ) -> None:
-    """B x, into another array, with the base and the blocks of a step size; ``work`` (b,) is overwritten."""
+    """Multiply B x into another array, with the base and the blocks of a step size; ``work`` (b,) is overwritten."""
     for i in range(x.size):
         out[i] = base[i] * x[i]
     for g in range(first.size):
@@ -97,11 +97,11 @@ def build_steps(
     """Fill slots with the matrices of step sizes h at speeds s' and angular accelerations s''."""
     r, n = dynamics.connectors.shape
     c = contacts.direction.shape[0]
-    along, seen, held = np.zeros(r), np.zeros(c), np.zeros(r)
-    column, found, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
+    along, seen, correction = np.zeros(r), np.zeros(c), np.zeros(r)
+    column, solved, work = np.zeros(n), np.zeros(n), np.zeros(dynamics.gyroscopic.shape[2])
     first_of, size_of = dynamics.block_start, dynamics.block_size
-    for one in range(slots.size):
-        h, speed, acceleration, slot = sizes[one], speeds[one], accelerations[one], slots[one]
+    for number in range(slots.size):
+        h, speed, acceleration, slot = sizes[number], speeds[number], accelerations[number], slots[number]
         by_velocity, by_displacement = dynamics.gamma * h, dynamics.beta * h * h
         matrices.size[slot] = h
         for i in range(n):
@@ -110,7 +110,7 @@ def build_steps(
         by_gyroscopic = by_velocity * speed + by_displacement * acceleration
         for g in range(first_of.size):
             first, size = first_of[g], size_of[g]
-            # Of the transposed block, whose inverse is the transposed inverse.
+            # The block is transposed, as its inverse is the transposed inverse.
             block, inverse = np.zeros((size, size)), np.eye(size)
             for i in range(size):
                 for j in range(size):
@@ -126,10 +126,10 @@ def build_steps(
         for k in range(r):
             for i in range(n):
                 column[i] = dynamics.connectors[k, i]
-            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
+            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, solved, work)
             for i in range(n):
-                matrices.connectors[slot, k, i] = found[i]
-            project(dynamics.connectors, found, along)
+                matrices.connectors[slot, k, i] = solved[i]
+            project(dynamics.connectors, solved, along)
             for j in range(r):
                 matrices.connector_flexibility[slot, j, k] = along[j]
         across, link = np.eye(r), np.zeros((r, r))
@@ -147,21 +147,21 @@ def build_steps(
         for k in range(c):
             for i in range(n):
                 column[i] = contacts.direction[k, i]
-            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, found, work)
-            project(dynamics.connectors, found, along)
+            apply_base(matrices.base[slot], matrices.blocks[slot], first_of, size_of, column, solved, work)
+            project(dynamics.connectors, solved, along)
             for j in range(r):
-                held[j] = 0.0
+                correction[j] = 0.0
                 for i in range(r):
-                    held[j] += link[j, i] * along[i]
+                    correction[j] += link[j, i] * along[i]
             for j in range(r):
                 for i in range(n):
-                    found[i] -= matrices.connectors[slot, j, i] * held[j]
+                    solved[i] -= matrices.connectors[slot, j, i] * correction[j]
                 for i in range(r):
-                    along[i] -= matrices.connector_flexibility[slot, i, j] * held[j]
+                    along[i] -= matrices.connector_flexibility[slot, i, j] * correction[j]
             for i in range(n):
-                matrices.contact[slot, k, i] = found[i]
+                matrices.contact[slot, k, i] = solved[i]
             for j in range(r):
                 matrices.contact_connectors[slot, k, j] = along[j]
-            project(contacts.direction, found, seen)
+            project(contacts.direction, solved, seen)
             for j in range(c):
                 matrices.flexibility[slot, j, k] = seen[j]

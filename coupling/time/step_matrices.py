@@ -32,7 +32,7 @@ from coupling.time.settings import TransientOutputs
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_WIDTH = 16  # rows of a vectorised loop
+_WIDTH = 16  # number of rows of a vectorised loop
 _FOLLOWS = {"time": BY_TIME, "turning": BY_TURNING, "unbalance": BY_UNBALANCE}
 
 
@@ -47,9 +47,9 @@ class KernelArrays(NamedTuple):
 
 def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float, gamma: float) -> KernelArrays:
     """Arrays of the system and of its output rows."""
-    given = outputs.displacement, outputs.velocity, outputs.acceleration
-    # Writable as well: a kernel is compiled anew for rows that are not.
-    rows = (np.require(one, requirements=("C", "W")) for one in given)
+    output_rows = outputs.displacement, outputs.velocity, outputs.acceleration
+    # Rows are writable: a kernel is compiled anew for rows that are not.
+    rows = (np.require(one, requirements=("C", "W")) for one in output_rows)
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 
@@ -184,9 +184,9 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
     beside = [matrix - np.diag(diagonal) for matrix, diagonal in zip(whole, diagonals, strict=True)]
     ratios = system.connector_speed_ratios
     matrices = [
-        own + connector
+        component + connector
         for ratio in ratios
-        for own, connector in zip(beside, system.connector_matrices(float(ratio)), strict=True)
+        for component, connector in zip(beside, system.connector_matrices(float(ratio)), strict=True)
     ]
     directions, cores = common_span(matrices)
     connector_stiffness, connector_damping = np.array(cores[0::2]), np.array(cores[1::2])
@@ -225,21 +225,21 @@ def _dynamics(system: CoupledSystem, beta: float, gamma: float) -> Dynamics:
 
 def _gyroscopic_blocks(system: CoupledSystem) -> tuple[IntArray, IntArray, FloatArray]:
     """First coordinate, size and transposed matrix of each component's gyroscopic terms at nominal speed."""
-    found = []
+    placed = []
     start = 0
     for component, speed in zip(system.components, system.speeds, strict=True):
         touched = np.flatnonzero(np.any(component.gyroscopic != 0.0, axis=0))
         if speed != 0.0 and touched.size:
             among = slice(touched[0], touched[-1] + 1)
-            found.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
+            placed.append((start + int(touched[0]), speed * component.gyroscopic[among, among].T))
         start += component.size
-    largest = -(-max((len(matrix) for _, matrix in found), default=0) // _WIDTH) * _WIDTH
-    blocks = np.zeros((len(found), largest, largest))
-    for block, (_, matrix) in zip(blocks, found, strict=True):
+    largest = -(-max((len(matrix) for _, matrix in placed), default=0) // _WIDTH) * _WIDTH
+    blocks = np.zeros((len(placed), largest, largest))
+    for block, (_, matrix) in zip(blocks, placed, strict=True):
         block[: len(matrix), : len(matrix)] = matrix
     return (
-        np.array([first for first, _ in found], dtype=np.int64),
-        np.array([len(matrix) for _, matrix in found], dtype=np.int64),
+        np.array([first for first, _ in placed], dtype=np.int64),
+        np.array([len(matrix) for _, matrix in placed], dtype=np.int64),
         blocks,
     )
 
@@ -298,7 +298,7 @@ def stored_energy(
     nominal_time : float
         Nominal time s [s].
     rate : float
-        s'.
+        Relative speed s'.
     """
     energy = _of_connectors(dynamics, q, rate) if dynamics.connector_speed_ratios.size > 1 else 0.0
     c = contacts.phase.size

@@ -87,10 +87,10 @@ class Block(MotionRecord):
     Attributes
     ----------
     first : int
-        Number of its first sample.
+        Number of the block's first sample.
     after : Checkpoint
     count : int
-        Blocks of the whole run.
+        Number of blocks of the whole run.
     """
 
     first: int
@@ -184,7 +184,7 @@ def _prepared(
 
 
 def _samples_until(settings: TransientSettings, end: float, first: int, total: int) -> int:
-    """Room for the samples up to the end of a block: rounding may let one more or less fall into it."""
+    """Allocate the samples up to the end of a block; rounding may move one more or less into it."""
     upto = int(np.ceil((end - settings.record_from) / settings.sample_interval)) + 2
     return min(max(upto - first, 0), total - first)
 
@@ -231,15 +231,15 @@ class TransientFigures:
     Attributes
     ----------
     mean_force, peak_force : ndarray, shape (c,)
-        Over the recorded span, from every step [N].
+        Mean and largest force over the recorded span, from every step [N].
     contact_loss : ndarray, shape (c,)
         Part of the recorded span in which the flanks were apart.
     energy : EnergyBalance
-        Over the whole span.
+        Energy balance over the whole span.
     steps, rejected : int
         Steps taken and steps repeated.
     smallest_step : float
-        [s].
+        Smallest step [s].
     error : float
         Largest of the accepted error measures.
     seconds : float
@@ -310,8 +310,8 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
         Where the energies do not balance.
     """
     # The rounding of the stored energy is no error of the balance.
-    held = max(end.highest - end.lowest, _ROUNDING * max(abs(end.highest), abs(end.lowest)))
-    balance = _balance(end.energy - end.start_energy, end.totals, held)
+    stored = max(end.highest - end.lowest, _ROUNDING * max(abs(end.highest), abs(end.lowest)))
+    balance = _balance(end.energy - end.start_energy, end.totals, stored)
     if balance.error > ENERGY_BOUND or end.unsettled > 0.01 * end.steps:
         raise TransientError(
             f"the energies do not balance: {100 * balance.error:.2g} % is missing, and {end.unsettled} of {end.steps} "
@@ -331,10 +331,10 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
     )
 
 
-def _balance(change: float, totals: FloatArray, held: float) -> EnergyBalance:
+def _balance(change: float, totals: FloatArray, stored: float) -> EnergyBalance:
     loads, lost, teeth, motion, friction = (float(value) for value in totals)
     # Free vibration exchanges energy between motion and springs without any work or loss.
-    scale = max(abs(loads), abs(lost), abs(teeth), held, motion)
+    scale = max(abs(loads), abs(lost), abs(teeth), stored, motion)
     return EnergyBalance(change, loads, lost, teeth, scale, friction)
 
 

@@ -14,12 +14,11 @@ CHIEF): H. A. Schenck, "Improved integral formulation for acoustic radiation pro
 Society of America 44 (1968), 41-58. Many points, spread at random, and least squares make an accident unlikely that
 all lie on nodal surfaces; points that were not used prove it, see :attr:`SoundField.interior_residual`.
 
-The linear functions of a curved pressure should equal it on the average over a triangle. Those through its values at
-the vertices deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the second
+A curved pressure and its linear functions should be equal on the average over a triangle. Functions through its values
+at the vertices deviate to one side everywhere: on a triangle with the edges e, the mean of a pressure with the second
 derivatives H lies ``Σ eᵀ H e / 24`` below that of the linear function through its corners. The value in the equation of
 a vertex is therefore ``p − B p`` with the matrix B of :func:`_curvature_correction`, except at edges and corners of the
-surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as
-without.
+surface, where the pressure has no second derivatives. Powers and reciprocity are two to five times as exact as without.
 
 A hard plane mirrors the surface. Where a body stands on it, the triangles that lie in the plane are covered: they do
 not radiate and are left out, and what is left is one closed body with its mirror image.
@@ -27,7 +26,7 @@ not radiate and are left out, and what is left is one closed body with its mirro
 The equation of Burton and Miller, which couples the normal derivative, needs a smooth surface at the vertices and
 spoils weak radiators at low frequencies; on a sphere and on boxes CHIEF was the more accurate.
 
-Every solution of a closed surface holds that of known sources inside as well, which proves it at every vertex, see
+Every solution of a closed surface includes the field of known sources inside, which proves it at every vertex, see
 :mod:`housing.acoustics.known_source`.
 """
 
@@ -49,21 +48,23 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_INNER_WEIGHT = 5.0  # of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
+_INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
 _CHECK_POINTS = 12
 _FEWEST_INNER = 30
-_VAIN = 50  # rounds of 64 trials without a point inside after which there is none
+_VAIN = 50  # rounds of 64 trials without a point inside after which the search ends
 _NEAR = 0.01  # longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001
-_SMOOTH = np.cos(np.deg2rad(15.0))  # between a triangle's normal and the mean one of a vertex that is on no edge
+_SMOOTH = np.cos(
+    np.deg2rad(15.0)
+)  # least cosine between a triangle's normal and the mean one of a vertex that is on no edge
 _MOST_CURVATURE = 0.35
 """Largest part of a spike at a vertex that the correction takes for curvature: without a bound it is a quarter to a
 half on even triangles, and nine tenths where edges differ by half. Known sources in a box of uneven triangles were off
 by 140 % at a bound of 0.5, by 16 % at this one and by 7 % at 0.2; powers, reciprocity and points far away have the
 correction's whole use from 0.3 on."""
-_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # of linear shape functions on a triangle of unit area
+_MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # linear shape functions' mass matrix on a triangle of unit area
 
 MOST_TRIANGLES = 16_000
-"""Triangles whose equations are still solved: their matrix takes 1.4 GB, and their factorisation minutes."""
+"""Largest number of triangles: their matrix takes 1.4 GB, and their factorisation minutes."""
 
 
 @dataclass(frozen=True)
@@ -73,14 +74,14 @@ class SoundField:
     Attributes
     ----------
     surface : RadiatingSurface
-        What radiates.
+        The radiating surface.
     medium : Medium
     plane : HardPlane or None
     frequency_hz : float
     velocity : ndarray, shape (3 n_triangles, n)
         Normal velocity at the corners of each triangle [m/s].
     pressure : ndarray, shape (n_points, n)
-        At the vertices [Pa], of linear functions that equal the pressure on the average over a triangle.
+        Pressure at the vertices [Pa], of linear functions that equal the pressure on the average over a triangle.
     inside : ndarray, shape (n_checks, n)
         Pressure at points inside that the solution did not use [Pa], where zero is exact. Empty for a baffled face,
         which has no inside, and where no point inside is far enough from the surface, as in a thin plate.
@@ -144,7 +145,7 @@ class SoundField:
 
     @cached_property
     def surface_resistance(self) -> FloatArray:
-        """The same as `resistance` from the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n)."""
+        """The radiation resistance by the intensity on the surface, Re ½∫ (v̄ᵢ pⱼ + vⱼ p̄ᵢ) dS, shape (n, n)."""
         product = surface_product(self.surface, self.velocity, self.pressure_at_corners)
         return np.asarray(0.5 * (product + product.conj().T).real)
 
@@ -222,10 +223,10 @@ class SoundField:
         if self.known is None:
             return np.full(len(points), self.source_error.largest)
         require_in_air(self.surface, self.plane, points)
-        known = self.known
-        flux = known.sources.flux(self.surface, self.wavenumber)
-        found = _represent(self.surface, self.plane, points, self.wavenumber, known.pressure, flux)
-        return known.errors_of(points, found)
+        known_field = self.known
+        flux = known_field.sources.flux(self.surface, self.wavenumber)
+        pressure = _represent(self.surface, self.plane, points, self.wavenumber, known_field.pressure, flux)
+        return known_field.errors_of(points, pressure)
 
 
 class BoundaryElements:
@@ -238,7 +239,7 @@ class BoundaryElements:
     Parameters
     ----------
     surface : RadiatingSurface
-        Closed, or flat in the hard plane.
+        Surface, closed or flat in the hard plane.
     medium : Medium
     plane : HardPlane, optional
         A hard floor, or the baffle of a flat face.
@@ -246,7 +247,7 @@ class BoundaryElements:
     Attributes
     ----------
     surface : RadiatingSurface
-        What radiates: the given surface without its triangles that lie in the floor.
+        The given surface without its triangles that lie in the floor.
     uncovered : ndarray of bool, shape (n_given_triangles,)
         Triangles of the given surface that radiate.
     baffled : bool
@@ -332,17 +333,17 @@ class BoundaryElements:
         They are random means of four vertices, so that they turn and grow with the surface. A thin body has none.
         """
         generator = np.random.default_rng(1968)
-        found: list[FloatArray] = []
+        inner: list[FloatArray] = []
         most = max(_FEWEST_INNER, len(self.surface.points) // 3) + _CHECK_POINTS
         centers, reach = self.surface.corners.mean(axis=1), 0.6 * self.surface.lengths
         for trials in range(400):
             chosen = generator.integers(len(self.surface.points), size=(64, 4))
             trial = np.einsum("ti,tij->tj", generator.dirichlet(np.ones(4), size=64), self.surface.points[chosen])
             trial = trial[(np.linalg.norm(trial[:, None] - centers, axis=2) > reach).all(axis=1)]
-            found += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
-            if len(found) >= most or (trials >= _VAIN and not found):
+            inner += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
+            if len(inner) >= most or (trials >= _VAIN and not inner):
                 break
-        return np.array(found[:most]).reshape(-1, 3)
+        return np.array(inner[:most]).reshape(-1, 3)
 
     @cached_property
     def known_sources(self) -> KnownSources:
@@ -382,31 +383,33 @@ class BoundaryElements:
             raise HousingError(f"a frequency of {frequency_hz:g} Hz; expected a positive one")
         self.require_resolved(frequency_hz)
         self.require_few()
-        given = np.asarray(velocity, dtype=np.complex128)
-        if len(given) != 3 * len(self.surface.triangles):
+        velocities = np.asarray(velocity, dtype=np.complex128)
+        if len(velocities) != 3 * len(self.surface.triangles):
             raise HousingError(
-                f"velocities at {len(given)} corners; expected {3 * len(self.surface.triangles)}, three of each "
+                f"velocities at {len(velocities)} corners; expected {3 * len(self.surface.triangles)}, three of each "
                 "triangle that radiates"
             )
-        given = np.ascontiguousarray(given.reshape(len(given), -1))
-        wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, given)
-        inside = np.zeros((0, given.shape[1]), dtype=np.complex128)
+        velocities = np.ascontiguousarray(velocities.reshape(len(velocities), -1))
+        wavenumber, flux = self.medium.wavenumber(frequency_hz), self.medium.flux(frequency_hz, velocities)
+        inside = np.zeros((0, velocities.shape[1]), dtype=np.complex128)
         if self.baffled:
             assert self.plane is not None
             vertices = self.surface.points
-            own = np.arange(len(vertices))
-            pressure = -2.0 * surface_integrals(self.surface, vertices, own, wavenumber, flux).single
-            return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside)
-        sources, columns = self.known_sources, given.shape[1]
+            vertex_numbers = np.arange(len(vertices))
+            pressure = -2.0 * surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux).single
+            return SoundField(self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside)
+        sources, columns = self.known_sources, velocities.shape[1]
         every = self._solve_closed(wavenumber, np.hstack([flux, sources.flux(self.surface, wavenumber)]))
         pressure = every[:, :columns].copy()
-        known = None
+        known_field = None
         if len(sources.places):
-            known = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
+            known_field = KnownField(self.surface, sources, wavenumber, every[:, columns:].copy())
         if self._checks:
             checks = self._inner_points[: self._checks]
             inside = _represent(self.surface, self.plane, checks, wavenumber, pressure, flux)
-        return SoundField(self.surface, self.medium, self.plane, frequency_hz, given, pressure, inside, known)
+        return SoundField(
+            self.surface, self.medium, self.plane, frequency_hz, velocities, pressure, inside, known_field
+        )
 
     def _solve_closed(self, wavenumber: float, flux: ComplexArray) -> ComplexArray:
         """Solve ``c p − ∫ p ∂G/∂n dS = −∫ q G dS`` for the pressure at the vertices, q = ∂p/∂n.
@@ -420,22 +423,22 @@ class BoundaryElements:
         # LAPACK works in place on arrays in Fortran order.
         matrix = np.zeros((rows, count), dtype=np.complex128, order="F")
         right = np.zeros((rows, flux.shape[1]), dtype=np.complex128, order="F")
-        own = np.arange(count)
-        direct = surface_integrals(self.surface, vertices, own, wavenumber, flux)
+        vertex_numbers = np.arange(count)
+        direct = surface_integrals(self.surface, vertices, vertex_numbers, wavenumber, flux)
         matrix[:count], right[:count], free = -direct.double, -direct.single, 1.0 + direct.static
         inside = surface_integrals(self.surface, inner, None, wavenumber, flux)
         matrix[count:], right[count:] = -inside.double, -inside.single
         if self.plane is not None:
             mirrored = self.plane.mirror(vertices)
             touching = np.abs(self.plane.height(vertices)) <= self.surface.rounding
-            image = surface_integrals(self.surface, mirrored, np.where(touching, own, -1), wavenumber, flux)
+            image = surface_integrals(self.surface, mirrored, np.where(touching, vertex_numbers, -1), wavenumber, flux)
             matrix[:count] -= image.double
             right[:count] -= image.single
             free += image.static
             image = surface_integrals(self.surface, self.plane.mirror(inner), None, wavenumber, flux)
             matrix[count:] -= image.double
             right[count:] -= image.single
-        matrix[own, own] += free
+        matrix[vertex_numbers, vertex_numbers] += free
         correction = self._correction
         matrix[correction.row, correction.col] -= free[correction.row] * correction.data
         weights = np.ones(rows)
@@ -478,8 +481,8 @@ def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
     correction = sparse.csr_array((values.ravel(), places), shape=(count, count))
     # Where the whole of a spike at a vertex is taken for curvature, p − B p no longer sees it.
     part = correction.diagonal()
-    kept = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
-    return sparse.coo_array(sparse.diags_array(kept) @ correction)
+    factor = np.where(part > _MOST_CURVATURE, _MOST_CURVATURE / np.where(part > _MOST_CURVATURE, part, 1.0), 1.0)
+    return sparse.coo_array(sparse.diags_array(factor) @ correction)
 
 
 def _represent(
@@ -491,11 +494,11 @@ def _represent(
     flux: ComplexArray,
 ) -> ComplexArray:
     """∫ (p ∂G/∂n − q G) dS at points off the surface, with the images in a hard plane."""
-    found = surface_integrals(surface, points, None, wavenumber, flux)
-    field = found.double @ pressure - found.single
+    integrals = surface_integrals(surface, points, None, wavenumber, flux)
+    field = integrals.double @ pressure - integrals.single
     if plane is not None:
-        found = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
-        field = field + found.double @ pressure - found.single
+        integrals = surface_integrals(surface, plane.mirror(points), None, wavenumber, flux)
+        field = field + integrals.double @ pressure - integrals.single
     return field
 
 
@@ -518,11 +521,11 @@ def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: F
     Parameters
     ----------
     surface : RadiatingSurface
-        Closed, alone or with its mirror image, or flat in the plane.
+        Surface, closed alone or with its mirror image, or flat in the plane.
     plane : HardPlane or None
-        On it points are in the air.
+        Floor; points on it are in the air.
     points : ndarray, shape (n_points, 3)
-        [m].
+        Places [m].
 
     Raises
     ------
@@ -549,10 +552,10 @@ def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: F
 
 
 def surface_product(
-    surface: RadiatingSurface, one: FloatArray | ComplexArray, other: FloatArray | ComplexArray
+    surface: RadiatingSurface, first: FloatArray | ComplexArray, second: FloatArray | ComplexArray
 ) -> ComplexArray:
     """∫ ūᵢ wⱼ dS of fields that are linear on each triangle, given at its corners."""
-    return np.asarray(one.conj().T @ surface_load(surface, other))
+    return np.asarray(first.conj().T @ surface_load(surface, second))
 
 
 def surface_load(surface: RadiatingSurface, field: FloatArray | ComplexArray) -> ComplexArray:

@@ -44,11 +44,11 @@ def _orbits(*orbits: tuple[float, float]) -> FloatArray:
 
 _DEGREE_4 = _orbits((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322))
 
-_TO_CORNERS = 12.0 * np.linalg.inv(np.ones((3, 3)) + np.eye(3))  # from moments of linear functions to their values
+_TO_CORNERS = 12.0 * np.linalg.inv(np.ones((3, 3)) + np.eye(3))  # turns moments of linear functions into their values
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
-_MOST_LEVELS = 7  # of division by two of a triangle near a point
+_MOST_LEVELS = 7  # most halvings of a triangle near a point
 
 _compiled = numba.njit(cache=True, nogil=True, fastmath={"contract", "arcp", "nsz"})
 
@@ -132,12 +132,12 @@ def _corner_triangle(corners, area, k, corner, points, weights, single):  # type
 
     y = x + u ((1 - v) e1 + v e2) has the Jacobian 2 area u, and r = u |(1 - v) e1 + v e2|.
     """
-    one, two = (corner + 1) % 3, (corner + 2) % 3
+    after, last = (corner + 1) % 3, (corner + 2) % 3
     for q in range(points.size):
         v = points[q]
         length = 0.0
         for j in range(3):
-            side = (1.0 - v) * corners[one, j] + v * corners[two, j] - corners[corner, j]
+            side = (1.0 - v) * corners[after, j] + v * corners[last, j] - corners[corner, j]
             length += side * side
         length = math.sqrt(length)
         for p in range(points.size):
@@ -146,8 +146,8 @@ def _corner_triangle(corners, area, k, corner, points, weights, single):  # type
             scale = 2.0 * area * weights[q] * weights[p] / (4.0 * math.pi * length)
             g = complex(scale * math.cos(kr), -scale * math.sin(kr))
             single[corner] += (1.0 - u) * g
-            single[one] += u * (1.0 - v) * g
-            single[two] += u * v * g
+            single[after] += u * (1.0 - v) * g
+            single[last] += u * v * g
 
 
 @_compiled
@@ -198,10 +198,10 @@ def _far_points(x, places, projections, weights, k, g, dg, dg0):  # type: ignore
 
 @_compiled
 def _integrate_rows(  # type: ignore[no-untyped-def]
-    targets, own, corners, triangles, normals, areas, sizes, centers, k, rule, places, point_normals, point_weights,
+    targets, vertex, corners, triangles, normals, areas, sizes, centers, k, rule, places, point_normals, point_weights,
     near_rule, duffy, weights, single, double, static,
 ):  # fmt: skip
-    """Integrals over all triangles for some points; `own` is the vertex that a point is, or -1."""
+    """Integrals over all triangles for some points; `own` is the vertex at a point, or -1."""
     count = rule.shape[0]
     far_g, far_dg, far_dg0 = np.empty((2, places.shape[1])), np.empty((2, places.shape[1])), np.empty(places.shape[1])
     g, dg, dg0 = np.empty(3, np.complex128), np.empty(3, np.complex128), np.empty(3)
@@ -214,13 +214,13 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
             away = (centers[e, 0] - x[0]) ** 2 + (centers[e, 1] - x[1]) ** 2 + (centers[e, 2] - x[2]) ** 2
             if away > 9.0 * sizes[e] * sizes[e]:
                 for i in range(3):
-                    one, two = 0j, 0j
+                    single_sum, double_sum = 0j, 0j
                     for q in range(count):
                         place = e * count + q
-                        one += rule[q, i] * complex(far_g[0, place], far_g[1, place])
-                        two += rule[q, i] * complex(far_dg[0, place], far_dg[1, place])
-                    single[t, 3 * e + i] = one
-                    double[t, triangles[e, i]] += two
+                        single_sum += rule[q, i] * complex(far_g[0, place], far_g[1, place])
+                        double_sum += rule[q, i] * complex(far_dg[0, place], far_dg[1, place])
+                    single[t, 3 * e + i] = single_sum
+                    double[t, triangles[e, i]] += double_sum
                 for q in range(count):
                     total += far_dg0[e * count + q]
                 continue
@@ -228,7 +228,7 @@ def _integrate_rows(  # type: ignore[no-untyped-def]
                 g[i], dg[i], dg0[i] = 0.0, 0.0, 0.0
             corner = -1
             for i in range(3):
-                if triangles[e, i] == own[t]:
+                if triangles[e, i] == vertex[t]:
                     corner = i
             if corner >= 0:
                 _corner_triangle(corners[e], areas[e], k, corner, duffy, weights, g)
@@ -251,7 +251,7 @@ class SourcePoints:
     Attributes
     ----------
     places, normals : ndarray, shape (3, n)
-        [m]
+        Places [m] and unit normals.
     weights : ndarray, shape (n,)
         Area that each stands for [m²].
     triangles : ndarray of int, shape (n_triangles, 3)
@@ -282,8 +282,8 @@ def linear_projection(surface: RadiatingSurface, field: Callable[[FloatArray], C
     """
     moments = sum(
         weight * shares[None, :, None] * field(np.einsum("a,eaj->ej", shares, surface.corners))[:, None]
-        for *given, weight in _DEGREE_4
-        for shares in (np.array(given),)
+        for *barycentric, weight in _DEGREE_4
+        for shares in (np.array(barycentric),)
     )
     return np.asarray(np.einsum("ab,ebn->ean", _TO_CORNERS, moments).reshape(3 * len(surface.triangles), -1))
 

@@ -6,9 +6,9 @@ A monopole at y inside a closed surface radiates, for the time factor exp(+i ω 
 
 over a hard plane together with its image. That is a sound field of the air outside, and it is the solution for its own
 normal velocity on the surface. The boundary elements solve for the same velocity, beside those of the housing and with
-the same factorisation; what they find is held against the exact pressure, at every vertex and at points in the air.
+the same factorisation; their pressure is compared with the exact one, at every vertex and at points in the air.
 
-It sees what the other proofs do not: where the equations leave one vertex nearly free, its pressure has no part in
+This proof sees what others do not: where the equations leave one vertex nearly free, its pressure has no part in
 them, and hence none in the pressure inside and hardly any in the power.
 
 The error is relative to the amplitude of the source at the same place, Σ 1/r over source and image, which has no
@@ -37,13 +37,13 @@ SOURCE_DEPTH = 1.0
 """Longest edges from the centre of every triangle that a source has to stand away from.
 
 The linear functions of a triangle follow exp(−i k r) / r the worse the nearer the source is. From this distance on
-that no longer counts beside the wave's own: at six edges a wavelength, and at three, sources three times as deep have
+the wavelength alone counts: at six edges a wavelength, and at three, sources three times as deep have
 the same error within a tenth; at twelve the largest is less than twice as much.
 """
 
 _GAP = 0.1  # longest edges between a triangle and the floor that it faces, below which its vertices do not count
 _FACING = -0.5  # cosine of its normal against the floor's
-_APART = 0.6  # of the largest depth that the second source has to have
+_APART = 0.6  # least depth of the second source, as a part of the largest depth
 _ROWS = 64  # points whose distances from all triangles are held at once
 
 
@@ -54,8 +54,8 @@ class SourceError:
     Attributes
     ----------
     largest : float
-        Of all vertices that count, relative to the amplitude of the source there. Infinite where no source can stand,
-        zero where there is nothing to prove.
+        Largest error of all vertices that count, relative to the amplitude of the source there. Infinite where no
+        source can stand, zero where there is nothing to prove.
     rms : float
         Root mean square over the vertices.
     place : tuple of float
@@ -68,9 +68,9 @@ class SourceError:
 
 
 NOTHING_TO_PROVE = SourceError(0.0, 0.0)
-"""Of a flat face and of an estimate, which solve no equations."""
+"""Source error of a flat face and of an estimate, which solve no equations."""
 NO_SOURCE = SourceError(np.inf, np.inf)
-"""Of a body that is too thin, beside its triangles, for a source inside."""
+"""Source error of a body that is too thin, beside its triangles, for a source inside."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class KnownSources:
     Attributes
     ----------
     places : ndarray, shape (n, 3)
-        [m]
+        Places [m].
     plane : HardPlane or None
     """
 
@@ -123,20 +123,20 @@ class KnownSources:
 
     def pressure(self, points: FloatArray, wavenumber: float) -> ComplexArray:
         """Exact pressure exp(−i k r) / r of source and image, shape (n_points, n)."""
-        found = np.zeros((len(points), len(self.places)), dtype=np.complex128)
+        pressure = np.zeros((len(points), len(self.places)), dtype=np.complex128)
         for arm in self._arms(points):
             r = np.linalg.norm(arm, axis=2)
-            found += np.exp(-1j * wavenumber * r) / r
-        return found
+            pressure += np.exp(-1j * wavenumber * r) / r
+        return pressure
 
     def slope(self, points: FloatArray, normals: FloatArray, wavenumber: float) -> ComplexArray:
         """Exact derivative ∂p/∂n of the pressure along normals, shape (n_points, n)."""
-        found = np.zeros((len(points), len(self.places)), dtype=np.complex128)
+        slope = np.zeros((len(points), len(self.places)), dtype=np.complex128)
         for arm in self._arms(points):
             r = np.linalg.norm(arm, axis=2)
             along = np.einsum("psj,pj->ps", arm, normals)
-            found -= (1.0 + 1j * wavenumber * r) * np.exp(-1j * wavenumber * r) * along / r**3
-        return found
+            slope -= (1.0 + 1j * wavenumber * r) * np.exp(-1j * wavenumber * r) * along / r**3
+        return slope
 
     def flux(self, surface: RadiatingSurface, wavenumber: float) -> ComplexArray:
         """∂p/∂n at the corners of the triangles as linear functions, shape (3 n_triangles, n)."""
@@ -148,9 +148,9 @@ class KnownSources:
         Each triangle has its own linear function; a vertex has the mean of those of its triangles.
         """
         corners = linear_projection(surface, lambda points: self.pressure(points, wavenumber))
-        found = np.zeros((len(surface.points), corners.shape[1]), dtype=np.complex128)
-        np.add.at(found, surface.triangles.ravel(), corners)
-        return np.asarray(found / np.bincount(surface.triangles.ravel())[:, None])
+        totals = np.zeros((len(surface.points), corners.shape[1]), dtype=np.complex128)
+        np.add.at(totals, surface.triangles.ravel(), corners)
+        return np.asarray(totals / np.bincount(surface.triangles.ravel())[:, None])
 
 
 @dataclass(frozen=True)
@@ -161,11 +161,11 @@ class KnownField:
     ----------
     surface : RadiatingSurface
     sources : KnownSources
-        At least one.
+        The sources, at least one.
     wavenumber : float
         k [rad/m].
     pressure : ndarray, shape (n_vertices, n)
-        As found, in the unit of the sources' amplitude.
+        The computed pressure, in the unit of the sources' amplitude.
     """
 
     surface: RadiatingSurface
@@ -187,17 +187,17 @@ class KnownField:
         x, y, z = self.surface.points[counted[np.argmax(errors.max(axis=1))]].tolist()
         return SourceError(float(errors.max()), float(np.sqrt((errors**2).mean(axis=0)).max()), (x, y, z))
 
-    def errors_of(self, points: FloatArray, found: ComplexArray) -> FloatArray:
+    def errors_of(self, points: FloatArray, pressure: ComplexArray) -> FloatArray:
         """Error of the pressure found at points in the air, relative to the amplitude there, shape (n_points,).
 
         Parameters
         ----------
         points : ndarray, shape (n_points, 3)
-            [m]
-        found : ndarray, shape (n_points, n)
+            Points [m].
+        pressure : ndarray, shape (n_points, n)
             Pressure of each source.
         """
-        apart = np.abs(found - self.sources.pressure(points, self.wavenumber)) / self.sources.amplitude(points)
+        apart = np.abs(pressure - self.sources.pressure(points, self.wavenumber)) / self.sources.amplitude(points)
         return np.asarray(apart.max(axis=1))
 
 
@@ -214,8 +214,8 @@ def over_narrow_gap(surface: RadiatingSurface, plane: HardPlane | None) -> npt.N
 def depths(surface: RadiatingSurface, points: FloatArray) -> FloatArray:
     """Distance of points from the centre of the nearest triangle in its longest edges, shape (n_points,)."""
     centers = surface.corners.mean(axis=1)
-    found = [np.zeros(0)]
+    parts = [np.zeros(0)]
     for start in range(0, len(points), _ROWS):
         apart = np.linalg.norm(points[start : start + _ROWS, None] - centers, axis=2)
-        found.append((apart / surface.lengths).min(axis=1))
-    return np.concatenate(found)
+        parts.append((apart / surface.lengths).min(axis=1))
+    return np.concatenate(parts)

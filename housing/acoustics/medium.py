@@ -64,7 +64,7 @@ class HardPlane:
     Attributes
     ----------
     point : ndarray, shape (3,)
-        On the plane [m].
+        A point of the plane [m].
     normal : ndarray, shape (3,)
         Unit normal into the air.
     """

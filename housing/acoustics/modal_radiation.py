@@ -29,7 +29,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class SolvedAt(NamedTuple):
-    """Radiation at one of the frequencies, as :class:`ModalRadiation` has it of all."""
+    """Radiation at one frequency; :class:`ModalRadiation` has it at all."""
 
     resistance: FloatArray
     surface_resistance: FloatArray
@@ -72,17 +72,17 @@ class ModalRadiation:
     Attributes
     ----------
     frequencies : ndarray, shape (f,)
-        Evenly spaced [Hz].
+        Frequencies, evenly spaced [Hz].
     resistance : ndarray, shape (f, n, n)
         Radiation resistance R from the far field, symmetric: rates q̇ have the power ½ q̇ᴴ R q̇ [W s²/(kg m²)].
     surface_resistance : ndarray, shape (f, n, n)
-        The same from the surface.
+        Radiation resistance from the intensity on the surface.
     surface_reactance : ndarray, shape (f, n, n)
         Imaginary part of ∫ vᵢ pⱼ dS, symmetric: power that the modes exchange, and that none of them radiates.
     pressure : ndarray of complex, shape (f, m, n)
-        At m points, times exp(+i ω delay) [Pa per unit rate].
+        Pressure at m points, times exp(+i ω delay) [Pa per unit rate].
     delays : ndarray, shape (m,)
-        Of the air, from the middle of the housing [s].
+        Delays of the air, from the middle of the housing [s].
     interior_residual : ndarray, shape (f,)
         Largest pressure inside, see :attr:`housing.acoustics.boundary_elements.SoundField.interior_residual`.
     source_error, source_rms : ndarray, shape (f,)
@@ -124,12 +124,12 @@ class ModalRadiation:
         Parameters
         ----------
         radiation : HousingRadiation
-            By any method; one with pressures where there are places.
+            Radiation by any method; one with pressures where there are places.
         places : ndarray, shape (m, 3)
-            In the air [m].
+            Places in the air [m].
         lowest, highest : float
         points : int
-            Odd.
+            Number of frequencies, odd.
         each : callable
             A map of a function over the frequencies, in order, such as one by several threads.
         """
@@ -192,7 +192,7 @@ class ModalRadiation:
         return bool(self.frequencies[0] - rounding <= frequency_hz <= self.frequencies[-1] + rounding)
 
     def around(self, frequency_hz: float, values: FloatArray) -> float:
-        """Largest of some values of each frequency at the two that a frequency lies between."""
+        """Largest of some values at the two frequencies of the table around a frequency."""
         above = min(int(np.searchsorted(self.frequencies, frequency_hz)), len(self.frequencies) - 1)
         return float(values[max(above - 1, 0) : above + 1].max(initial=0.0))
 

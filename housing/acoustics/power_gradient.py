@@ -1,6 +1,6 @@
 r"""Gradient of the sound power of a housing at a frequency: radiation resistance of all modes, and the adjoint load.
 
-The sound power of the rates q̇ of the modes' coordinates is a quadratic form, and so is that of the velocity v of the
+The sound power is a quadratic form of the rates q̇ of the modes' coordinates, and of the normal velocity v of the
 radiating surface, v = iω T u with the transfer T from the displacements u of the housing's nodes:
 
     W = ½ q̇ᴴ R q̇ = ½ Re ∫ v* Z v dS.
@@ -17,11 +17,11 @@ by
 
 φ the shape functions of the triangles' corners: g is the adjoint load, over the nodes of the whole skin (F. Fahy and
 P. Gardonio, *Sound and Structural Vibration*, 2nd ed., 2007, section 2.4, on Re Z; Choi and Kim, *Structural
-Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the adjoint load). Of the equivalent radiated power
-Z = ρc, and g is exact; of boundary elements it is as good as their reciprocity,
+Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the adjoint load). For the equivalent radiated power
+Z = ρc, and g is exact; for boundary elements it is as good as their reciprocity,
 :attr:`~housing.acoustics.boundary_elements.SoundField.reciprocity_error`.
 
-The radiating surface is held. Where the mesh slides along it, as on a wall beside one that gets thicker, it moves with
+The radiating surface stays. Where the mesh slides along it, as on a wall beside one that gets thicker, it moves with
 other points of the housing, and the power changes by their motion too. The change of the surface itself is left out: to
 first order a wall that gets thicker inwards does not move it.
 """
@@ -48,9 +48,9 @@ class PowerGradient:
     Attributes
     ----------
     radiation : HousingRadiation
-        With the modes.
+        Radiation with the modes.
     unit : RadiatedSound
-        Of a unit rate of each mode's coordinate.
+        Sound of a unit rate of each mode's coordinate.
     """
 
     radiation: HousingRadiation
@@ -102,9 +102,9 @@ class PowerGradient:
         rates : ndarray of complex, shape (n_modes,)
             q̇.
         motion : ndarray of complex, shape (n_nodes, 3)
-            u, the displacement of the nodes at these rates [m].
+            Displacement u of the nodes at these rates [m].
         velocity : ndarray, shape (n_nodes, 3)
-            Of the nodes per unit of a parameter [m].
+            Velocity of the nodes per unit of a parameter [m].
         """
         loads = zip(self.radiation.skins, self._corner_loads(rates), strict=True)
         total = sum(np.vdot(points.sliding(velocity, motion), load) for points, load in loads)

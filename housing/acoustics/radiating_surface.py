@@ -127,7 +127,7 @@ class RadiatingSurface:
         distances : ndarray, shape (n,)
             Between them [m].
         """
-        found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
+        columns = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
         centers = self.corners.mean(axis=1)
         for start in range(0, len(points), 64):
             some = points[start : start + 64]
@@ -136,8 +136,8 @@ class RadiatingSurface:
             shares = closest_on_triangles(self.corners[triangle], some[row])
             away = np.linalg.norm(np.einsum("pa,paj->pj", shares, self.corners[triangle]) - some[row], axis=1)
             near = away < part * self.lengths[triangle]
-            found.append((start + row[near], triangle[near], away[near]))
-        numbers, triangles, distances = (np.concatenate(one) for one in zip(*found, strict=True))
+            columns.append((start + row[near], triangle[near], away[near]))
+        numbers, triangles, distances = (np.concatenate(one) for one in zip(*columns, strict=True))
         return numbers, triangles, distances
 
     def highest_frequency(self, speed_of_sound: float, elements: float = 6.0) -> float:

@@ -42,7 +42,7 @@ SOURCE_OFF = 1.0
 """Error of a known source's pressure at a vertex above which a solution is doubtful: it is as large as the pressure."""
 
 SOURCE_LOST = 10.0
-"""Error of a known source's pressure at a vertex above which a solution is refused: the equations do not hold it.
+"""Error of a known source's pressure at a vertex above which a solution is refused: the equations leave it free.
 
 No body of the study in the documentation had as much, with triangles as large as they may be."""
 
@@ -106,7 +106,7 @@ class EquivalentField:
 
     @property
     def surface_resistance(self) -> FloatArray:
-        """The same."""
+        """Radiation resistance of the estimate; the two are the same."""
         return self.resistance
 
     @property
@@ -116,7 +116,7 @@ class EquivalentField:
 
     @property
     def source_error(self) -> SourceError:
-        """None: an estimate has no equations."""
+        """Zero: an estimate has no equations."""
         return NOTHING_TO_PROVE
 
 
@@ -157,7 +157,7 @@ class RadiatedSound:
 
     @property
     def surface_power(self) -> float:
-        """The same by the intensity on the surface [W]."""
+        """Radiated power by the intensity on the surface [W]."""
         return float(0.5 * sum(field.surface_resistance.sum() for field in self.fields))
 
     @property
@@ -183,7 +183,7 @@ class RadiatedSound:
 
     @property
     def interior_residual(self) -> float:
-        """Largest of the fields', see :class:`housing.acoustics.boundary_elements.SoundField`; infinite: no proof."""
+        """Largest of all fields, see :class:`housing.acoustics.boundary_elements.SoundField`; infinite: no proof."""
         return max(field.interior_residual for field in self.fields)
 
     @property
@@ -218,7 +218,7 @@ class RadiatedSound:
         return f"{_of_source(error)}; use triangles of another size, best smaller ones"
 
     def require_proofs(self) -> None:
-        """Refuse a solution whose powers differ, or that does not hold known sources.
+        """Refuse a solution whose powers differ, or that is wrong for known sources.
 
         Raises
         ------
@@ -249,7 +249,7 @@ class RadiatedSound:
         Raises
         ------
         HousingError
-            With both.
+            With both powers.
         """
         if abs(self.surface_power - self.power) > POWERS_AGREE * abs(self.power):
             raise HousingError(
@@ -271,22 +271,22 @@ class RadiatedSound:
     def by_mode(self) -> FloatArray:
         """Part of each mode in the surface power of the sum [W], shape (n_modes,): ½ Re q̇̄ᵢ ∫ vᵢ p dS."""
         rates = self.coordinates.sum(axis=1)
-        found = np.zeros(len(rates))
+        powers = np.zeros(len(rates))
         for field, modal in zip(self.fields, self.modal, strict=True):
             pressure = field.pressure_at_corners.sum(axis=1, keepdims=True)
-            found += 0.5 * (rates.conj() * surface_product(field.surface, modal, pressure)[:, 0]).real
-        return found
+            powers += 0.5 * (rates.conj() * surface_product(field.surface, modal, pressure)[:, 0]).real
+        return powers
 
     @cached_property
     def intensity(self) -> FloatArray:
         """Mean sound intensity of the sum out of each triangle [W/m²], of all fields one after the other."""
-        found = []
+        intensities = []
         for field in self.fields:
             shape = (len(field.surface.triangles), 3)
             velocity, pressure = field.velocity.sum(axis=1).reshape(shape), field.pressure_at_corners.sum(axis=1)
             mean = (np.ones((3, 3)) + np.eye(3)) / 12.0
-            found.append(0.5 * np.einsum("ea,ab,eb->e", velocity.conj(), mean, pressure.reshape(shape)).real)
-        return np.concatenate(found)
+            intensities.append(0.5 * np.einsum("ea,ab,eb->e", velocity.conj(), mean, pressure.reshape(shape)).real)
+        return np.concatenate(intensities)
 
     @property
     def by_face(self) -> dict[str, float]:
@@ -328,9 +328,9 @@ class RadiatedSound:
 
 def _of_source(error: SourceError) -> str:
     place, percent = ", ".join(f"{1e3 * one:.4g}" for one in error.place), 100.0 * error.largest
-    told = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
+    shown = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
     return (
-        f"the pressure of a known source inside is off by {told} % at the vertex ({place}) mm of the radiating surface"
+        f"the pressure of a known source inside is off by {shown} % at the vertex ({place}) mm of the radiating surface"
     )
 
 
@@ -347,7 +347,7 @@ Sound = TypeVar("Sound", bound=Powers)
 
 
 def counting(sounds: Sequence[Sound]) -> list[Sound]:
-    """Return those of a motion's lines whose power counts beside that of all, by either way to find it."""
+    """Return the lines of a motion whose power, by either method, counts beside the power of all."""
     least = COUNTS * sum(sound.power for sound in sounds)
     return [sound for sound in sounds if max(sound.power, sound.surface_power) > least]
 
@@ -365,7 +365,7 @@ def require_proved(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> l
     Returns
     -------
     list of RadiatedSound
-        Those that count. Lines below 1e-4 of the whole power, by both powers, change its level by 0.0004 dB at most.
+        Sounds that count. Lines below 1e-4 of the whole power, by both powers, change its level by 0.0004 dB at most.
         A sound alone counts above a radiation efficiency of 1e-4; below it the parts of neighbouring areas cancel to
         four digits in the power through the surface, which has no digit left that could prove the other.
 
@@ -394,7 +394,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     ----------
     mesh : Mesh
     edge : float
-        Of the triangles [m].
+        Edge of the triangles [m].
     close_holes : float
         Diameter of the largest hole that is capped [m].
     floor : HardPlane, optional
@@ -460,7 +460,7 @@ class HousingRadiation:
         mesh : Mesh
         shapes : ndarray, shape (n_modes, n_nodes, 3)
         edge : float
-            Of the triangles [m].
+            Edge of the triangles [m].
         close_holes : float
             Diameter of the largest hole that is capped [m].
         method : {"boundary-elements", "erp"}
@@ -589,8 +589,8 @@ class HousingRadiation:
     @cached_property
     def _grams(self) -> tuple[FloatArray, ...]:
         return tuple(
-            surface_product(one.surface, modal, modal).real
-            for one, modal in zip(self.elements, self.modal, strict=True)
+            surface_product(element.surface, modal, modal).real
+            for element, modal in zip(self.elements, self.modal, strict=True)
         )
 
     def with_shapes(self, shapes: FloatArray) -> "HousingRadiation":

@@ -42,9 +42,9 @@ class Skin:
     nodes : ndarray of int, shape (n, 3)
         Nodes at the corners of each triangle, counter-clockwise seen from outside.
     corners : ndarray, shape (n, 3, 3)
-        Their places [m].
+        Places of the corners [m].
     facet : ndarray of int, shape (n,)
-        Facet that each is a part of, counted block after block.
+        Facet of each triangle, counted block after block.
     places : ndarray, shape (n, 3, 2)
         Reference coordinates of the corners in the facet.
     """
@@ -74,7 +74,7 @@ class Skin:
         points : ndarray, shape (m, 3)
             Middles of the parts [m].
         owners : ndarray of int, shape (m,)
-            Their triangles.
+            Triangle of each middle.
         """
         edges = np.linalg.norm(np.roll(self.corners, -1, axis=1) - self.corners, axis=2)
         parts = np.ceil(edges.max(axis=1) / spacing).astype(np.int64)
@@ -94,15 +94,15 @@ class Skin:
         places, normals : ndarray, shape (m, 3)
             Places [m] and their unit normals.
         spacing : float
-            Of the samples among which candidates are sought [m].
+            Spacing of the samples among which candidates are sought [m].
         turned : float
             Distance that counts as much as a unit difference of the normals [m]: the sum of squares of distance and
             difference is least.
         """
         points, owners = self.samples(spacing)
         tree = cKDTree(np.hstack([points, turned * self.normals[owners]]), balanced_tree=False)
-        _, found = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
-        candidates = owners[np.reshape(found, (len(places), -1))]
+        _, sample_numbers = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
+        candidates = owners[np.reshape(sample_numbers, (len(places), -1))]
         shares = closest_on_triangles(self.corners[candidates], places[:, None])
         feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])
         gaps = np.linalg.norm(feet - places[:, None], axis=2)
@@ -122,9 +122,9 @@ class NearestSkin:
     shares : ndarray, shape (m, 3)
         Barycentric coordinates in them.
     points : ndarray, shape (m, 3)
-        [m].
+        Nearest points [m].
     distances : ndarray, shape (m,)
-        [m].
+        Distances to them [m].
     """
 
     triangles: IntArray

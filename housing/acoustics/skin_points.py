@@ -60,10 +60,10 @@ class SkinPoints:
     Attributes
     ----------
     places : ndarray, shape (n_nodes, 3)
-        Of the mesh's nodes [m].
+        Places of the mesh's nodes [m].
     groups : tuple of FacetPoints
     normals : ndarray, shape (n_points, 3)
-        Of the radiating surface at all points.
+        Normals of the radiating surface at all points.
     projection : csr_array, shape (3 n_triangles, n_points)
         Normal velocities at the corners of the triangles from those of all points.
     """
@@ -74,7 +74,7 @@ class SkinPoints:
     projection: sparse.csr_array
 
     def on(self, triangles: BoolArray) -> "SkinPoints":
-        """Return those of some of the triangles, shape (n_triangles,)."""
+        """Return the points of some of the triangles, shape (n_triangles,)."""
         return replace(self, projection=self.projection[np.repeat(triangles, 3)])
 
     @cached_property
@@ -97,9 +97,9 @@ class SkinPoints:
         Parameters
         ----------
         velocity : ndarray, shape (n_nodes, 3)
-            V, of the nodes per unit of a parameter [m].
+            Velocity V of the nodes per unit of a parameter [m].
         motion : ndarray of complex, shape (n_nodes, 3)
-            Of the nodes, such as their displacement u [m].
+            Motion of the nodes, such as their displacement u [m].
 
         Returns
         -------

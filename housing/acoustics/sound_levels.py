@@ -11,9 +11,9 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 REFERENCE_POWER = 1e-12
-"""[W]"""
+"""Reference sound power [W]."""
 REFERENCE_PRESSURE = 20e-6
-"""[Pa]"""
+"""Reference sound pressure [Pa]."""
 
 BOX_MICROPHONES = 9
 """Microphones of a :func:`measurement_box`."""
@@ -67,7 +67,7 @@ def third_octave_bands(frequencies_hz: FloatArray, powers: FloatArray) -> tuple[
     nominal : ndarray, shape (n,)
         Nominal mid-band frequencies from the lowest band with a line to the highest [Hz].
     sums : ndarray, shape (n,)
-        In the unit of the powers.
+        Sums in the unit of the powers.
     """
     if len(frequencies_hz) == 0:
         return np.zeros(0), np.zeros(0)
@@ -90,14 +90,14 @@ def measurement_box(low: FloatArray, high: FloatArray, distance: float) -> tuple
     low, high : ndarray, shape (3,)
         Corners of the reference box [m].
     distance : float
-        [m]
+        Distance [m].
 
     Returns
     -------
     positions : ndarray, shape (9, 3)
         [m]: +x, -x, +z, -z, top, and the corners (+x +z), (-x +z), (+x -z), (-x -z).
     area : float
-        [m²]
+        Area of the measurement surface [m²].
     """
     middle, half = 0.5 * (low + high), 0.5 * (high - low) + distance
     height = high[1] - low[1] + distance

@@ -32,7 +32,7 @@ _WEIGHTS = _RULE_WEIGHTS / _RULE_WEIGHTS.sum()
 # Corner values from values at the points: the inverse of the mass matrix area (1 + delta_ij) / 12, times the load.
 _PROJECTION = 12.0 * (np.eye(3) - 0.25) @ (_SHARES * _WEIGHTS[:, None]).T
 
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # of a triangle, in its own coordinates
+_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # corners of a triangle in its own coordinates
 
 _SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
@@ -51,9 +51,9 @@ class SurfaceVelocity:
     mesh : Mesh
     surface : RadiatingSurface
     skin : Skin
-        Of the mesh's boundary.
+        Skin of the mesh's boundary.
     nearest : NearestSkin
-        For the six points of each triangle, triangle after triangle.
+        Nearest points of the six points of each triangle, triangle after triangle.
     """
 
     mesh: Mesh
@@ -94,15 +94,15 @@ class SurfaceVelocity:
         """Distance of each vertex outside the caps from the skin [m]; 0 in caps."""
         free = np.ones(len(self.surface.points), dtype=bool)
         free[self.surface.triangles[self.caps]] = False
-        found = np.zeros(len(free))
+        distances = np.zeros(len(free))
         # The corners of a triangle look its way; the least distance of a vertex by any of them counts.
         corners = self.surface.triangles
         places, normals = self.surface.points[corners].reshape(-1, 3), np.repeat(self.surface.normals, 3, axis=0)
         away = self.skin.nearest(places, normals, _SPACING * self.edge, _TURNED * self.edge).distances
         least = np.full(len(free), np.inf)
         np.minimum.at(least, corners.ravel(), away)
-        found[free] = least[free]
-        return found
+        distances[free] = least[free]
+        return distances
 
     def transfer(self, without: Sequence[str | Facets] = ()) -> sparse.csr_array:
         """Matrix from nodal velocities to normal velocities at the corners of the triangles.
@@ -157,23 +157,23 @@ class SurfaceVelocity:
         share = np.repeat(self.surface.areas, len(_WEIGHTS)) * np.tile(_WEIGHTS, len(self.surface.triangles))
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
-        own = np.array([""] * n_facets, dtype=object)
+        names = np.array([""] * n_facets, dtype=object)
         sizes = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(self.mesh, boundary)])
         whole = np.bincount(numbers, sizes)
         for name in self.mesh.surfaces:
             members = _members(self.mesh, (name,))
             part = np.bincount(numbers[members], sizes[members], len(whole))
-            own[np.isin(numbers, np.flatnonzero(part > 0.5 * whole))] = name
+            names[np.isin(numbers, np.flatnonzero(part > 0.5 * whole))] = name
         large = [n for n in np.argsort(-area, kind="stable").tolist() if area[n] > _LARGE * self.surface.area]
         for place, number in enumerate(large):
             at = numbers == number
-            if not own[at][0]:
-                own[at] = f"face {place + 1}"
+            if not names[at][0]:
+                names[at] = f"face {place + 1}"
         middle = self.facets[:, int(np.argmax(_WEIGHTS))]
         labels = []
         for e, facet in enumerate(middle.tolist()):
             axis = _direction(self.surface.normals[e])
-            label = own[facet]
+            label = names[facet]
             if self.caps[e]:
                 label = "cap"
             elif not label:
@@ -192,7 +192,7 @@ def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
     mesh : Mesh
         The housing's finite elements.
     surface : RadiatingSurface
-        Around it.
+        Radiating surface around the housing.
     """
     skin = skin_of(mesh, mesh.boundary)
     edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
@@ -295,12 +295,12 @@ def face_surface(mesh: Mesh, facets: Facets) -> tuple[RadiatingSurface, SkinPoin
     ----------
     mesh : Mesh
     facets : tuple of ElementBlock
-        Outward.
+        Facets, seen from outside.
 
     Returns
     -------
     surface : RadiatingSurface
-        Open, if the facets are.
+        Surface of the facets, open if they are.
     points : SkinPoints
         The corners of the triangles.
 
@@ -335,17 +335,17 @@ def _triangle_skin(surface: RadiatingSurface) -> Skin:
 def _members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
     """Numbers of the boundary facets, block after block, that belong to surfaces."""
     wanted = [block for one in surfaces for block in (mesh.surface(one) if isinstance(one, str) else one)]
-    found, first = [np.empty(0, dtype=np.int64)], 0
+    members, first = [np.empty(0, dtype=np.int64)], 0
     for block in mesh.boundary:
-        own = np.sort(block.corners, axis=1)
+        corners = np.sort(block.corners, axis=1)
         for other in wanted:
-            if other.of.n_corners == own.shape[1]:
-                both = np.concatenate([own, np.sort(other.corners, axis=1)])
+            if other.of.n_corners == corners.shape[1]:
+                both = np.concatenate([corners, np.sort(other.corners, axis=1)])
                 _, number = np.unique(both, axis=0, return_inverse=True)
                 number = number.ravel()
-                found.append(first + np.flatnonzero(np.isin(number[: len(own)], number[len(own) :])))
+                members.append(first + np.flatnonzero(np.isin(number[: len(corners)], number[len(corners) :])))
         first += len(block)
-    return np.unique(np.concatenate(found))
+    return np.unique(np.concatenate(members))
 
 
 def _direction(normal: FloatArray) -> str:

@@ -31,12 +31,12 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _FINE = 3  # fine cells along a cell of the wrap
-_MOST_CELLS = 3e7  # of the fine grid: about 2 GB
+_MOST_CELLS = 3e7  # cells of the fine grid: about 2 GB
 _FILLED = 0.3  # least part of a cell's fine cells that makes it solid: a plate of one layer is a third
 _OPEN = 0.2  # largest open part of the border of a cavity: a cube without its lid has a sixth
 _WIDER = 1.4  # steps of the ball that seeks a leak
 _INSIDE = 0.15  # part of the whole above which a cavity that is open is a leak
-_ROUNDS = 14  # of moving the vertices onto the skin
+_ROUNDS = 14  # rounds that move the vertices onto the skin
 _TURN = 0.7  # cells that a right angle between face and skin counts as distance, over sqrt(2)
 _AGREE = 0.3  # least cosine between a face and the skin that it is moved to
 _LEAST = 0.2  # square cells added to each face's area where faces are weighted
@@ -67,7 +67,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     Returns
     -------
     RadiatingSurface
-        Closed.
+        Closed surface.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     _require_tight(coarse, origin, cell, close_holes)
     points, quads = _surface_net(coarse)
     places, owners = skin.samples(cell / 3.0)
-    # Outer are the samples before which there is air.
+    # A sample with air before it is an outer one.
     ahead = np.floor((places + 1.5 * fine * skin.normals[owners] - origin) / fine).astype(np.int64)
     outer = ~solid[tuple(ahead.T)]
     surface = RadiatingSurface(
@@ -143,21 +143,21 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
     regions = np.where(cores > 0, cores, np.where(rest, ndimage.maximum_filter(cores, 3), 0))
     open_faces, all_faces = np.zeros(count + 1), np.zeros(count + 1)
     for axis in range(3):
-        for here, there in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
-            own = regions[(slice(None),) * axis + (here,)]
-            other = tuple([slice(None)] * axis + [there])
-            border = (own > 0) & (regions[other] != own)
-            all_faces += np.bincount(own[border], minlength=count + 1)
-            open_faces += np.bincount(own[border & free[other]], minlength=count + 1)
-    kept = open_faces < _OPEN * all_faces
-    kept[0] = False
-    return np.asarray(~_outside(free & ~kept[regions]))
+        for near, far in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            region = regions[(slice(None),) * axis + (near,)]
+            other = tuple([slice(None)] * axis + [far])
+            border = (region > 0) & (regions[other] != region)
+            all_faces += np.bincount(region[border], minlength=count + 1)
+            open_faces += np.bincount(region[border & free[other]], minlength=count + 1)
+    enclosed = open_faces < _OPEN * all_faces
+    enclosed[0] = False
+    return np.asarray(~_outside(free & ~enclosed[regions]))
 
 
 def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_holes: float) -> None:
     """Refuse a wrap with an inside that is open to the air.
 
-    It has one where a ball wider than the holes to be closed finds a cavity of some size that it cannot enter.
+    The wrap has one where a ball wider than the holes to be closed finds a large cavity that it cannot enter.
     """
     radius, largest = max(0.5 * close_holes / cell, 1.0), 0.5 * max(np.ptp(np.argwhere(solid), axis=0) + 1)
     tight = radius
@@ -168,9 +168,9 @@ def _require_tight(solid: BoolArray, origin: FloatArray, cell: float, close_hole
         leaking = tight / _WIDER
         for _ in range(6):
             middle = 0.5 * (leaking + tight)
-            found = _large_cavity(solid, middle)
-            if found[0] > 0.0:
-                tight, opening = middle, found[1]
+            larger = _large_cavity(solid, middle)
+            if larger[0] > 0.0:
+                tight, opening = middle, larger[1]
             else:
                 leaking = middle
         x, y, z = 1e3 * (origin + cell * (opening + 0.5))
@@ -204,7 +204,7 @@ _BLOCK = np.array(list(product((0, 1), repeat=3)))  # places of the cells of a b
 
 @cache
 def _repairs() -> IntArray:
-    """For each pattern of solid cells in a block of eight, those with which the surface is manifold there.
+    """For each pattern of solid cells in a block of eight, the solid cells that make the surface manifold there.
 
     Solid cells and others then each hang together through faces: the surface passes once.
     """
@@ -258,7 +258,7 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
     number[mixed] = np.arange(np.count_nonzero(mixed))
     faces = []
     for axis in range(3):
-        one, other = (axis + 1) % 3, (axis + 2) % 3
+        second, third = (axis + 1) % 3, (axis + 2) % 3
         below = np.moveaxis(solid, axis, 0)[:-1]
         above = np.moveaxis(solid, axis, 0)[1:]
         for looks_up in (True, False):
@@ -269,8 +269,8 @@ def _surface_net(solid: BoolArray) -> tuple[FloatArray, IntArray]:
             ring = []
             for step in ((-1, -1), (0, -1), (0, 0), (-1, 0)):
                 corner = place.copy()
-                corner[:, one] += step[0]
-                corner[:, other] += step[1]
+                corner[:, second] += step[0]
+                corner[:, third] += step[1]
                 ring.append(number[tuple(corner.T)])
             faces.append(np.stack(ring if looks_up else ring[::-1], axis=1))
     return np.argwhere(mixed).astype(np.float64) + 1.0, np.concatenate(faces)
@@ -290,8 +290,8 @@ class _OuterSkin:
 
     def nearest(self, places: FloatArray, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the place and normal of the sample that is nearest to each place in place and direction."""
-        _, found = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
-        return self.places[found], self.normals[found]
+        _, sample_numbers = self._tree.query(np.hstack([places, _TURN * self.cell * normals]))
+        return self.places[sample_numbers], self.normals[sample_numbers]
 
 
 def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[FloatArray, IntArray]:
@@ -309,7 +309,7 @@ def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[Flo
 def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
     """Move each vertex onto the planes of its faces, and along them to the centroid of its faces.
 
-    Faces farther from the skin than the reach [m] have no plane, as those over holes.
+    Faces farther from the skin than the reach [m], such as faces over holes, have no plane.
     """
     cell = skin.cell
     corners = points[faces]
@@ -329,8 +329,8 @@ def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) 
     side = incident @ ((weight * (plane * direction).sum(axis=1))[:, None] * direction)
     mean = (incident @ (share[:, None] * center)) / (incident @ share)[:, None]
     values, vectors = np.linalg.eigh(matrix)
-    kept = values > _RANK * np.maximum(values[:, -1:], 1e-6)
-    inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+    determined = values > _RANK * np.maximum(values[:, -1:], 1e-6)
+    inverse = np.where(determined, 1.0 / np.where(determined, values, 1.0), 0.0)
     gap = side - np.einsum("vij,vj->vi", matrix, mean)
     target = mean + np.einsum("vij,vj,vkj,vk->vi", vectors, inverse, vectors, gap, optimize=True)
     step = target - points
@@ -393,8 +393,8 @@ def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[Float
         if lengths[shortest] < _SHORT * cell:
             for gone in _collapse(points, corners, around, a, b, cell):
                 alive[gone] = False
-    kept = np.array(corners)[alive]
-    used, renumbered = np.unique(kept, return_inverse=True)
+    remaining = np.array(corners)[alive]
+    used, renumbered = np.unique(remaining, return_inverse=True)
     return points[used], renumbered.reshape(-1, 3)
 
 
@@ -410,7 +410,8 @@ def _divided(points: FloatArray, triangles: IntArray, longest: float) -> tuple[F
         if lengths.max() <= longest:
             return points, triangles
         sides = inverse.reshape(-1, 3)  # edge i of a triangle goes from its corner i to the next
-        # Of each triangle the longest edge, the first of equal ones; an edge that is it on both sides is halved.
+        # The longest edge of each triangle, the first of equal ones; an edge that is the longest on both sides is
+        # halved.
         order = np.lexsort((np.arange(len(edges)), -lengths))
         rank = np.empty(len(edges), dtype=np.int64)
         rank[order] = np.arange(len(edges))
@@ -456,7 +457,7 @@ def _flip(
 def _collapse(
     points: FloatArray, corners: list[tuple[int, ...]], around: list[set[int]], a: int, b: int, cell: float
 ) -> tuple[int, ...]:
-    """Collapse the edge from a to b into the best of its ends and its middle, where that helps; the triangles lost."""
+    """Collapse an edge a, b into the best of its ends and its middle where that helps; return the triangles lost."""
     gone = around[a] & around[b]
     ring_a = {vertex for number in around[a] for vertex in corners[number]} - {a, b}
     ring_b = {vertex for number in around[b] for vertex in corners[number]} - {a, b}
@@ -466,25 +467,25 @@ def _collapse(
     old = np.array([corners[number] for number in moved])
     before, normal = _shapes(points[old])
     lost, lost_normal = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
-    # The planes around hold the vertex, but for those of triangles too flat to have one.
+    # The planes of the triangles around hold the vertex; a triangle that is too flat has none.
     normals = np.concatenate([normal[before > _FLAT], lost_normal[lost > _FLAT]])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     bases = np.concatenate(
         [points[old[before > _FLAT, 0]], points[[corners[n][0] for n in sorted(gone)]][lost > _FLAT]]
     )
-    found: tuple[float, FloatArray] | None = None
+    best: tuple[float, FloatArray] | None = None
     for place in (points[a], points[b], 0.5 * (points[a] + points[b])):
         trial = points[old]
         trial[(old == a) | (old == b)] = place
         after, turned = _shapes(trial)
         cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
         sound = (cosine > 0.5) | (before < 0.5 * _POOR)
-        held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
-        if held and sound.all() and (found is None or after.min() > found[0]):
-            found = float(after.min()), place.copy()
-    if found is None or found[0] <= min(before.min(), lost.min()):
+        is_held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
+        if is_held and sound.all() and (best is None or after.min() > best[0]):
+            best = float(after.min()), place.copy()
+    if best is None or best[0] <= min(before.min(), lost.min()):
         return ()
-    points[a] = found[1]
+    points[a] = best[1]
     for number in moved:
         corners[number] = tuple(a if vertex == b else vertex for vertex in corners[number])
     around[a] = set(moved)

@@ -47,12 +47,12 @@ class LookAlikes:
     Attributes
     ----------
     first, second : int
-        Their numbers, from 1.
+        Numbers of the modes, from 1.
     mac : float
-        Of one with the other.
+        MAC of the two shapes.
     one_frequency : bool
-        Whether they are as close in frequency as close modes are, or an estimate's scatter: then of a test they are
-        most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to
+        Whether they are as close in frequency as close modes are, or an estimate's scatter: two modes of a test are
+        then most likely one mode found twice. Otherwise the survey has too few points, or in the wrong places, to
         distinguish them.
     """
 
@@ -69,7 +69,7 @@ class CloseModes:
     Attributes
     ----------
     model, measured : tuple of int
-        Their numbers, from 1.
+        Numbers of the modes, from 1.
     largest_angle : float
         Between the spaces that they span [rad]: 0 where the measured ones are combinations of the model's; NaN where
         they were measured at too few degrees of freedom in common.
@@ -87,14 +87,14 @@ class ShapeCorrelation:
     Attributes
     ----------
     model_frequencies, measured_frequencies : ndarray, shapes (a,) and (b,)
-        [rad/s].
+        Circular frequencies [rad/s].
     mac : ndarray, shape (a, b)
     model_auto_mac, measured_auto_mac : ndarray, shapes (a, a) and (b, b)
         The survey cannot distinguish modes with large values off the diagonal.
     unpaired_measured : tuple of int
         Numbers of measured modes that no model mode is like: the model lacks them, or they are no modes.
     unpaired_model : tuple of int
-        Numbers of model modes between the first and the last measured frequency that no measured mode is: the test
+        Numbers of model modes between the first and the last measured frequency without a measured mode: the test
         missed them, or they are wrong.
     measured_look_alikes, model_look_alikes : tuple of LookAlikes
     close : tuple of CloseModes
@@ -103,7 +103,7 @@ class ShapeCorrelation:
     collinearity : ndarray, shape (b,)
         Modal phase collinearity of each measured shape: 1 where it is real.
     cross_orthogonality : ndarray, shape (c, b), or None
-        Of the measured shapes with the model's modes in ``orthogonality_modes``, in the SEREP-reduced mass.
+        Cross-orthogonality of the measured shapes with the modes ``orthogonality_modes``, in the SEREP-reduced mass.
     orthogonality_modes : tuple of int
         Numbers of the model's modes, c of them.
     outside : ndarray, shape (b,), or None
@@ -159,7 +159,7 @@ class ModePair:
     confidence : float or None
         Margin of this pair over the next best assignment, from 0 to 1, not a probability; None without shapes.
     close_modes : tuple of int
-        Numbers of the model modes close to each other that the pair's is one of; empty where it stands apart.
+        Numbers of the close model modes to which the pair's mode belongs; empty where it stands apart.
     mixed : bool
         Whether shapes cannot identify the single modes of the close group.
     """
@@ -193,10 +193,10 @@ class Comparison:
     band : tuple of float
         Band of possible partners [rad/s].
     gap : float or None
-        Of a pairing by dominance: ln(strength of the last chosen mode / strength of the first left out); below 0.1 the
+        In a pairing by dominance, ln(strength of the last chosen mode / strength of the first left out); below 0.1 the
         choice is a coin toss.
     measures_agree : bool or None
-        Of a pairing by dominance: whether acceleration, velocity and mean absolute strength all choose these modes.
+        In a pairing by dominance, whether acceleration, velocity and mean absolute strength all choose these modes.
     shapes : ShapeCorrelation or None
         Correlation of the shapes, where there are any.
     """
@@ -239,9 +239,9 @@ def compare_by_dominance(
     measured : ndarray, shape (n,)
         Measured circular frequencies, ascending [rad/s].
     strengths : Dominance
-        Of the model's modes.
+        Strengths of the model's modes.
     band : tuple of float, optional
-        Where to look for dominant modes [rad/s]; by default that of :func:`dominance_band`.
+        Band that is searched for dominant modes [rad/s]; by default that of :func:`dominance_band`.
 
     Raises
     ------
@@ -277,7 +277,7 @@ def compare_by_dominance(
     )
 
 
-_ONE_FREQUENCY = 0.02  # parts of it by which two estimates of one mode may scatter
+_ONE_FREQUENCY = 0.02  # part of a frequency by which two estimates of one mode may scatter
 
 
 def compare_by_shapes(
@@ -293,14 +293,14 @@ def compare_by_shapes(
     Parameters
     ----------
     frequencies : ndarray, shape (n_modes,)
-        Of the model, ascending [rad/s].
+        Circular frequencies of the model, ascending [rad/s].
     shapes : array_like, shape (n_modes, n_dofs)
         The model's mass-normalised shapes at the measured degrees of freedom [1/√kg].
     measured : MeasuredModes
-        With shapes.
+        Measured modes with shapes.
     rule : PairingRule, optional
     strengths : Dominance, optional
-        Of the model's modes, to stand beside each pair.
+        Strengths of the model's modes, to stand beside each pair.
 
     Raises
     ------
@@ -375,29 +375,29 @@ def _evidence(
 def _look_alikes(
     auto: FloatArray, frequencies: FloatArray, which: npt.NDArray[np.int64], least: float
 ) -> tuple[LookAlikes, ...]:
-    found = []
+    look_alikes = []
     for place, i in enumerate(which):
         for j in which[place + 1 :]:
             if auto[i, j] >= least:
                 near = bool(frequencies[j] - frequencies[i] <= _ONE_FREQUENCY * frequencies[j])
-                found.append(LookAlikes(int(i) + 1, int(j) + 1, float(auto[i, j]), near))
-    return tuple(found)
+                look_alikes.append(LookAlikes(int(i) + 1, int(j) + 1, float(auto[i, j]), near))
+    return tuple(look_alikes)
 
 
 def _close(phi: ShapeArray, psi: ShapeArray, pairs: Sequence[ShapePair]) -> tuple[CloseModes, ...]:
     """Each group of close modes, of the model or of the test, with its partners, and the angle between both spaces."""
-    found: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
+    close_groups: dict[tuple[tuple[int, ...], tuple[int, ...]], CloseModes] = {}
     for pair in pairs:
         mates = [mate for mate in pairs if _together(pair, mate)]
         model = tuple(sorted({pair.model, *pair.close_model, *(mate.model for mate in mates)}))
         measured = tuple(sorted({pair.measured, *(mate.measured for mate in mates)}))
-        if len(model) > 1 and (model, measured) not in found:
+        if len(model) > 1 and (model, measured) not in close_groups:
             seen = ~np.isnan(psi[list(measured)]).any(axis=0)
-            known = seen.sum() > max(len(model), len(measured))
-            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if known else float("nan")
+            is_known = seen.sum() > max(len(model), len(measured))
+            angle = float(principal_angles(phi[list(model)], psi[list(measured)])[0]) if is_known else float("nan")
             numbers = tuple(i + 1 for i in model), tuple(j + 1 for j in measured)
-            found[model, measured] = CloseModes(*numbers, angle)
-    return tuple(found.values())
+            close_groups[model, measured] = CloseModes(*numbers, angle)
+    return tuple(close_groups.values())
 
 
 def _together(pair: ShapePair, other: ShapePair) -> bool:
@@ -420,5 +420,5 @@ def _orthogonality(phi: ShapeArray, psi: ShapeArray) -> tuple[FloatArray | None,
         return None, None, "the model has no mode in the band"
     try:
         return cross_orthogonality(phi, psi), outside_span(phi, psi), ""
-    except HousingError as error:  # of the survey: the pairs stand without it
+    except HousingError as error:  # a fault of the survey: the pairs stand without the check
         return None, None, str(error)

@@ -1,7 +1,7 @@
 """Frequency response assurance criteria: FRAC at each point over frequency, RVAC and FDAC at each frequency.
 
 Responses need no modes to be identified, and no pairing; but a resonance a few per cent off costs all that these
-criteria can show, so they follow once frequencies are right. Those that are squared cosines see shape and not size:
+criteria can show, so they follow once frequencies are right. Squared cosines see shape and not size:
 :func:`amplitude_correlation` sees both.
 """
 
@@ -38,7 +38,7 @@ def synthesised_responses(
     modes : ModeSet
         n modes.
     damping_ratios : ndarray, shape (n,)
-        As measured, where the sizes at resonance are to be compared.
+        Measured ratios, where the sizes at resonance are to be compared.
     driven : scipy.sparse.csr_array, shape (r, 3 n_nodes)
         Motions along the forces, one a reference.
     survey : scipy.sparse.csr_array, shape (d, 3 n_nodes)
@@ -51,7 +51,7 @@ def synthesised_responses(
     Returns
     -------
     ndarray of complex, shape (d, r, f)
-        [m/N], [m/(N s)] or [m/(N s²)].
+        Responses [m/N], [m/(N s)] or [m/(N s²)].
 
     Raises
     ------
@@ -72,7 +72,7 @@ def frac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     model, measured : array_like of complex, shape (..., f)
-        Alike: such as (n_dofs, n_references, f). NaN where a line was not measured: it is left out.
+        Responses of one shape, such as (n_dofs, n_references, f). NaN where a line was not measured: it is left out.
 
     Returns
     -------
@@ -115,8 +115,8 @@ def amplitude_correlation(model: npt.ArrayLike, measured: npt.ArrayLike) -> Floa
 
         2 |h_aᴴ h_x| / (h_aᴴ h_a + h_xᴴ h_x)
 
-    1 only where the responses are equal but for one phase; a factor g between them gives 2g / (1 + g²). Takes and
-    returns what :func:`response_vector_assurance` does.
+    It is 1 only where the responses are equal but for one phase; a factor g between them gives 2g / (1 + g²).
+    Parameters and result are those of :func:`response_vector_assurance`.
     """
     a, x = _alike(model, measured)
     product = np.abs((a.conj() * x).sum(axis=0))
@@ -132,7 +132,7 @@ def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     model, measured : array_like of complex, shapes (n_dofs, f) and (n_dofs, g)
-        To one reference; NaN where not measured.
+        Responses to one reference; NaN where not measured.
 
     Returns
     -------
@@ -161,5 +161,5 @@ def _coherence(a: ComplexArray, x: ComplexArray, axis: int) -> FloatArray:
 
 
 def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
-    known = whole > 0.0
-    return np.asarray(np.where(known, np.minimum(part / np.where(known, whole, 1.0), 1.0), np.nan))
+    is_known = whole > 0.0
+    return np.asarray(np.where(is_known, np.minimum(part / np.where(is_known, whole, 1.0), 1.0), np.nan))

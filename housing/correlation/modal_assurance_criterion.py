@@ -48,18 +48,18 @@ def shape_set(shapes: npt.ArrayLike, name: str) -> ShapeArray:
     shapes : array_like, shape (n_modes, n_dofs) or (n_dofs,)
         Real or complex; NaN where a degree of freedom was not measured. One shape alone is a set of one.
     name : str
-        Whose shapes, for messages.
+        Name of the set of shapes, for messages.
 
     Raises
     ------
     HousingError
         Where it is no such matrix, an entry is infinite, or a mode has no entry at all.
     """
-    given = np.asarray(shapes)
-    kind = np.complex128 if np.iscomplexobj(given) else np.float64
-    array: ShapeArray = np.atleast_2d(given.astype(kind))
+    raw = np.asarray(shapes)
+    kind = np.complex128 if np.iscomplexobj(raw) else np.float64
+    array: ShapeArray = np.atleast_2d(raw.astype(kind))
     if array.ndim != 2 or array.shape[1] == 0:
-        raise HousingError(f"{name} shapes have the shape {given.shape}; expected (modes, degrees of freedom)")
+        raise HousingError(f"{name} shapes have the shape {raw.shape}; expected (modes, degrees of freedom)")
     if np.isinf(array).any():
         raise HousingError(f"{name} shape {int(np.argwhere(np.isinf(array))[0, 0]) + 1} has an infinite entry")
     blank = np.flatnonzero(np.isnan(array).all(axis=1))
@@ -76,23 +76,23 @@ def two_sets(
     Raises
     ------
     HousingError
-        Also where they have not as many degrees of freedom.
+        Also where their numbers of degrees of freedom differ.
     """
-    one, other = shape_set(first, names[0]), shape_set(second, names[1])
-    if one.shape[1] != other.shape[1]:
+    first_set, second_set = shape_set(first, names[0]), shape_set(second, names[1])
+    if first_set.shape[1] != second_set.shape[1]:
         raise HousingError(
-            f"{names[0]} shapes have {one.shape[1]} degrees of freedom and {names[1]} {other.shape[1]}; "
+            f"{names[0]} shapes have {first_set.shape[1]} degrees of freedom and {names[1]} {second_set.shape[1]}; "
             "expected the same ones in both"
         )
-    return one, other
+    return first_set, second_set
 
 
 def filled(shapes: ShapeArray) -> tuple[ShapeArray, BoolArray]:
     """Scale shapes to unit largest entry against overflow of squares; 0 where not measured; and mark those measured."""
     seen = ~np.isnan(shapes)
-    known = np.where(seen, shapes, 0.0)
-    largest = np.abs(known).max(axis=1, keepdims=True)
-    return known / np.where(largest > 0.0, largest, 1.0), seen
+    values = np.where(seen, shapes, 0.0)
+    largest = np.abs(values).max(axis=1, keepdims=True)
+    return values / np.where(largest > 0.0, largest, 1.0), seen
 
 
 def alike_measured(seen: BoolArray) -> list[tuple[BoolArray, npt.NDArray[np.int64]]]:
@@ -120,8 +120,8 @@ def modal_assurance_criterion(first: npt.ArrayLike, second: npt.ArrayLike) -> Fl
     HousingError
         Where the sets do not fit together.
     """
-    one, other = two_sets(first, second)
-    (a, seen_a), (b, seen_b) = filled(one), filled(other)
+    first_set, second_set = two_sets(first, second)
+    (a, seen_a), (b, seen_b) = filled(first_set), filled(second_set)
     shared = seen_a @ seen_b.T
     product = np.abs(a.conj() @ b.T) ** 2
     norms = (np.abs(a) ** 2 @ seen_b.T) * (seen_a @ np.abs(b.T) ** 2)
@@ -151,13 +151,13 @@ def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> Compl
     Raises
     ------
     HousingError
-        Where the sets do not fit together or are not as large as each other.
+        Where the sets do not fit together or differ in size.
     """
-    target, given = two_sets(reference, shapes, ("the reference's", "the scaled"))
-    if len(target) != len(given):
-        raise HousingError(f"{len(given)} shapes to be scaled to {len(target)} of a reference; expected as many")
-    both = ~(np.isnan(target) | np.isnan(given))
-    b, a = np.where(both, target, 0.0), np.where(both, given, 0.0)
+    target, scaled = two_sets(reference, shapes, ("the reference's", "the scaled"))
+    if len(target) != len(scaled):
+        raise HousingError(f"{len(scaled)} shapes to be scaled to {len(target)} of a reference; expected as many")
+    both = ~(np.isnan(target) | np.isnan(scaled))
+    b, a = np.where(both, target, 0.0), np.where(both, scaled, 0.0)
     norm = (np.abs(a) ** 2).sum(axis=1)
     return np.asarray((a.conj() * b).sum(axis=1) / np.where(norm > 0.0, norm, 1.0), dtype=np.complex128)
 
@@ -173,14 +173,14 @@ def pole_weighted_mac(
         (|v₁ᴴ v₂| / |λ₁* + λ₂| + |v₁ᵀ v₂| / |λ₁ + λ₂|)² / (n₁ n₂),    n = vᴴ v / 2|Re λ| + |vᵀ v| / 2|λ|.
 
     Frequencies that differ by more than the half-power bandwidths make it small, so it judges whether two
-    identifications found the same mode of one machine; a model within a few per cent it condemns. A model and its
+    identifications found the same mode of one machine; it condemns a model within a few per cent. A model and its
     test are shown in both respects by the MAC over both frequencies instead (the FMAC of Fotsch and Ewins 2000), as
     ``comparison.png`` does.
 
     Parameters
     ----------
     first, second : array_like, shapes (a, n_dofs) and (b, n_dofs)
-        Without NaN.
+        Shapes without NaN.
     first_poles, second_poles : array_like of complex, shapes (a,) and (b,)
         λ = -ζω + iω√(1 - ζ²) [rad/s].
 
@@ -193,18 +193,18 @@ def pole_weighted_mac(
     HousingError
         Where sets and poles do not fit together, a degree of freedom is missing, or a pole does not decay.
     """
-    one, other = two_sets(first, second)
-    poles = [np.asarray(given, dtype=np.complex128) for given in (first_poles, second_poles)]
-    for shapes, given in zip((one, other), poles, strict=True):
-        if given.shape != (len(shapes),) or not np.all(given.real < 0.0):
+    first_set, second_set = two_sets(first, second)
+    poles = [np.asarray(set_poles, dtype=np.complex128) for set_poles in (first_poles, second_poles)]
+    for shapes, set_poles in zip((first_set, second_set), poles, strict=True):
+        if set_poles.shape != (len(shapes),) or not np.all(set_poles.real < 0.0):
             raise HousingError(
-                f"poles {given} rad/s for {len(shapes)} shapes; expected as many, each of negative real part"
+                f"poles {set_poles} rad/s for {len(shapes)} shapes; expected as many, each of negative real part"
             )
         if np.isnan(shapes).any():
             raise HousingError(
                 "the pole-weighted MAC needs every degree of freedom of every shape; leave out those unmeasured"
             )
-    (a, _), (b, _) = filled(one), filled(other)
+    (a, _), (b, _) = filled(first_set), filled(second_set)
     p, q = poles[0][:, None], poles[1]
     product = np.abs(a.conj() @ b.T) / np.abs(p.conj() + q) + np.abs(a @ b.T) / np.abs(p + q)
     norms = np.outer(_largest_energy(a, poles[0]), _largest_energy(b, poles[1]))
@@ -233,7 +233,7 @@ def comac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     model, measured : array_like, shape (n_pairs, n_dofs)
-        Row by row paired; NaN where not measured.
+        Shapes, paired row by row; NaN where not measured.
 
     Returns
     -------
@@ -299,9 +299,9 @@ def _paired(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ShapeArray, 
 
 def phase_collinearity(shapes: npt.ArrayLike) -> FloatArray:
     """Modal phase collinearity, shape (n,): 1 for a real shape to any complex scale, 0 for a travelling wave."""
-    known, _ = filled(shape_set(shapes, "complex"))
-    total = (np.abs(known) ** 2).sum(axis=1)
-    ratio = np.abs((known**2).sum(axis=1)) / np.where(total > 0.0, total, 1.0)
+    values, _ = filled(shape_set(shapes, "complex"))
+    total = (np.abs(values) ** 2).sum(axis=1)
+    ratio = np.abs((values**2).sum(axis=1)) / np.where(total > 0.0, total, 1.0)
     return np.asarray(np.where(total > 0.0, np.minimum(ratio, 1.0) ** 2, 1.0))
 
 
@@ -312,8 +312,8 @@ def complexity_factor(shapes: npt.ArrayLike) -> FloatArray:
 
 def mean_phase(shapes: npt.ArrayLike) -> FloatArray:
     """Angle of the line nearest to a shape's entries, from -π/2 (left out) to π/2, shape (n,) [rad]."""
-    known, _ = filled(shape_set(shapes, "complex"))
-    return np.asarray(0.5 * np.angle((known**2).sum(axis=1)))
+    values, _ = filled(shape_set(shapes, "complex"))
+    return np.asarray(0.5 * np.angle((values**2).sum(axis=1)))
 
 
 def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
@@ -331,7 +331,7 @@ def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
 def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     """Complex shapes turned on to the real axis by their mean phase, and their real parts; NaN stays.
 
-    Of all real shapes these are nearest to the given ones at any phase: the part dropped is the minor axis of their
+    These real shapes are the nearest to the given ones at any phase: the part dropped is the minor axis of their
     scatter, a part (1 - √MPC) / 2 of their square.
 
     Parameters
@@ -341,11 +341,11 @@ def real_shapes(shapes: npt.ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (n, n_dofs)
-        Of arbitrary sign.
+        Real shapes of arbitrary sign.
     """
     return np.asarray(_aligned(shapes).real)
 
 
 def _aligned(shapes: npt.ArrayLike) -> ComplexArray:
-    given = shape_set(shapes, "complex")
-    return np.asarray(given * np.exp(-1j * mean_phase(given))[:, None], dtype=np.complex128)
+    complex_shapes = shape_set(shapes, "complex")
+    return np.asarray(complex_shapes * np.exp(-1j * mean_phase(complex_shapes))[:, None], dtype=np.complex128)

@@ -67,11 +67,11 @@ def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexA
         them.
     """
     phi, psi = two_sets(model, measured, ("the model's", "the measured"))
-    found = np.empty((len(phi), len(psi)), dtype=np.complex128)
+    coordinates = np.empty((len(phi), len(psi)), dtype=np.complex128)
     for pattern, modes in alike_measured(~np.isnan(psi)):
         which = f"measured shape {int(modes[0]) + 1} has"
-        found[:, modes] = _inverse(phi[:, pattern], which) @ psi[np.ix_(modes, pattern)].T
-    return found
+        coordinates[:, modes] = _inverse(phi[:, pattern], which) @ psi[np.ix_(modes, pattern)].T
+    return coordinates
 
 
 def cross_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:

@@ -52,7 +52,7 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
     """Relative loss of the best assignment where a row may not take any of some columns.
 
     The best sum with the row in one of these columns, less the best sum with it in none of them, over the row's score
-    in the former; clipped to 0. 1: the other rows gain nothing. 0: another assignment is as good.
+    in the first assignment; clipped to 0. 1: the other rows gain nothing. 0: another assignment is as good.
 
     It measures the clearness of the choice, not its probability: a row with one poor partner and no other has 1.
 
@@ -62,7 +62,7 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
         Zero or above.
     row : int
     columns : ndarray of bool, shape (m,)
-        In one of which it scores above zero.
+        Columns, in one of which the row scores above zero.
     """
     within, without = scores.copy(), scores.copy()
     # A bonus larger than any sum keeps the row in these columns, and is taken off again.
@@ -70,10 +70,10 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
     within[row] = np.where(columns & (scores[row] > 0.0), scores[row] + bonus, 0.0)
     without[row, columns] = 0.0
     pairs = best_assignment(within)
-    own = next(scores[i, j] for i, j in pairs if i == row)
-    kept = sum(scores[i, j] for i, j in pairs)
-    lost = kept - sum(scores[i, j] for i, j in best_assignment(without))
-    return float(np.clip(lost / own, 0.0, 1.0))
+    score = next(scores[i, j] for i, j in pairs if i == row)
+    best = sum(scores[i, j] for i, j in pairs)
+    lost = best - sum(scores[i, j] for i, j in best_assignment(without))
+    return float(np.clip(lost / score, 0.0, 1.0))
 
 
 _CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
@@ -130,13 +130,13 @@ class ShapePair:
     model, measured : int
         Indices.
     mac : float
-        Of the two shapes; among close modes, of one with the span of the other's, which is the same however these are
-        mixed.
+        MAC of the two shapes; among close modes, of one with the span of the other's, which is the same however these
+        are mixed.
     confidence : float
         Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
         (another is as good) to 1; see :func:`housing.correlation.pairing.margin`. Not a probability.
     close_model, close_measured : tuple of int
-        The modes close to each other that the pair's are among; empty where one stands apart.
+        Close modes to which the pair's mode belongs; empty where it stands apart.
     mixed : bool
         Whether shapes could not identify the single modes of the close group, so that the order of frequency was kept.
     """
@@ -164,7 +164,7 @@ def pair_modes(
     model_frequencies, measured_frequencies : ndarray, shapes (a,) and (b,)
         Ascending [rad/s]; rigid motion of the model, at zero, is paired with nothing.
     model_shapes, measured_shapes : array_like, shapes (a, n_dofs) and (b, n_dofs)
-        At the measured degrees of freedom; NaN where not measured.
+        Shapes at the measured degrees of freedom; NaN where not measured.
     rule : PairingRule, optional
 
     Returns
@@ -187,9 +187,9 @@ def pair_modes(
         )
     groups = _groups(model_frequencies, rule, len(phi), "model")
     test_groups = _groups(measured_frequencies, rule, len(psi), "measured")
-    own = modal_assurance_criterion(phi, psi)
+    mac = modal_assurance_criterion(phi, psi)
     elastic = tuple(group for group in groups if model_frequencies[group[0]] > 0.0)
-    shared = _shared(phi, psi, own, elastic, test_groups)
+    shared = _shared(phi, psi, mac, elastic, test_groups)
     scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T
     allowed = (shared >= rule.least_mac) & (scores > 0.0).T
     chosen = best_assignment(np.where(allowed.T, scores, 0.0))
@@ -197,9 +197,9 @@ def pair_modes(
     pairs = []
     for members, rivals in _blocks(chosen, groups, test_groups):
         place = np.ix_(rivals, members)
-        told = _told_apart(own[place], shared[place])
-        order = _in_order(distance[place]) if told is None else told
-        mixed = told is None
+        by_mac = _distinguished(mac[place], shared[place])
+        order = _in_order(distance[place]) if by_mac is None else by_mac
+        mixed = by_mac is None
         partners = rivals[order]
         if not allowed[partners, members].all():  # a chain of close modes, whose ends are not alike
             partners = np.array([i for j, i in chosen if j in members])
@@ -230,12 +230,12 @@ def _groups(frequencies: FloatArray, rule: PairingRule, count: int, whose: str) 
 def _shared(
     phi: ShapeArray,
     psi: ShapeArray,
-    own: FloatArray,
+    mac: FloatArray,
     groups: tuple[IntArray, ...],
     test_groups: tuple[IntArray, ...],
 ) -> FloatArray:
     """MAC of each mode with the span of the other's close modes, or with the other where it stands apart; (a, b)."""
-    shared = own.copy()
+    shared = mac.copy()
     for group in groups:
         if len(group) > 1:
             shared[group] = np.maximum(shared[group], span_mac(phi[group], psi))
@@ -271,14 +271,14 @@ def _blocks(
     return [(np.array(sorted(members)), np.array(sorted(rivals))) for members, rivals in blocks]
 
 
-def _told_apart(own: FloatArray, shared: FloatArray) -> IntArray | None:
-    """For each measured mode (columns) its model mode (rows), where own MACs are most of the shared ones."""
+def _distinguished(mac: FloatArray, shared: FloatArray) -> IntArray | None:
+    """Return each measured mode's (column's) model mode (row) where single MACs are most of the shared ones."""
     from scipy.optimize import linear_sum_assignment
 
-    if own.shape == (1, 1):
+    if mac.shape == (1, 1):
         return np.zeros(1, dtype=np.int64)
-    columns, rows = linear_sum_assignment(own.T, maximize=True)
-    return rows if (own[rows, columns] >= _CLEAR * shared[rows, columns]).all() else None
+    columns, rows = linear_sum_assignment(mac.T, maximize=True)
+    return rows if (mac[rows, columns] >= _CLEAR * shared[rows, columns]).all() else None
 
 
 def _in_order(distance: FloatArray) -> IntArray:

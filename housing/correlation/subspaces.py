@@ -1,7 +1,7 @@
 """Subspaces of close modes: MAC with a span, nearest combination, principal angles.
 
 Two modes of one frequency have no shapes of their own: any two combinations of them are as good, and a test and a
-model find different ones. Of modes that are merely close a small error of the model mixes them. What is compared then
+model find different ones. A small error of the model mixes modes that are merely close. What is compared then
 is the space that they span: by the angles between two spaces, or by the part of a measured shape that lies in one.
 """
 
@@ -14,7 +14,7 @@ from housing.errors import HousingError
 
 IntArray = npt.NDArray[np.int64]
 
-_RANK = 1e-10  # singular values below so much of the largest are no directions of their own
+_RANK = 1e-10  # singular values below this part of the largest are no directions
 
 
 def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray, ...]:
@@ -25,7 +25,7 @@ def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray,
     frequencies : array_like, shape (n,)
         Ascending, zero for rigid motion, which is close to rigid motion alone.
     closeness : float
-        Of neighbours, as a part of the higher frequency; 0 joins equal ones only.
+        Gap of neighbours, as a part of the higher frequency; 0 joins equal ones only.
 
     Returns
     -------
@@ -37,13 +37,13 @@ def close_modes(frequencies: npt.ArrayLike, closeness: float) -> tuple[IntArray,
     HousingError
         Where frequencies are negative or descend, or closeness is not from 0 to 1.
     """
-    given = np.asarray(frequencies, dtype=np.float64)
+    values = np.asarray(frequencies, dtype=np.float64)
     if not 0.0 <= closeness < 1.0:
         raise HousingError(f"a closeness of {closeness}; expected a part of the frequency, from 0 to below 1")
-    if np.any(np.diff(given) < 0.0) or np.any(given < 0.0) or not np.isfinite(given).all():
+    if np.any(np.diff(values) < 0.0) or np.any(values < 0.0) or not np.isfinite(values).all():
         raise HousingError("frequencies must ascend from zero or above")
-    apart = np.flatnonzero(np.diff(given) > closeness * given[1:]) + 1
-    return tuple(np.split(np.arange(len(given)), apart))
+    apart = np.flatnonzero(np.diff(values) > closeness * values[1:]) + 1
+    return tuple(np.split(np.arange(len(values)), apart))
 
 
 def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
@@ -56,7 +56,7 @@ def span_mac(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> FloatArray:
     Parameters
     ----------
     basis : array_like, shape (k, n_dofs)
-        Known everywhere; k below the degrees of freedom that each shape has.
+        Shapes without NaN; k below the degrees of freedom that each of ``shapes`` has.
     shapes : array_like, shape (n, n_dofs)
         NaN where not measured.
 
@@ -81,21 +81,21 @@ def principal_angles(first: npt.ArrayLike, second: npt.ArrayLike) -> FloatArray:
     """Angles between the spans of two sets, descending, as many as the smaller set has shapes [rad].
 
     All zero: one span holds the other. The largest at π/2: something in one is unlike everything in the other
-    (Björck and Golub 1973). Taken where every shape of both was measured.
+    (Björck and Golub 1973). The degrees of freedom are those where every shape of both was measured.
 
     Raises
     ------
     HousingError
         Where the sets do not fit together or have more shapes than shared degrees of freedom.
     """
-    one, other = two_sets(first, second)
-    seen = ~(np.isnan(one).any(axis=0) | np.isnan(other).any(axis=0))
-    largest = max(len(one), len(other))
+    first_set, second_set = two_sets(first, second)
+    seen = ~(np.isnan(first_set).any(axis=0) | np.isnan(second_set).any(axis=0))
+    largest = max(len(first_set), len(second_set))
     if seen.sum() < largest:
         raise HousingError(
             f"{largest} shapes share {int(seen.sum())} degrees of freedom; angles between spans need at least as many"
         )
-    (a, _), (b, _) = filled(one[:, seen]), filled(other[:, seen])
+    (a, _), (b, _) = filled(first_set[:, seen]), filled(second_set[:, seen])
     return np.asarray(linalg.subspace_angles(a.T, b.T))
 
 
@@ -114,10 +114,10 @@ def _projected(basis: npt.ArrayLike, shapes: npt.ArrayLike) -> tuple[npt.NDArray
                 f"{int(modes[0]) + 1} is like anything; expected fewer shapes than degrees of freedom"
             )
         left, sizes, right = np.linalg.svd(phi[:, pattern].T, full_matrices=False)
-        kept = sizes > _RANK * sizes[0]
-        inner = left[:, kept].conj().T @ scaled[np.ix_(modes, pattern)].T
+        independent = sizes > _RANK * sizes[0]
+        inner = left[:, independent].conj().T @ scaled[np.ix_(modes, pattern)].T
         whole = (np.abs(scaled[modes]) ** 2).sum(axis=1)
         part[modes] = (np.abs(inner) ** 2).sum(axis=0) / np.where(whole > 0.0, whole, 1.0)
-        nearest[modes] = ((right[kept].conj().T / sizes[kept]) @ inner).T @ phi
+        nearest[modes] = ((right[independent].conj().T / sizes[independent]) @ inner).T @ phi
     size = np.abs(np.where(seen, psi, 0.0)).max(axis=1, keepdims=True)
     return nearest * size, part

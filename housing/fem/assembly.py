@@ -9,7 +9,7 @@ from which Hooke's law for an isotropic solid with Lamé's constants λ, μ make
 
     K[a i, b k] = λ G[a i, b k] + μ G[a k, b i] + μ δ_ik Σ_j G[a j, b j],        M[a i, b k] = δ_ik m[a, b].
 
-scikit-fem gives the elements and their quadrature (:mod:`meshes.shape_functions`). Of each pair of an element's nodes
+scikit-fem gives the elements and their quadrature (:mod:`meshes.shape_functions`). For each pair of an element's nodes
 one order is computed and summed, transposed where it lies below the diagonal, so that K and M are symmetric to the
 last bit. The pattern is that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n + i is component
 i of node n.
@@ -52,7 +52,7 @@ def assemble(
     ----------
     mesh : Mesh
     material : Material
-        Of every element that no entry of ``materials`` covers.
+        Material of every element that no entry of ``materials`` covers.
     materials : mapping of str to Material, optional
         The material of each named volume of the mesh.
     threads : int
@@ -95,8 +95,8 @@ def assemble(
     except _FoldedError:
         raise _folded(mesh) from None
     whole = blocks.reshape(-1, 3, 3)
-    own = whole[pattern.indptr[:-1]]
-    whole[pattern.indptr[:-1]] = 0.5 * (own + own.transpose(0, 2, 1))  # symmetric but for rounding
+    diagonal = whole[pattern.indptr[:-1]]
+    whole[pattern.indptr[:-1]] = 0.5 * (diagonal + diagonal.transpose(0, 2, 1))  # symmetric but for rounding
     return Matrices(pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), whole, node_mass)
 
 
@@ -152,7 +152,7 @@ def stiffness_degree(kind: ElementKind, *, affine: bool) -> int:
     """Return the quadrature degree of the stiffness of elements of a kind; see :func:`assemble`."""
     if kind.corners != "tetra":
         return 2 * kind.order
-    # Bent ones have the next rule whose weights are all positive: that of degree 4 has a negative one.
+    # Bent ones have the next rule whose weights are all positive: the rule of degree 4 has a negative one.
     return 2 * (kind.order - 1) if affine else 2 * kind.order + 1
 
 
@@ -174,7 +174,7 @@ def _in_order(
 
 
 def _node_graph(mesh: Mesh) -> sparse.csr_array:
-    """Graph of nodes that share an element, upper triangle, rows in order; each entry is its own place."""
+    """Graph of nodes that share an element, upper triangle, rows in order; the value of each entry is its place."""
     incidence = mesh.incidence
     graph = sparse.csr_array(sparse.triu(incidence.T @ incidence, format="csr"))
     graph.sort_indices()
@@ -201,10 +201,10 @@ def _contribution(mesh: Mesh, chunk: _Chunk, constants: FloatArray, pattern: spa
     rows, columns = nodes[:, first], nodes[:, second]
     below = rows > columns
     for i, k in ((0, 1), (0, 2), (1, 2)):
-        one, other = stiffness[3 * i + k], stiffness[3 * k + i]
-        exchanged = np.where(below, other, one)
-        np.copyto(other, one, where=below)
-        one[:] = exchanged
+        upper, lower = stiffness[3 * i + k], stiffness[3 * k + i]
+        exchanged = np.where(below, lower, upper)
+        np.copyto(lower, upper, where=below)
+        upper[:] = exchanged
     slots = pattern[np.minimum(rows, columns).ravel(), np.maximum(rows, columns).ravel()] - 1
     return _Contribution(np.asarray(slots), stiffness.reshape(9, -1), mass.ravel())
 

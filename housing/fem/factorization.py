@@ -38,20 +38,20 @@ def available_memory(*, system: Path = Path("/")) -> float:
     Returns
     -------
     float
-        [bytes], not negative.
+        Memory [bytes], not negative.
     """
     return max(min(_machine(system), _group(system), _own_limit(system)), 0.0)
 
 
-def check_memory(needed: float, what: str) -> None:
+def check_memory(needed: float, task: str) -> None:
     """Refuse work that needs more memory than is available.
 
     Parameters
     ----------
     needed : float
-        [bytes].
-    what : str
-        The subject of the sentence.
+        Memory needed [bytes].
+    task : str
+        Subject of the message's sentence.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def check_memory(needed: float, what: str) -> None:
     available = available_memory()
     if needed > available:
         raise MemoryError(
-            f"{what} needs {needed / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB are available; "
+            f"{task} needs {needed / 1e9:.2g} GB of memory, and {available / 1e9:.2g} GB are available; "
             "a larger mesh_size needs less"
         )
 
@@ -85,9 +85,9 @@ def _group(system: Path) -> float:
             continue
         place = top / name.lstrip("/")
         for folder in (place, *place.parents):
-            most, taken = _number(folder / limit), _number(folder / use)
-            if most is not None and taken is not None:
-                least = min(least, most - taken + _entries(folder / "memory.stat").get(cache, 0.0))
+            most, usage = _number(folder / limit), _number(folder / use)
+            if most is not None and usage is not None:
+                least = min(least, most - usage + _entries(folder / "memory.stat").get(cache, 0.0))
             if folder == top:
                 break
     return least
@@ -218,7 +218,7 @@ class _SuperluFactor:
 Backend = Literal["rslab", "superlu"]
 
 _RESIDUAL_BOUND = 1e-8
-_ERROR_BOUND = 1e-2  # of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
+_ERROR_BOUND = 1e-2  # error of a solution: 1e-8 is usual, and a singular matrix gives 1 and more
 
 
 class _Solver(Protocol):
@@ -311,7 +311,7 @@ class Factorizer:
         try:
             if self._ordering is not None:
                 self._ordering.result()
-            found = self._solver.factor(matrix)
+            numeric = self._solver.factor(matrix)
         except RuntimeError as error:
             raise FactorizationError(
                 f"{self.backend} could not factor a matrix of order {matrix.shape[0]}: {error}. The shift may sit on "
@@ -320,10 +320,10 @@ class Factorizer:
         factor = Factorization(
             backend=self.backend,
             size=matrix.shape[0],
-            fill=found.fill,
-            negative=found.negative,
+            fill=numeric.fill,
+            negative=numeric.negative,
             seconds=time.perf_counter() - start,
-            _factor=found,
+            _factor=numeric,
         )
         _check(factor, matrix)
         return factor
@@ -336,12 +336,12 @@ def default_backend() -> Backend:
 
 def _check(factor: Factorization, matrix: SymmetricMatrix) -> None:
     """Solve for a known vector; a factor that cannot is refused."""
-    known = np.random.default_rng(0).standard_normal(factor.size)
-    right = matrix @ known
-    found = factor.solve(right)
-    residual = float(np.linalg.norm(matrix @ found - right) / np.linalg.norm(right))
+    exact = np.random.default_rng(0).standard_normal(factor.size)
+    right = matrix @ exact
+    solution = factor.solve(right)
+    residual = float(np.linalg.norm(matrix @ solution - right) / np.linalg.norm(right))
     # A singular matrix leaves a small residual as well, but its null space stands in the solution.
-    error = float(np.linalg.norm(found - known) / np.linalg.norm(known))
+    error = float(np.linalg.norm(solution - exact) / np.linalg.norm(exact))
     if not (residual < _RESIDUAL_BOUND and error < _ERROR_BOUND):
         raise FactorizationError(
             f"the factor of {factor.backend} leaves a residual of {residual:.1e} and an error of {error:.1e}, bounds "

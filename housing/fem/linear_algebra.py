@@ -65,13 +65,13 @@ class SymmetricMatrix:
     Attributes
     ----------
     pointer : ndarray of int, shape (n + 1,)
-        Where each column begins.
+        Place where each column begins.
     rows : ndarray of int
         Ascending within a column, the diagonal first.
     values : ndarray
     threads : int
-        With two, the lower triangle and the upper one are multiplied at once; the products are the same to the last
-        bit.
+        Number of threads. With two, the lower and the upper triangle are multiplied at once; the products are the same
+        to the last bit.
     """
 
     pointer: IntArray
@@ -108,19 +108,19 @@ class SymmetricMatrix:
 
     def __matmul__(self, vectors: FloatArray) -> FloatArray:
         """Multiply the symmetric matrix by one vector, shape (n,), or by many, shape (n, m)."""
-        own = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
-        if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(own):
+        diagonal = self.diagonal() if vectors.ndim == 1 else self.diagonal()[:, None]
+        if self.threads > 1 and vectors.size * len(self.values) > _WORTH_A_THREAD * len(diagonal):
             lower = self.lower
             product, upper = at_once([lambda: np.asarray(lower @ vectors), lambda: np.asarray(lower.T @ vectors)])
             product += upper
         else:
             product = np.asarray(self.lower @ vectors)
             product += self.lower.T @ vectors
-        product -= own * vectors
+        product -= diagonal * vectors
         return product
 
 
-_SHARES = 4  # of the rows
+_SHARES = 4  # shares into which the rows are divided
 _ROWS_WORTH_A_THREAD = 2**14  # rows: fewer are multiplied sooner than a thread starts
 
 
@@ -132,7 +132,7 @@ class BlockAlgebra:
     Parameters
     ----------
     rows : int
-        Of all the matrices.
+        Number of rows of all the matrices.
     threads : int
         Number of threads that multiply the shares; one where there are few rows.
     """
@@ -149,7 +149,7 @@ class BlockAlgebra:
         """Subtract B p from a block of columns, in place."""
 
         def take(rows: slice) -> None:
-            block[rows] -= (parts.T @ basis[rows].T).T  # by columns, in half the time of basis[rows] @ parts
+            block[rows] -= (parts.T @ basis[rows].T).T  # one column after another: half the time of basis[rows] @ parts
 
         self._each(take)
 

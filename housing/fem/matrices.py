@@ -40,7 +40,7 @@ class NodeBlocks:
 
     @classmethod
     def summed(cls, rows: IntArray, columns: IntArray, blocks: FloatArray) -> "NodeBlocks":
-        """Blocks in any order, those of one pair added up."""
+        """Take blocks in any order; blocks of one pair of nodes are added up."""
         if len(rows) == 0:
             return NOTHING
         order = np.lexsort((columns, rows))
@@ -57,7 +57,7 @@ class NodeBlocks:
         port : scipy.sparse.csr_array, shape (n_motions, 3 n_nodes)
             Motions from the nodes' displacements.
         small : ndarray, shape (n_motions, n_motions)
-            Symmetric.
+            Symmetric matrix.
         """
         if not small.any():
             return NOTHING
@@ -93,8 +93,8 @@ class NodeBlocks:
     @cached_property
     def upper(self) -> "NodeBlocks":
         """The blocks on and above the diagonal."""
-        kept = self.rows <= self.columns
-        return NodeBlocks(self.rows[kept], self.columns[kept], self.blocks[kept])
+        is_upper = self.rows <= self.columns
+        return NodeBlocks(self.rows[is_upper], self.columns[is_upper], self.blocks[is_upper])
 
     @cached_property
     def resultant(self) -> FloatArray:
@@ -113,11 +113,11 @@ class Additions:
     Attributes
     ----------
     stiffness : NodeBlocks
-        [N/m].
+        Stiffness [N/m].
     mass : NodeBlocks
-        [kg].
+        Mass [kg].
     damping : NodeBlocks
-        [N s/m].
+        Damping [N s/m].
     fixed : ndarray of int
         Degrees of freedom held at zero, ascending.
     """
@@ -147,7 +147,7 @@ class Matrices:
     Attributes
     ----------
     pointer : ndarray of int, shape (n_nodes + 1,)
-        Where each node's row of blocks begins, with the node's own.
+        Place where each node's row of blocks begins, with the node's own.
     neighbors : ndarray of int, shape (n_blocks,)
         The column node of each block, ascending within a row from the node itself.
     blocks : ndarray, shape (n_blocks, 3, 3)
@@ -233,16 +233,16 @@ class Matrices:
         Pairs of nodes that share no element and are now coupled, by stiffness or by mass, join the pattern.
         """
         stiffness, mass = additions.stiffness.upper, additions.mass.upper
-        own = self._keys
-        keys = np.union1d(own, np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
+        old_keys = self._keys
+        keys = np.union1d(old_keys, np.concatenate([self._keys_of(stiffness), self._keys_of(mass)]))
         pointer, neighbors, blocks, node_mass = self.pointer, self.neighbors, self.blocks, self.node_mass
-        if len(keys) > len(own):
+        if len(keys) > len(old_keys):
             row, column = np.divmod(keys, self.n_nodes)
             pointer = np.searchsorted(row, np.arange(self.n_nodes + 1)).astype(np.int32)
             neighbors = column.astype(np.int32)
-            kept = np.searchsorted(keys, own)
+            places = np.searchsorted(keys, old_keys)
             blocks, node_mass = np.zeros((len(keys), 3, 3)), np.zeros(len(keys))
-            blocks[kept], node_mass[kept] = self.blocks, self.node_mass
+            blocks[places], node_mass[places] = self.blocks, self.node_mass
         elif len(stiffness):
             blocks = blocks.copy()
         if len(stiffness):
@@ -279,7 +279,7 @@ class Matrices:
     def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """Return the pattern of both triangles.
 
-        Its pointer and neighbours, the place where each block is kept, and whether it stands there transposed.
+        These are its pointer and neighbours, the place where each block is kept, and whether it is kept transposed.
         """
         upper = np.flatnonzero(self.neighbors != self.rows)
         places = np.concatenate([np.arange(len(self.neighbors)), upper])
@@ -309,9 +309,9 @@ class FreeSystem:
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with supports.
+        Matrices of n_nodes nodes, with supports.
     threads : int
-        That multiply K and M with vectors; the products are the same to the last bit for any number.
+        Threads that multiply K and M with vectors; the products are the same to the last bit for any number.
 
     Attributes
     ----------
@@ -326,11 +326,11 @@ class FreeSystem:
     """
 
     def __init__(self, matrices: Matrices, *, threads: int = 1) -> None:
-        held = np.zeros(3 * matrices.n_nodes, dtype=bool)
-        held[matrices.fixed] = True
-        if held.all():
+        is_fixed = np.zeros(3 * matrices.n_nodes, dtype=bool)
+        is_fixed[matrices.fixed] = True
+        if is_fixed.all():
             raise HousingError("every degree of freedom is fixed")
-        self.free = np.flatnonzero(~held)
+        self.free = np.flatnonzero(~is_fixed)
         self._matrices = matrices
         self.threads = threads
         self._pointer, self._rows, self._source = _lower_pattern(matrices, self.free)
@@ -384,24 +384,24 @@ class FreeMass:
     ----------
     matrices : Matrices
     free : ndarray of int, shape (n,)
-        Ascending.
+        Free degrees of freedom, ascending.
     threads : int
-        Each multiplies a share of the rows.
+        Number of threads; each multiplies a share of the rows.
     least : int
         Entries that a thread is started for; of a small mass there are fewer threads.
     """
 
     def __init__(self, matrices: Matrices, free: IntArray, threads: int = 1, *, least: int = _WORTH_A_THREAD) -> None:
-        kept = np.unique(free // 3)
+        nodes = np.unique(free // 3)
         scalar = matrices.scalar_mass
-        if len(kept) < matrices.n_nodes:
-            scalar = sparse.csr_array(scalar[kept][:, kept])
+        if len(nodes) < matrices.n_nodes:
+            scalar = sparse.csr_array(scalar[nodes][:, nodes])
         threads = max(1, min(threads, scalar.nnz // least))
-        ends = [len(kept) * share // threads for share in range(threads + 1)]
+        ends = [len(nodes) * share // threads for share in range(threads + 1)]
         self._shares = [scalar[first:last] for first, last in pairwise(ends)] if threads > 1 else [scalar]
-        self._order = 3 * len(kept)
+        self._order = 3 * len(nodes)
         # Where the free degrees of freedom stand among all those of the nodes that have any.
-        self._places = None if 3 * len(kept) == len(free) else 3 * np.searchsorted(kept, free // 3) + free % 3
+        self._places = None if 3 * len(nodes) == len(free) else 3 * np.searchsorted(nodes, free // 3) + free % 3
         attached = matrices.attached_mass
         self._attached = sparse.csr_array(attached.matrix(matrices.n_nodes)[free][:, free]) if len(attached) else None
         self.shape = (len(free), len(free))
@@ -447,8 +447,8 @@ def _lower_pattern(matrices: Matrices, free: IntArray) -> tuple[IntArray, IntArr
     number[free] = np.arange(len(free), dtype=np.int32)
     lengths = np.diff(entries.indptr)
     rows = number[entries.indices]
-    kept = entries.indices >= np.repeat(np.arange(3 * n, dtype=np.int32), lengths)
+    is_lower = entries.indices >= np.repeat(np.arange(3 * n, dtype=np.int32), lengths)
     if len(free) < 3 * n:
-        kept &= (rows >= 0) & np.repeat(number >= 0, lengths)
-    counts = np.add.reduceat(kept, entries.indptr[:-1], dtype=np.int64)[free]
-    return np.concatenate([[0], np.cumsum(counts)]), rows[kept].astype(np.int64), entries.data[kept]
+        is_lower &= (rows >= 0) & np.repeat(number >= 0, lengths)
+    counts = np.add.reduceat(is_lower, entries.indptr[:-1], dtype=np.int64)[free]
+    return np.concatenate([[0], np.cumsum(counts)]), rows[is_lower].astype(np.int64), entries.data[is_lower]

@@ -80,7 +80,7 @@ class FlatFace:
     ----------
     facets : tuple of ElementBlock
     area : float
-        [m²].
+        Area [m²].
     center, normal : ndarray, shape (3,)
         Centroid [m] and outward unit normal.
     """
@@ -96,13 +96,13 @@ def flat_faces(mesh: Mesh) -> list[FlatFace]:
     boundary, face_of = mesh.boundary, flat_face_numbers(mesh)
     normals, centers = facet_normals(mesh.points, boundary), facet_centers(mesh.points, boundary)
     areas = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, boundary)])
-    found = []
+    faces = []
     for number in np.argsort(-np.bincount(face_of, areas), kind="stable").tolist():
         chosen = face_of == number
         area, normal = float(areas[chosen].sum()), areas[chosen] @ normals[chosen]
         center = areas[chosen] @ centers[chosen] / area
-        found.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
-    return found
+        faces.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
+    return faces
 
 
 def flat_face_numbers(mesh: Mesh) -> IntArray:
@@ -119,9 +119,11 @@ def flat_face_numbers(mesh: Mesh) -> IntArray:
     edges, owner = np.concatenate(ends), np.concatenate(owners)
     order = np.lexsort(edges.T)
     edges, owner = edges[order], owner[order]
-    one, other = (owner[part][(edges[1:] == edges[:-1]).all(axis=1)] for part in (slice(None, -1), slice(1, None)))
-    flat = np.einsum("ei,ei->e", normals[one], normals[other]) > _ALIGNED
-    joined = sparse.coo_array((np.ones(flat.sum()), (one[flat], other[flat])), shape=(first, first))
+    first_facet, second_facet = (
+        owner[part][(edges[1:] == edges[:-1]).all(axis=1)] for part in (slice(None, -1), slice(1, None))
+    )
+    flat = np.einsum("ei,ei->e", normals[first_facet], normals[second_facet]) > _ALIGNED
+    joined = sparse.coo_array((np.ones(flat.sum()), (first_facet[flat], second_facet[flat])), shape=(first, first))
     return np.asarray(connected_components(joined, directed=False)[1], dtype=np.int64)
 
 
@@ -133,9 +135,9 @@ class SurfacePoint:
     ----------
     nodes : ndarray of int, shape (n_shape,)
     weights : ndarray, shape (n_shape,)
-        Shape functions there; they sum to one.
+        Shape functions at the point; they sum to one.
     position : ndarray, shape (3,)
-        [m].
+        Place [m].
     normal : ndarray, shape (3,)
         Outward unit normal.
     """
@@ -179,8 +181,8 @@ class NearestOnSurface:
 
     def point(self, place: FloatArray) -> SurfacePoint:
         """Return the point of the surface nearest to a place [m], shape (3,)."""
-        (found,) = self.points(place[None])
-        return found
+        (nearest,) = self.points(place[None])
+        return nearest
 
     def points(self, places: FloatArray) -> list[SurfacePoint]:
         """Return the points of the surface nearest to places [m], shape (n, 3)."""
@@ -191,17 +193,17 @@ class NearestOnSurface:
     def _nearest(self, places: FloatArray) -> list[SurfacePoint]:
         targets = places @ self._across
         candidates = self._candidates(targets)
-        found = [
+        chosen = [
             self._chosen(target, candidates, slice(first, end))
             for target, first, end in zip(targets, candidates.bounds[:-1], candidates.bounds[1:], strict=True)
         ]
-        points: list[SurfacePoint | None] = [None] * len(found)
+        points: list[SurfacePoint | None] = [None] * len(chosen)
         for number, triangles in enumerate(self._triangles):
-            mine = [place for place, (one, _) in enumerate(found) if candidates.sets[one] == number]
+            mine = [place for place, (one, _) in enumerate(chosen) if candidates.sets[one] == number]
             if not mine:
                 continue
-            of = triangles.block.nodes[candidates.members[[found[place][0] for place in mine]]]
-            values, gradients = shape_functions(triangles.block.kind, np.array([found[place][1] for place in mine]).T)
+            of = triangles.block.nodes[candidates.members[[chosen[place][0] for place in mine]]]
+            values, gradients = shape_functions(triangles.block.kind, np.array([chosen[place][1] for place in mine]).T)
             corners = self._points[of]
             positions = np.einsum("pn,pni->pi", values, corners)
             tangents = np.einsum("pni,pnd->pdi", corners, gradients)
@@ -233,8 +235,8 @@ class NearestOnSurface:
 
     def _candidates(self, targets: FloatArray) -> "_Candidates":
         """Find the facets nearest to each target by the plane triangles between their corners, nearest first."""
-        found = [triangles.candidates(number, targets) for number, triangles in enumerate(self._triangles)]
-        rows, distances, sets, members, starts = (np.concatenate(column) for column in zip(*found, strict=True))
+        columns = [triangles.candidates(number, targets) for number, triangles in enumerate(self._triangles)]
+        rows, distances, sets, members, starts = (np.concatenate(column) for column in zip(*columns, strict=True))
         order = np.lexsort((distances, rows))
         first = np.searchsorted(rows[order], np.arange(len(targets)))
         order = order[np.arange(len(order)) - first[rows[order]] < _NEIGHBOURS]
@@ -263,9 +265,9 @@ class _Candidates:
     Attributes
     ----------
     bounds : list of int
-        Where those of each place begin, and the end.
+        First candidate of each place, and the end of the last place.
     distances : list of float
-        Of the plane triangles [m].
+        Distances of the plane triangles [m].
     sets : list of int
         Numbers of their sets of triangles.
     members : ndarray of int
@@ -297,10 +299,10 @@ class _Triangles:
     places : ndarray, shape (3, 2)
         Reference coordinates of the corners.
     corners : ndarray, shape (n_facets, 3, 3)
-        [m].
+        Places of the corners [m].
     centers : ndarray, shape (n_facets, 3)
     radii : ndarray, shape (n_facets,)
-        [m].
+        Radii [m].
     """
 
     block: ElementBlock
@@ -327,9 +329,9 @@ class _Triangles:
         rows : ndarray of int, shape (n,)
             The targets.
         distances : ndarray, shape (n,)
-            Of the triangle's nearest point [m].
+            Distance of the triangle's nearest point [m].
         sets : ndarray of int, shape (n,)
-            The `number` given.
+            The parameter `number`.
         members : ndarray of int, shape (n,)
             The triangles.
         starts : ndarray, shape (n, 2)
@@ -352,7 +354,7 @@ def surface_point(mesh: Mesh, facets: Facets, place: FloatArray) -> SurfacePoint
     facets : tuple of ElementBlock
         Outward facets to search.
     place : ndarray, shape (3,)
-        [m].
+        Target [m].
 
     Raises
     ------
@@ -395,19 +397,19 @@ def _closest_on_facet(nodes: FloatArray, block: ElementBlock, start: FloatArray,
     Only steps that come nearer are taken, shortened where they must be, and none that leaves the facet: on a flat
     facet the first guess is already the answer, and on a curved one no step makes it worse.
     """
-    here = start
+    coordinates = start
     gap = np.inf
     for _ in range(_STEPS):
-        values, gradients = shape_functions(block.kind, here[:, None])
+        values, gradients = shape_functions(block.kind, coordinates[:, None])
         gap = min(gap, float(np.linalg.norm(values[0] @ nodes - target)))
         tangents = nodes.T @ gradients[0]
         step = np.linalg.lstsq(tangents, target - values[0] @ nodes, rcond=1e-10)[0]
-        trials = np.array([_clipped(here + shortening * step, block) for shortening in _SHORTENINGS])
+        trials = np.array([_clipped(coordinates + shortening * step, block) for shortening in _SHORTENINGS])
         gaps = np.linalg.norm(shape_functions(block.kind, trials.T)[0] @ nodes - target, axis=1)
         if gaps.min() >= gap * (1.0 - 1e-12):
             break
-        here, gap = trials[np.argmin(gaps)], float(gaps.min())
-    return here
+        coordinates, gap = trials[np.argmin(gaps)], float(gaps.min())
+    return coordinates
 
 
 def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
@@ -449,8 +451,8 @@ def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[Float
     return best, distance
 
 
-_CELLS = 80  # of a view along the housing's diagonal
-_DIRECTIONS = 60  # of view
+_CELLS = 80  # cells of a view along the housing's diagonal
+_DIRECTIONS = 60  # directions of view
 _FACING = 0.5  # least cosine between a facet's normal and the direction of a view that counts
 _SEEN = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
 _DEPTH = 3.0  # cells that a facet may lie behind the foremost in its own: slanting neighbours share cells
@@ -507,11 +509,11 @@ def outer_facets(mesh: Mesh) -> Facets:
     faced, seen = np.zeros(len(middles)), np.zeros(len(middles))
     for direction in _even_directions(_DIRECTIONS):
         towards = samples.points[samples.normals @ direction > 0.0]
-        cells, own = _cells(towards, middles, _across(direction), samples.spacing)
-        foremost = np.full(max(cells.max(), own.max()) + 1, -np.inf)
+        cells, middle_cells = _cells(towards, middles, _across(direction), samples.spacing)
+        foremost = np.full(max(cells.max(), middle_cells.max()) + 1, -np.inf)
         np.maximum.at(foremost, cells, towards @ direction)
         facing = normals @ direction > _FACING
-        seen += facing & (middles @ direction > foremost[own] - _DEPTH * samples.spacing)
+        seen += facing & (middles @ direction > foremost[middle_cells] - _DEPTH * samples.spacing)
         faced += facing
     return pick_facets(boundary, seen >= _SEEN * np.maximum(faced, 1.0))
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, below which they turn about their line
-_SMALLEST = 20.0  # times as large as its survey a housing may be; a millionth of it lies near any surface
-_TOLERANCE = 0.02  # of the housing's diagonal: beyond it a point is not one of this surface
+_SMALLEST = 20.0  # largest size of a housing over that of its survey; a millionth of it lies near any surface
+_TOLERANCE = 0.02  # part of the housing's diagonal beyond which a point is not one of this surface
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class RigidMotion:
     ----------
     rotation : ndarray, shape (3, 3)
     translation : ndarray, shape (3,)
-        [m].
+        Translation [m].
     """
 
     rotation: FloatArray
@@ -121,14 +121,14 @@ def small_motion(points: FloatArray, targets: FloatArray, normals: FloatArray) -
     return RigidMotion(rotation, middle + solution[:3] - rotation @ middle), np.sort(firmness) / np.sqrt(len(points))
 
 
-_FIRST_STEPS, _STEPS = 6, 40  # from every start; from the promising ones
-_PROMISING = 4.0  # times the least distance, and the spacing of the samples, after the first steps
+_FIRST_STEPS, _STEPS = 6, 40  # steps from every start; from the promising ones
+_PROMISING = 4.0  # after the first steps: limit of the rms distance over the least one plus the samples' spacing
 _SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
 _SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
 _EQUAL = (
     0.005  # root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions
 )
-_DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # positions that differ by less, the latter of the diagonal, are one
+_DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # degrees, part of the diagonal: positions that differ by less are one
 _LOOSE = 0.02  # firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more
 _SCALE_OFF = 0.03  # deviation of the scale from 1 beyond which the survey is of another size than the model
 
@@ -140,12 +140,12 @@ class Alignment:
     Attributes
     ----------
     motion : RigidMotion
-        From the survey's frame to the model's.
+        Motion from the survey's frame to the model's.
     rms, largest : float
         Distances left, between landmarks or to the surface [m].
     by : {"landmarks", "surface"}
     others : tuple of RigidMotion
-        Positions of the survey that fit as well; the one nearest to how it was given is `motion`.
+        Other positions of the survey that fit as well; `motion` turns the survey least.
     remarks : tuple of str
         Remarks for the user, a sentence each.
     """
@@ -165,7 +165,7 @@ def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[fl
     ----------
     geometry : MeasuredGeometry
     landmarks : dict
-        From the label of a point to its place in the model's frame [m]; three or more, not on one line.
+        Place of each labelled point in the model's frame [m]; three or more, not on one line.
 
     Raises
     ------
@@ -185,9 +185,9 @@ def align_landmarks(geometry: MeasuredGeometry, landmarks: Mapping[str, tuple[fl
 def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     """Align a survey so that its points lie as near to the housing's outer surface as they can.
 
-    From many rotations, the survey's middle on the housing's, points and the nearest planes of the surface are brought
-    together alternately (:func:`small_motion`). A housing with symmetries, or one measured on too few faces, fits in
-    several positions: the one that turns the survey least is taken, and the others are reported.
+    The search starts from many rotations, with the survey's middle on the housing's, and brings points and the nearest
+    planes of the surface together alternately (:func:`small_motion`). A housing with symmetries, or one measured on too
+    few faces, fits in several positions: the one that turns the survey least is taken, and the others are reported.
 
     Raises
     ------
@@ -208,8 +208,8 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     ]
     limit = _PROMISING * (min(rms for rms, _ in first) + samples.spacing)
     promising = _parted(first, limit, points, diagonal)
-    found = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
-    fits = _parted(found, min(rms for rms, _ in found) + _EQUAL * diagonal, points, diagonal)
+    settled = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
+    fits = _parted(settled, min(rms for rms, _ in settled) + _EQUAL * diagonal, points, diagonal)
     fits.sort(key=lambda motion: motion.angle_degrees)
     motion = fits[0]
     gaps, _, firmness = surface.gaps(motion.place(points))
@@ -226,12 +226,12 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
 def size_hint(geometry: MeasuredGeometry, mesh: Mesh, part: float = 2.5) -> str | None:
     """Hint at the cause where the survey is of a very different size than the model; None where it is about as large.
 
-    The survey may be `part` times smaller than the model: one of a part of the housing.
+    The survey may be `part` times smaller than the model where it covers a part of the housing.
     """
-    own = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
-    if not own > 0.0:
+    survey_size = float(np.linalg.norm(np.ptp(geometry.positions, axis=0)))
+    if not survey_size > 0.0:
         return None
-    scale = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / own
+    scale = float(np.linalg.norm(np.ptp(mesh.points, axis=0))) / survey_size
     return None if 0.4 < scale < part else _scale_remark(scale)
 
 
@@ -267,9 +267,13 @@ def _starts(points: FloatArray, centers: FloatArray) -> Iterator[FloatArray]:
     ]
     onto = [rotation for rotation in onto if np.linalg.det(rotation) > 0.0]
     yield from onto
-    own, theirs = (np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] for places in (points, centers))
-    own, theirs = (axes * np.array([[1.0], [1.0], [np.linalg.det(axes)]]) for axes in (own, theirs))
-    yield from (theirs.T @ rotation @ own for rotation in onto)
+    main_axes, surface_axes = (
+        np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2] for places in (points, centers)
+    )
+    main_axes, surface_axes = (
+        axes * np.array([[1.0], [1.0], [np.linalg.det(axes)]]) for axes in (main_axes, surface_axes)
+    )
+    yield from (surface_axes.T @ rotation @ main_axes for rotation in onto)
     yield from Rotation.random(_SPREAD_STARTS, rng=np.random.default_rng(0)).as_matrix()
 
 
@@ -299,19 +303,19 @@ def _settle(
 
 
 def _parted(
-    found: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
+    settled: list[tuple[float, RigidMotion]], limit: float, points: FloatArray, diagonal: float
 ) -> list[RigidMotion]:
     """Distinct motions whose distance is below a limit, the best first; of nearly equal ones the best alone."""
     parted: list[RigidMotion] = []
-    for rms, motion in sorted(found, key=lambda one: one[0]):
+    for rms, motion in sorted(settled, key=lambda one: one[0]):
         if rms <= limit and all(_distinct(motion, other, points, diagonal) for other in parted):
             parted.append(motion)
     return parted
 
 
-def _distinct(one: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:
-    turned = RigidMotion(one.rotation @ other.rotation.T, np.zeros(3)).angle_degrees
-    shifted = np.linalg.norm(one.place(points).mean(axis=0) - other.place(points).mean(axis=0))
+def _distinct(motion: RigidMotion, other: RigidMotion, points: FloatArray, diagonal: float) -> bool:
+    turned = RigidMotion(motion.rotation @ other.rotation.T, np.zeros(3)).angle_degrees
+    shifted = np.linalg.norm(motion.place(points).mean(axis=0) - other.place(points).mean(axis=0))
     return bool(turned > _DISTINCT_DEGREES or shifted > _DISTINCT_SHIFT * diagonal)
 
 
@@ -349,11 +353,11 @@ def _turn_text(motion: RigidMotion) -> str:
 
 def _scale_remark(scale: float) -> str:
     """Describe the survey's scale in words, as a mistaken unit where it matches one."""
-    for told, size in UNITS.items():
+    for unit, size in UNITS.items():
         for meant, other in UNITS.items():
-            if told != meant and abs(np.log(scale * size / other)) < 0.3:
+            if unit != meant and abs(np.log(scale * size / other)) < 0.3:
                 return (
-                    f"the model is {scale:.4g} times as large as the survey: its lengths are in {meant}, not in {told}?"
+                    f"the model is {scale:.4g} times as large as the survey: its lengths are in {meant}, not in {unit}?"
                 )
     return f"the model is {scale:.4g} times as large as the survey; a rigid motion does not bring them together"
 
@@ -365,11 +369,11 @@ class MappedSurvey:
     Attributes
     ----------
     geometry : MeasuredGeometry
-        In the model's frame, points where they were measured.
+        Geometry in the model's frame, points where they were measured.
     positions, normals : ndarray, shape (n_points, 3)
         The nearest points of the outer surface [m] and their outward normals.
     distances : ndarray, shape (n_points,)
-        From each measuring point to the surface [m].
+        Distance from each measuring point to the surface [m].
     matrix : scipy.sparse.csr_array, shape (n_dofs, 3 n_nodes)
         Motion at each degree of freedom, along its direction, from the nodes' displacements.
     tolerance : float
@@ -414,7 +418,7 @@ def map_survey(
     mesh : Mesh
     geometry : MeasuredGeometry
     alignment : Alignment, optional
-        From the survey's frame to the model's; they are taken for the same where not given.
+        Alignment of the survey's frame with the model's; by default the two are the same.
     tolerance : float, optional
         Distance beyond which a point is called far [m]; by default 2 % of the housing's diagonal.
 
@@ -432,21 +436,21 @@ def map_survey(
     if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
-    found = NearestOnSurface(mesh, facets).points(geometry.positions)
-    positions = np.array([point.position for point in found]).reshape(-1, 3)
+    nearest = NearestOnSurface(mesh, facets).points(geometry.positions)
+    positions = np.array([point.position for point in nearest]).reshape(-1, 3)
     distances = np.linalg.norm(positions - geometry.positions, axis=1)
-    if np.count_nonzero(distances > limit) > len(found) / 2:
+    if np.count_nonzero(distances > limit) > len(nearest) / 2:
         hint = size_hint(geometry, mesh)
         advice = f"; {hint}" if hint else "; does the survey stand in the model's frame? It can be aligned"
         raise MeasuredDataError(
-            f"{np.count_nonzero(distances > limit)} of {len(found)} points of the survey are farther than "
+            f"{np.count_nonzero(distances > limit)} of {len(nearest)} points of the survey are farther than "
             f"{length_text(limit)} from the housing's surface, the worst {length_text(float(distances.max()))}{advice}"
         )
-    motions = [point_matrix(mesh, point) for point in found]
+    motions = [point_matrix(mesh, point) for point in nearest]
     rows = [
         sparse.csr_array(direction[None, :] @ motions[point])
         for point, direction in zip(geometry.points, geometry.directions, strict=True)
     ]
     matrix = sparse.vstack(rows, format="csr") if rows else sparse.csr_array((0, 3 * len(mesh.points)))
-    normals = np.array([point.normal for point in found]).reshape(-1, 3)
+    normals = np.array([point.normal for point in nearest]).reshape(-1, 3)
     return MappedSurvey(geometry, positions, normals, distances, sparse.csr_array(matrix), limit, alignment)

@@ -25,7 +25,7 @@ class StabilityRule:
 
     A pole of one order continues one of the order before where the frequency and the damping ratio differ by no more
     than the two tolerances; each pole continues one at most, the nearest first. A mode is a line of poles that goes on
-    over at least `share` of the upper half of the orders; the one taken is nearest to the line's medians.
+    over at least `share` of the upper half of the orders; the chosen pole is nearest to the line's medians.
 
     Attributes
     ----------
@@ -36,9 +36,9 @@ class StabilityRule:
     damping : float
         Largest change of the damping ratio from one order to the next, as a part.
     largest_damping : float
-        Ratios of poles lie between 0 and this.
+        Largest damping ratio of a pole; the least is 0.
     share : float
-        Of the upper half of the orders that a mode's line covers at least.
+        Least part of the upper half of the orders that a mode's line covers.
     contribution : float
         Least part of the responses' energy near its resonance that a mode contributes; a pole that makes less is noise.
     """
@@ -63,13 +63,13 @@ class PoleLine:
     Attributes
     ----------
     poles : list of complex
-        [rad/s].
+        Poles [rad/s].
     places : list of tuple of int
-        Of each its order, from 0, and its place among the poles of that order.
+        Each pole's order, from 0, and its place among the poles of that order.
     stability : float
         Part of the upper half of the orders that the line covers.
     chosen : int
-        Index of the pole taken.
+        Index of the chosen pole.
     """
 
     poles: list[complex] = field(default_factory=list)
@@ -79,17 +79,17 @@ class PoleLine:
 
     @property
     def pole(self) -> complex:
-        """The pole taken [rad/s]."""
+        """The chosen pole [rad/s]."""
         return self.poles[self.chosen]
 
     @property
     def place(self) -> tuple[int, int]:
-        """Order and place of the pole taken."""
+        """Order and place of the chosen pole."""
         return self.places[self.chosen]
 
 
 def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high: float) -> list[PoleLine]:
-    """Return the lines of stable poles that are modes by a rule, each with the pole taken, ascending in frequency.
+    """Return the lines of stable poles that are modes by a rule, each with its chosen pole, ascending in frequency.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
         growing = [line for number, line in enumerate(growing) if number in going]
         growing += [PoleLine([complex(poles[place])], [(order, place)]) for place in sorted(free)]
     half = len(orders) // 2
-    found = []
+    chosen_lines = []
     for line in ended + growing:
         upper = [index for index, (order, _) in enumerate(line.places) if order >= half]
         line.stability = len(upper) / (len(orders) - half)
@@ -140,12 +140,12 @@ def pole_lines(orders: list[ComplexArray], rule: StabilityRule, low: float, high
                 + np.abs(ratios / np.median(ratios) - 1.0) / rule.damping
             )
             line.chosen = upper[int(np.argmin(unlike))]
-            found.append(line)
-    return sorted(found, key=lambda line: abs(line.pole))
+            chosen_lines.append(line)
+    return sorted(chosen_lines, key=lambda line: abs(line.pole))
 
 
-_TURNS = 200  # of the two least-squares problems
-_NOTHING = 1e-12  # of a weight, below which nothing was measured
+_TURNS = 200  # iterations of the two least-squares problems
+_NOTHING = 1e-12  # weight below which nothing was measured
 _FORMS = {"displacement": "receptance", "velocity": "mobility", "acceleration": "accelerance"}
 
 
@@ -158,7 +158,7 @@ class IdentifiedModes:
     modes : MeasuredModes
         Shapes are the residues over all references, scaled to 1 at their largest.
     poles : ndarray of complex, shape (n_modes,)
-        [rad/s].
+        Poles [rad/s].
     stability : ndarray, shape (n_modes,)
         Part of the upper half of the orders over which each mode's pole went on.
     misfit : float
@@ -186,7 +186,7 @@ def identify_modes(
     Parameters
     ----------
     responses : MeasuredResponses
-        At evenly spaced frequencies; pairs that were not measured are left out.
+        Responses at evenly spaced frequencies; pairs that were not measured are left out.
     band : tuple of float, optional
         Band of the modes [rad/s]; by default all measured frequencies. Poles are estimated on all lines; shapes on
         those of the band, with a residual mass and a residual stiffness for the modes outside.
@@ -229,20 +229,20 @@ def identify_modes(
         )
     while True:
         fitted, residues = _residues(model, lines, low, min(high, float(model.freq[-1])))
-        kept = _contributing(lines, model.frf, residues, step, form, rule)
-        if not kept:
+        contributing = _contributing(lines, model.frf, residues, step, form, rule)
+        if not contributing:
             raise MeasuredDataError(
                 f"no stable pole between {low:g} and {high:g} Hz makes a good part of the responses"
             )
-        if len(kept) == len(lines):
+        if len(contributing) == len(lines):
             break
-        lines = kept
+        lines = contributing
     poles = np.array([line.pole for line in lines])
     order = np.argsort(np.abs(poles))
     shapes, rank = _shapes(residues[:, order], measured)
     inside = (model.freq >= low) & (model.freq <= high)
-    own = model.frf[:, inside]
-    misfit = float(np.linalg.norm(fitted[:, inside] - own) / np.linalg.norm(own))
+    in_band = model.frf[:, inside]
+    misfit = float(np.linalg.norm(fitted[:, inside] - in_band) / np.linalg.norm(in_band))
     modes = MeasuredModes(np.abs(poles)[order], (-poles.real / np.abs(poles))[order], shapes, responses.geometry)
     return IdentifiedModes(modes, poles[order], np.array([line.stability for line in lines])[order], misfit, rank)
 
@@ -266,7 +266,7 @@ def _spacing(hertz: FloatArray) -> tuple[float, int]:
 
 
 def _residues(model: Any, lines: list[PoleLine], low: float, high: float) -> tuple[ComplexArray, ComplexArray]:
-    """Synthesised responses and residues, shape (n_rows, n_modes), of the poles taken."""
+    """Synthesised responses and residues, shape (n_rows, n_modes), of the chosen poles."""
     model.pole_ind = np.array([line.place for line in lines])
     fitted, residues = model.get_constants(method="lsfd", f_lower=low, f_upper=high)
     return np.asarray(fitted), np.asarray(residues)[:, : len(lines)]
@@ -276,15 +276,15 @@ def _contributing(
     lines: list[PoleLine], rows: ComplexArray, residues: ComplexArray, step: float, form: str, rule: StabilityRule
 ) -> list[PoleLine]:
     """Return the lines whose modes contribute enough to the responses at their own resonance."""
-    kept = []
+    contributing = []
     power = ("receptance", "mobility", "accelerance").index(form)
     for number, line in enumerate(lines):
         omega = abs(line.pole)
         index = min(round(omega / (2.0 * np.pi * step)), rows.shape[1] - 1)
-        own = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
-        if own**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
-            kept.append(line)
-    return kept
+        peak = omega**power * np.linalg.norm(residues[:, number]) / abs(line.pole.real)
+        if peak**2 >= rule.contribution * float(np.linalg.norm(rows[:, index])) ** 2:
+            contributing.append(line)
+    return contributing
 
 
 def _shapes(residues: ComplexArray, measured: npt.NDArray[np.bool_]) -> tuple[ComplexArray, FloatArray]:

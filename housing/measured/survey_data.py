@@ -29,7 +29,7 @@ class MeasuredGeometry:
     labels : tuple of str
         Name or number of each point, each once.
     positions : ndarray, shape (n_points, 3)
-        In the survey's own frame [m].
+        Positions in the survey's frame [m].
     points : ndarray of int, shape (n_dofs,)
         Point of each degree of freedom.
     directions : ndarray, shape (n_dofs, 3)
@@ -77,11 +77,12 @@ class MeasuredModes:
     frequencies : ndarray, shape (n_modes,)
         Undamped natural frequencies [rad/s].
     damping_ratios : ndarray, shape (n_modes,), or None
-        Of critical damping; None where not known.
+        Parts of critical damping; None where not known.
     shapes : ndarray of complex, shape (n_modes, n_dofs), or None
-        At the geometry's degrees of freedom, to an unknown scale; NaN where a degree of freedom was not measured.
+        Shapes at the geometry's degrees of freedom, to an unknown scale; NaN where a degree of freedom was not
+        measured.
     geometry : MeasuredGeometry or None
-        Of the shapes; None where there are none.
+        Geometry of the shapes; None where there are none.
 
     Raises
     ------
@@ -114,7 +115,7 @@ Motion = Literal["displacement", "velocity", "acceleration"]
 
 @dataclass(frozen=True)
 class MeasuredResponses:
-    """Motion over force, over frequency: receptances, mobilities or accelerances.
+    """Motion over force as functions of frequency: receptances, mobilities or accelerances.
 
     Attributes
     ----------
@@ -125,9 +126,9 @@ class MeasuredResponses:
     reference_directions : ndarray, shape (n_references, 3)
         Unit vector of each force.
     frequencies : ndarray, shape (n_lines,)
-        Ascending, not negative [rad/s].
+        Circular frequencies, ascending, not negative [rad/s].
     values : ndarray of complex, shape (n_dofs, n_references, n_lines)
-        In m/N, m/(s N) or m/(s² N) by `motion`; NaN where a pair was not measured.
+        Responses in m/N, m/(s N) or m/(s² N) by `motion`; NaN where a pair was not measured.
     motion : {"displacement", "velocity", "acceleration"}
         Measured quantity of the motion.
 

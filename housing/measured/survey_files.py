@@ -45,7 +45,7 @@ def read_table(path: str | Path, *, unit: str | None = None) -> SurveyData:
     ----------
     path : path
     unit : {"m", "mm", "cm", "in"}, optional
-        Of the lengths, where the header names none; a metre otherwise.
+        Unit of the lengths, where the header names none; a metre otherwise.
 
     Raises
     ------
@@ -176,19 +176,19 @@ def _shapes(rows: list[tuple[int, list[str]]], name: str, unit: str | None) -> S
 
 
 def _header(cells: list[str], name: str, unit: str | None) -> tuple[float, list[str], list[tuple[int, int | None]]]:
-    """Metres in the table's unit, the modes' names, and of each mode the columns of its real and imaginary part."""
-    own: set[str] = set()
+    """Metres in the table's unit, the modes' names, and the columns of each mode's real and imaginary part."""
+    units: set[str] = set()
     plain = []
     for cell in cells[:5]:
-        found = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*(\w+)\s*[\])])?", cell.lower())
-        plain.append(found[1] if found else cell)
-        if found and found[2]:
-            own.add(found[2])
-    if tuple(plain) != _PLACES or len(own) > 1:
+        matched = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*(\w+)\s*[\])])?", cell.lower())
+        plain.append(matched[1] if matched else cell)
+        if matched and matched[2]:
+            units.add(matched[2])
+    if tuple(plain) != _PLACES or len(units) > 1:
         raise MeasuredDataError(f"{name} begins with columns {cells[:5]}; expected {', '.join(_PLACES)}")
-    told = own.pop() if own else unit or "m"
-    if told not in UNITS:
-        raise MeasuredDataError(f"{name}: lengths in {told!r}; expected one of {', '.join(UNITS)}")
+    unit_name = units.pop() if units else unit or "m"
+    if unit_name not in UNITS:
+        raise MeasuredDataError(f"{name}: lengths in {unit_name!r}; expected one of {', '.join(UNITS)}")
     parts: list[tuple[int, int | None]] = []
     names: list[str] = []
     for column, cell in enumerate(cells[5:], start=5):
@@ -197,7 +197,7 @@ def _header(cells: list[str], name: str, unit: str | None) -> tuple[float, list[
         else:
             names.append(cell)
             parts.append((column, None))
-    return UNITS[told], names, parts
+    return UNITS[unit_name], names, parts
 
 
 def _value(cells: list[str], column: int, imaginary: int | None, number: int, name: str) -> complex:

@@ -49,11 +49,11 @@ class Survey:
     Attributes
     ----------
     positions : ndarray, shape (n_points, 3)
-        On the surface [m].
+        Places on the surface [m].
     normals : ndarray, shape (n_points, 3)
-        Outward.
+        Outward unit normals.
     matrix : scipy.sparse.csr_array, shape (3 n_points, 3 n_nodes)
-        x, y, z of each point from the nodes' displacements.
+        Motions x, y, z of each point from the nodes' displacements.
     """
 
     positions: FloatArray
@@ -77,7 +77,7 @@ def survey_grid(
     ----------
     mesh : Mesh
     bounds : ndarray, shape (2, 3), optional
-        The box [m]; by default that of the mesh.
+        Low and high corners of the box [m]; by default the mesh's.
     counts : dict
         Columns and rows on each face.
 
@@ -88,7 +88,7 @@ def survey_grid(
 
     Notes
     -----
-    Each point is projected along the face's normal on to the facets that look that way on the outer side; one
+    Each point is projected along the face's normal on to the facets that look that way on the outer side; a point
     that falls into a bore moves to the nearest of them. Where no facet looks that way, those that come nearest to it
     take their place.
     """
@@ -104,7 +104,7 @@ def survey_grid(
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
         outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
-        if not outer:  # as on a cone: the facets that come nearest to that direction
+        if not outer:  # on a cone, for instance: the facets that come nearest to that direction
             outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
         places = np.tile(middle, (columns, rows, 1))
         places[..., column_axis] = (box[0] + _middles(columns)[:, None] * (box[1] - box[0]))[:, column_axis, None]
@@ -123,7 +123,7 @@ def _middles(count: int) -> FloatArray:
     return np.asarray((np.arange(count) + 0.5) / count)
 
 
-_PLACES = 3  # for the hammer
+_PLACES = 3  # places for the hammer
 _DEPENDENT = 1e-8  # smallest singular value of the shapes as a part of the largest, below which two are one
 
 
@@ -136,7 +136,7 @@ class SurveyPlan:
     sensors : ndarray of int, shape (n_sensors,)
         Candidates kept, the most indispensable first.
     independence : ndarray, shape (n_sensors,)
-        Share of each in the independence of the modes; they sum to the number of modes.
+        Share of each sensor in the independence of the modes; the shares sum to the number of modes.
     condition : float
         Largest over smallest singular value of the shapes at the sensors, each shape of length 1.
     auto_mac : ndarray, shape (n_modes, n_modes)
@@ -144,8 +144,8 @@ class SurveyPlan:
     driving_points : ndarray of int, shape (n_places,)
         Candidates for the hammer: the best single one, the best one to add to it, and so on.
     residues : ndarray, shape (n_places,)
-        With the places up to each: the least over the modes of the best driving-point residue, as a part of the largest
-        of the mode over all candidates. Near 0 a mode is hardly excited from any of them.
+        With the places up to each one, the least over the modes of the best driving-point residue, as a part of the
+        largest of the mode over all candidates. Near 0 a mode is hardly excited from any of them.
     """
 
     sensors: IntArray
@@ -193,17 +193,17 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
         raise HousingError(
             f"the {modes} modes look alike at all {candidates} candidates: no choice of sensors parts them"
         )
-    kept = np.arange(candidates)
+    remaining = np.arange(candidates)
     shares = _independence(shapes)
-    while len(kept) > count:
-        kept = np.delete(kept, np.argmin(shares))
-        shares = _independence(shapes[:, kept])
+    while len(remaining) > count:
+        remaining = np.delete(remaining, np.argmin(shares))
+        shares = _independence(shapes[:, remaining])
     order = np.argsort(-shares, kind="stable")
-    chosen = shapes[:, kept] / np.linalg.norm(shapes[:, kept], axis=1, keepdims=True)
+    chosen = shapes[:, remaining] / np.linalg.norm(shapes[:, remaining], axis=1, keepdims=True)
     chosen_sizes = np.linalg.svd(chosen, compute_uv=False)
     places, residues = _driving_points(shapes)
     return SurveyPlan(
-        sensors=kept[order],
+        sensors=remaining[order],
         independence=shares[order],
         condition=float(chosen_sizes[0] / chosen_sizes[-1]),
         auto_mac=(chosen @ chosen.T) ** 2,
@@ -213,7 +213,7 @@ def plan_survey(shapes: FloatArray, count: int) -> SurveyPlan:
 
 
 def _driving_points(shapes: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Places for the hammer, one added to the other, and the least residue with each."""
+    """Places for the hammer, one added after the other, and the least residue with each."""
     parts = shapes**2 / (shapes**2).max(axis=1, keepdims=True)
     best = np.zeros(len(shapes))
     places, residues = [], []
@@ -234,7 +234,7 @@ def _independence(shapes: FloatArray) -> FloatArray:
 def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> MeasuredGeometry:
     """Points spread over the outer surface, each to be measured along its outward normal.
 
-    The first is the farthest from the housing's middle, each next one the farthest from those before, among samples of
+    The first is the farthest from the housing's middle, each further one the farthest from all before, among samples of
     the surface: so they are even, whatever the mesh.
 
     Parameters
@@ -255,8 +255,8 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     samples = sample_surface(mesh, facets)
     free = np.ones(len(samples.points), dtype=np.bool_)
     if without:
-        taken = sample_surface(mesh, without)
-        free = np.asarray(cKDTree(taken.points).query(samples.points)[0] > samples.spacing, dtype=np.bool_)
+        excluded = sample_surface(mesh, without)
+        free = np.asarray(cKDTree(excluded.points).query(samples.points)[0] > samples.spacing, dtype=np.bool_)
     points = samples.points[free]
     if not 0 < count <= len(points) // 4:
         raise HousingError(f"{count} candidates for sensors; the outer surface has room for 1 to {len(points) // 4}")
@@ -268,9 +268,9 @@ def candidate_points(mesh: Mesh, count: int, *, without: Facets = ()) -> Measure
     labels = tuple(str(number) for number in range(1, count + 1))
     # Samples lie between the corners of facets, off a curved surface.
     surface = NearestOnSurface(mesh, facets)
-    found = surface.points(points[chosen])
-    normals = np.array([point.normal for point in found]) + 0.0  # zeros without a sign
-    return MeasuredGeometry(labels, np.array([point.position for point in found]), np.arange(count), normals)
+    surface_points = surface.points(points[chosen])
+    normals = np.array([point.normal for point in surface_points]) + 0.0  # zeros without a sign
+    return MeasuredGeometry(labels, np.array([point.position for point in surface_points]), np.arange(count), normals)
 
 
 def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbours: int = 3) -> MeasuredGeometry:
@@ -285,7 +285,10 @@ def planned_geometry(candidates: MeasuredGeometry, sensors: IntArray, *, neighbo
     count = len(sensors)
     near = cKDTree(positions).query(positions, k=min(neighbours + 1, count))[1].reshape(count, -1)
     joined = {
-        (min(one, other), max(one, other)) for one, row in enumerate(near.tolist()) for other in row if other != one
+        (min(index, other), max(index, other))
+        for index, row in enumerate(near.tolist())
+        for other in row
+        if other != index
     }
     labels = tuple(str(number) for number in range(1, count + 1))
     directions = candidates.directions[sensors]

@@ -57,7 +57,7 @@ def read_datasets(path: Path) -> tuple[list[Dataset], tuple[str, ...]]:
         file = pyuff.UFF(str(path))
     except Exception as error:  # pyuff raises nothing narrower
         raise MeasuredDataError(f"{path.name} cannot be read as a universal file") from error
-    found: list[Dataset] = []
+    datasets: list[Dataset] = []
     others: dict[int, int] = {}
     for index, number in enumerate(int(kind) for kind in file.get_set_types()):
         if number <= 0:
@@ -66,11 +66,11 @@ def read_datasets(path: Path) -> tuple[list[Dataset], tuple[str, ...]]:
                 "is between them is not text"
             )
         if number in USED:
-            found.append(_read_one(file, index, number, path.name))
+            datasets.append(_read_one(file, index, number, path.name))
         elif number != HEADER:
             others[number] = others.get(number, 0) + 1
     remarks = [f"{count} of dataset {number} not read" for number, count in sorted(others.items())]
-    return found, tuple(remarks)
+    return datasets, tuple(remarks)
 
 
 def _read_one(file: Any, index: int, number: int, name: str) -> Dataset:
@@ -180,7 +180,7 @@ class SurveyPoints:
     ----------
     labels : tuple of str
     positions : ndarray, shape (n_points, 3)
-        [m].
+        Positions [m].
     directions : ndarray, shape (n_points, 3, 3)
         The point's own three directions of motion, as rows.
     lines : tuple of tuple of int
@@ -235,16 +235,16 @@ def read_shapes(
     MeasuredDataError
         Where a node is unknown, or an eigenvalue is none of a vibration.
     """
-    kept = [one for one in datasets if one["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
-    if len(kept) < len(datasets):
-        remarks.append(f"{len(datasets) - len(kept)} of dataset 55 not read: no modes")
-    if any("r4" in one for one in kept):
+    modal = [one for one in datasets if one["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
+    if len(modal) < len(datasets):
+        remarks.append(f"{len(datasets) - len(modal)} of dataset 55 not read: no modes")
+    if any("r4" in one for one in modal):
         remarks.append("rotations of the shapes not read")
-    if not kept:
+    if not modal:
         return None
-    components = np.zeros((len(kept), len(points.labels), 3), dtype=np.complex128)
-    frequencies, ratios = np.empty(len(kept)), np.empty(len(kept))
-    for number, dataset in enumerate(kept):
+    components = np.zeros((len(modal), len(points.labels), 3), dtype=np.complex128)
+    frequencies, ratios = np.empty(len(modal)), np.empty(len(modal))
+    for number, dataset in enumerate(modal):
         where = f"mode {number + 1}"
         frequencies[number], ratios[number] = _pole(dataset, where)
         rows = [points.index(node, where) for node in dataset["node_nums"]]
@@ -325,20 +325,22 @@ def read_functions(
     MeasuredDataError
         Where a node is unknown, a pair stands twice, or functions have different frequencies or kinds of motion.
     """
-    kept = [one for one in datasets if _is_response(one)]
-    if len(kept) < len(datasets):
-        remarks.append(f"{len(datasets) - len(kept)} of dataset 58 not read: no frequency responses of motion to force")
-    if not kept:
+    functions = [one for one in datasets if _is_response(one)]
+    if len(functions) < len(datasets):
+        remarks.append(
+            f"{len(datasets) - len(functions)} of dataset 58 not read: no frequency responses of motion to force"
+        )
+    if not functions:
         return None
-    places = 2.0 * np.pi * np.asarray(kept[0]["x"], dtype=np.float64)
-    motion = _motion(kept, remarks)
+    places = 2.0 * np.pi * np.asarray(functions[0]["x"], dtype=np.float64)
+    motion = _motion(functions, remarks)
     rows: dict[_Key, int] = {}
     columns: dict[_Key, int] = {}
     cells: dict[tuple[int, int], FloatArray] = {}
-    for dataset in kept:
-        here = 2.0 * np.pi * np.asarray(dataset["x"], dtype=np.float64)
+    for dataset in functions:
+        frequencies = 2.0 * np.pi * np.asarray(dataset["x"], dtype=np.float64)
         name = f"the function {dataset['rsp_node']}:{dataset['rsp_dir']} by {dataset['ref_node']}:{dataset['ref_dir']}"
-        if len(here) != len(places) or np.abs(here - places).max() > _SPACING * places[-1]:
+        if len(frequencies) != len(places) or np.abs(frequencies - places).max() > _SPACING * places[-1]:
             raise MeasuredDataError(f"{name} has other frequencies than the first of the file")
         row = rows.setdefault((points.index(dataset["rsp_node"], name), int(dataset["rsp_dir"])), len(rows))
         column = columns.setdefault((points.index(dataset["ref_node"], name), int(dataset["ref_dir"])), len(columns))
@@ -371,12 +373,12 @@ def _direction(points: SurveyPoints, key: _Key) -> FloatArray:
 
 
 def _motion(datasets: list[Dataset], remarks: list[str]) -> Motion:
-    found = {int(one.get("ordinate_spec_data_type", 0)) for one in datasets}
-    if len(found) > 1:
+    types = {int(one.get("ordinate_spec_data_type", 0)) for one in datasets}
+    if len(types) > 1:
         raise MeasuredDataError(
-            f"the functions are of several kinds (specific data types {sorted(found)}); expected one"
+            f"the functions are of several kinds (specific data types {sorted(types)}); expected one"
         )
-    number = found.pop()
+    number = types.pop()
     if number not in MOTIONS:
         remarks.append(f"functions of specific data type {number} taken for accelerations")
     return MOTIONS.get(number, "acceleration")
@@ -387,10 +389,10 @@ def _factor(dataset: Dataset, length: float, force: float, remarks: list[str]) -
     factors = []
     for axis, by_system in (("ordinate", length), ("orddenom", force)):
         label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip().lower().replace(" ", "").replace("**", "^")
-        own = _LABELS.get(label, by_system)
-        if not np.isclose(own, by_system, rtol=1e-6):
+        by_label = _LABELS.get(label, by_system)
+        if not np.isclose(by_label, by_system, rtol=1e-6):
             remark = f"functions taken in {label}, as their axis says, and not in the file's system of units"
             if remark not in remarks:
                 remarks.append(remark)
-        factors.append(own)
+        factors.append(by_label)
     return float(factors[0] / factors[1])

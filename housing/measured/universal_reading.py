@@ -19,7 +19,7 @@ from meshes.lengths import UNITS
 FloatArray = npt.NDArray[np.float64]
 
 CARTESIAN, CYLINDRICAL, SPHERICAL = 0, 1, 2
-_DEEPEST = 100  # systems within each other beyond which they run in a circle
+_DEEPEST = 100  # systems within each other, beyond which they count as a circle
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class CoordinateSystem:
     Attributes
     ----------
     axes : ndarray, shape (3, 3)
-        Its x, y, z axes as rows, unit vectors in the survey's frame.
+        The frame's x, y, z axes as rows, unit vectors in the survey's frame.
     origin : ndarray, shape (3,)
-        In the file's unit of length.
+        Origin in the file's unit of length.
     kind : {0, 1, 2}
         Cartesian; cylindrical r, θ, z; spherical r, θ (about z, from x), φ (from z); angles in degrees.
     """
@@ -83,7 +83,7 @@ def systems_of(datasets: list[dict[str, Any]]) -> dict[int, CoordinateSystem]:
     MeasuredDataError
         Where axes are not perpendicular unit vectors, points coincide or systems refer to each other in a circle.
     """
-    given: dict[int, tuple[int, CoordinateSystem]] = {}
+    systems: dict[int, tuple[int, CoordinateSystem]] = {}
     for dataset in datasets:
         if dataset["type"] == 18:
             for index, number in enumerate(dataset["cs_num"]):
@@ -91,24 +91,24 @@ def systems_of(datasets: list[dict[str, Any]]) -> dict[int, CoordinateSystem]:
                     int(number), *(np.asarray(dataset[key][index]) for key in ("ref_o", "x_point", "xz_point"))
                 )
                 system = CoordinateSystem(axes, np.asarray(dataset["ref_o"][index]), _kind(dataset["cs_type"][index]))
-                given[int(number)] = (int(dataset["ref_cs_num"][index]), system)
+                systems[int(number)] = (int(dataset["ref_cs_num"][index]), system)
         elif dataset["type"] == 2420:
             for number, kind, matrix in zip(
                 dataset["CS_sys_labels"], dataset["CS_types"], dataset["CS_matrices"], strict=True
             ):
                 if np.abs(matrix[:3] @ matrix[:3].T - np.eye(3)).max() > 1e-4:
                     raise MeasuredDataError(f"the axes of coordinate system {number} are no perpendicular unit vectors")
-                given[int(number)] = (0, CoordinateSystem(_square(matrix[:3]), matrix[3], _kind(kind)))
-    return {0: GLOBAL} | {number: _resolved(number, given) for number in given}
+                systems[int(number)] = (0, CoordinateSystem(_square(matrix[:3]), matrix[3], _kind(kind)))
+    return {0: GLOBAL} | {number: _resolved(number, systems) for number in systems}
 
 
-def _resolved(number: int, given: Mapping[int, tuple[int, CoordinateSystem]]) -> CoordinateSystem:
+def _resolved(number: int, systems: Mapping[int, tuple[int, CoordinateSystem]]) -> CoordinateSystem:
     """Resolve a coordinate system into the survey's frame, through the systems in which it is given."""
-    within, system = given[number]
+    within, system = systems[number]
     for _ in range(_DEEPEST):
-        if within == 0 or within == number or within not in given:
+        if within == 0 or within == number or within not in systems:
             return system
-        outer_within, outer = given[within]
+        outer_within, outer = systems[within]
         system = CoordinateSystem(system.axes @ outer.axes, outer.origin + system.origin @ outer.axes, system.kind)
         within = outer_within
     raise MeasuredDataError(f"coordinate system {number} is given in others that refer to each other in a circle")
@@ -147,11 +147,11 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
     ----------
     path : path
     unit : {"m", "mm", "cm", "in"}, optional
-        Of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
+        Unit of the file's lengths, in place of its dataset 164. Without either a metre is assumed, with a remark.
     shape_frame : {"local", "global"}
         Frame of the shapes where points have a displacement system of their own. The format calls the vectors
-        of dataset 55 global; programs for modal tests write them in the points' own directions, as they measured.
-        Functions (58) are always in the points' own.
+        of dataset 55 global; programs for modal tests write them in the points' own directions, as measured.
+        Functions (58) are always in the points' own directions.
 
     Raises
     ------
@@ -166,9 +166,10 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
     holds = {dataset["type"] for dataset in datasets}
     if points is None:
         if holds & {55, 58}:
-            what = "shapes" if 55 in holds else "functions"
+            content = "shapes" if 55 in holds else "functions"
             raise MeasuredDataError(
-                f"{path.name} holds {what} but no points (dataset 15 or 2411): nobody can tell where they were measured"
+                f"{path.name} holds {content} but no points (dataset 15 or 2411): nobody can tell where they were "
+                "measured"
             )
         raise MeasuredDataError(f"{path.name} holds no points, shapes or functions (datasets 15 or 2411, 55, 58)")
     geometry = points.geometry([], [])
@@ -179,8 +180,10 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
             remarks.append(
                 f"shapes taken to stand in the points' {'own' if shape_frame == 'local' else 'common'} frame"
             )
-        own = points.directions if shape_frame == "local" else np.broadcast_to(np.eye(3), points.directions.shape)
-        modes = read_shapes([one for one in datasets if one["type"] == 55], points, own, remarks)
+        directions = (
+            points.directions if shape_frame == "local" else np.broadcast_to(np.eye(3), points.directions.shape)
+        )
+        modes = read_shapes([one for one in datasets if one["type"] == 55], points, directions, remarks)
     responses = None
     if 58 in holds:
         functions = [one for one in datasets if one["type"] == 58]
@@ -213,7 +216,7 @@ def _units(datasets: list[Dataset], unit: str | None, remarks: list[str]) -> tup
 def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> SurveyPoints | None:
     """Positions in metres and directions of the points, their systems resolved; None where there are none."""
     systems = systems_of(datasets)
-    found: dict[str, tuple[FloatArray, FloatArray]] = {}
+    by_label: dict[str, tuple[FloatArray, FloatArray]] = {}
     for dataset in datasets:
         if dataset["type"] not in (15, 2411):
             continue
@@ -224,14 +227,14 @@ def _points(datasets: list[Dataset], length: float, remarks: list[str]) -> Surve
             moved = _system(systems, dataset["disp_cs"][index], label, remarks)
             # The coordinates of dataset 2411 are the part's, whatever system it was exported for.
             position = defined.position(place) if dataset["type"] == 15 else place
-            if label in found and not np.allclose(found[label][0], position, rtol=1e-5, atol=1e-9):
+            if label in by_label and not np.allclose(by_label[label][0], position, rtol=1e-5, atol=1e-9):
                 raise MeasuredDataError(f"point {label} stands twice in the file, at different places")
-            found[label] = (position, moved.directions(position))
-    if not found:
+            by_label[label] = (position, moved.directions(position))
+    if not by_label:
         return None
-    labels = tuple(found)
-    positions = length * np.array([position for position, _ in found.values()])
-    directions = np.array([axes for _, axes in found.values()])
+    labels = tuple(by_label)
+    positions = length * np.array([position for position, _ in by_label.values()])
+    directions = np.array([axes for _, axes in by_label.values()])
     if any(dataset["type"] == 2420 for dataset in datasets):
         remarks.append("coordinate systems of dataset 2420 read with their axes as the rows of the matrix")
     points = SurveyPoints(labels, positions, directions, ())

@@ -94,10 +94,10 @@ def _frames(
 ) -> FloatArray:
     """For each point three perpendicular directions, as rows, that hold all directions measured there."""
     seen: list[list[FloatArray]] = [[] for _ in geometry.labels]
-    for one in measured:
-        if one.labels != geometry.labels or not np.array_equal(one.positions, geometry.positions):
+    for measurement in measured:
+        if measurement.labels != geometry.labels or not np.array_equal(measurement.positions, geometry.positions):
             raise MeasuredDataError("shapes and responses of one file need the same points; write two files")
-        for point, direction in zip(one.points, one.directions, strict=True):
+        for point, direction in zip(measurement.points, measurement.directions, strict=True):
             seen[point].append(direction)
     if responses is not None:
         for point, direction in zip(responses.reference_points, responses.reference_directions, strict=True):
@@ -105,12 +105,12 @@ def _frames(
     return np.array([_frame(label, given) for label, given in zip(geometry.labels, seen, strict=True)])
 
 
-def _frame(label: str, given: list[FloatArray]) -> FloatArray:
+def _frame(label: str, directions: list[FloatArray]) -> FloatArray:
     """Return the global axes where the directions lie along them, else the directions completed to three."""
-    if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in given):
+    if all(np.any(np.abs(_AXES @ direction) > 1.0 - 1e-12) for direction in directions):
         return _AXES
     frame: list[FloatArray] = []
-    for direction in given:
+    for direction in directions:
         shares = np.array([direction @ axis for axis in frame])
         if len(frame) and np.any(np.abs(shares) > 1.0 - 1e-9):
             continue
@@ -226,19 +226,19 @@ class UniversalFunction:
     abscissa : ndarray, shape (n,)
         Time [s] or frequency [Hz].
     values : ndarray, shape (n,)
-        Real or complex.
+        Values, real or complex.
     unit : str
-        Of the values: m, m/s, m/s2, N, Pa or another, which the file then calls general.
+        Unit of the values: m, m/s, m/s2, N, Pa or another, which the file then calls general.
     label : str
         Name of the quantity.
     titles : tuple of str
-        At most five lines of text.
+        Lines of text, at most five.
     response : tuple of (str, int, int)
         Name, number of the point, 0 for none, and direction there: 1, 2, 3 for x, y, z, with a sign; 0 for another.
     reference : tuple of (str, int, int)
-        Of the excitation, in the same way.
+        The excitation's name, point and direction.
     reference_unit, reference_label : str
-        Of the excitation's quantity; empty for none.
+        Unit and name of the excitation's quantity; empty for none.
     """
 
     kind: Literal["time response", "frequency response function", "spectrum"]
@@ -266,7 +266,7 @@ def write_functions(
     path : path
     functions : iterable of UniversalFunction
     points : sequence of (float, float, float)
-        [m].
+        Places [m].
     """
     import pyuff
 

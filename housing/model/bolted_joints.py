@@ -3,7 +3,7 @@
 While the preload holds, bolt and clamped parts deflect together: their stiffnesses add. Sources: Budynas and Nisbett,
 "Shigley's Mechanical Engineering Design", 9th ed., sections 8-4 and 8-5 (bolt, Eq. 8-17; cone of pressure of half
 angle 30° after Rötscher, Eq. 8-20); ISO 261 and ISO 898-1 (coarse threads and their stress area). Across the axis no
-formula is as settled. Here the cone gives way to the hollow cylinder of the same length and axial stiffness (the
+formula is as settled. The cone is replaced by the hollow cylinder of the same length and axial stiffness (the
 "substitute cylinder" of VDI 2230), whose shear, bending and twist are elementary; friction is taken to hold without
 slip.
 """
@@ -18,7 +18,7 @@ from housing.material import Material
 from housing.model.bushings import Axial
 
 _TAN = math.tan(math.radians(30.0))
-_HEAD = 1.5  # diameter of the head's bearing face by that of the bolt
+_HEAD = 1.5  # diameter of the head's bearing face over that of the bolt
 
 # ISO 261, coarse series: nominal diameter and pitch [mm].
 _COARSE_DIAMETERS = (3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 30, 36, 42, 48, 56, 64)
@@ -34,7 +34,7 @@ class BoltedJoint:
     bolt, clamped : float
         Axial stiffness of each [N/m].
     stiffness : Axial
-        Of both together, in all directions.
+        Stiffness of both together, in all directions.
     """
 
     bolt: float
@@ -60,7 +60,7 @@ def bolt_stiffness(
     grip : float
         Length that stretches, l_d + l_t [m].
     youngs_modulus : float
-        [Pa].
+        Young's modulus [Pa].
     shank : float
         Unthreaded part of the grip, l_d [m].
     thread_area : float, optional
@@ -85,7 +85,7 @@ def frustum_stiffness(
     small_diameter, hole : float
         D at its top, and d of the hole along its axis [m].
     youngs_modulus : float
-        [Pa].
+        Young's modulus [Pa].
     outer : float
         Largest diameter within the part [m]; from there on it is a cylinder.
     """
@@ -105,12 +105,12 @@ def bolted_joint(
     Parameters
     ----------
     diameter : float
-        Nominal [m].
+        Nominal diameter [m].
     grip : float
         Length of bolt between head and nut or thread [m]; for a screw in a tapped hole the cover and half of the
         engaged depth (Shigley, Table 8-7).
     parts, bolt : Material
-        The bolt's is the parts' where not given.
+        Materials; the bolt's is that of the parts where not given.
     outer : float
         Diameter around the bolt that the parts fill [m]; at least the head's, 1.5 of the bolt's.
 
@@ -128,17 +128,17 @@ def bolted_joint(
         )
     steel = parts if bolt is None else bolt
     modulus, shear = parts.youngs_modulus, parts.shear_modulus
-    own = bolt_stiffness(diameter, grip, steel.youngs_modulus)
+    bolt_only = bolt_stiffness(diameter, grip, steel.youngs_modulus)
     half = frustum_stiffness(grip / 2, _HEAD * diameter, diameter, modulus, outer=outer)
     clamped = half / 2  # two halves, one after the other
     area = clamped * grip / modulus
     width = math.sqrt(4 * area / math.pi + diameter**2)
     bending, bolt_bending = math.pi / 64 * (width**4 - diameter**4), math.pi / 64 * diameter**4
     return BoltedJoint(
-        bolt=own,
+        bolt=bolt_only,
         clamped=clamped,
         stiffness=Axial(
-            axial=own + clamped,
+            axial=bolt_only + clamped,
             # The bolt itself is clamped at both ends, and adds little.
             shear=shear * area / grip + 12 * steel.youngs_modulus * bolt_bending / grip**3,
             tilting=(modulus * bending + steel.youngs_modulus * bolt_bending) / grip,

@@ -27,9 +27,9 @@ class Axial:
     Attributes
     ----------
     axial, shear : float
-        Along the axis and across it, either way [N/m or N s/m].
+        Amounts along the axis and across it [N/m or N s/m].
     tilting, torsional : float
-        About a line across the axis and about the axis [N m/rad or N m s/rad].
+        Amounts about a line across the axis and about the axis [N m/rad or N m s/rad].
     """
 
     axial: float = 0.0
@@ -45,11 +45,11 @@ class Bushing:
     Attributes
     ----------
     stiffness : tuple of six floats
-        Along the own x, y, z [N/m] and about them [N m/rad].
+        Springs along its axes x, y, z [N/m] and about them [N m/rad].
     damping : tuple of six floats
-        Along the own x, y, z [N s/m] and about them [N m s/rad].
+        Dashpots along its axes x, y, z [N s/m] and about them [N m s/rad].
     axes : tuple of three unit vectors
-        The own x, y, z in the global frame, right-handed.
+        Axes x, y, z of the bushing in the global frame, right-handed.
 
     Raises
     ------
@@ -63,9 +63,9 @@ class Bushing:
 
     def __post_init__(self) -> None:
         """Check stiffness, damping and axes."""
-        for what, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
+        for label, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
             if np.shape(amounts) != (6,) or not all(0.0 <= amount < np.inf for amount in amounts):
-                raise HousingError(f"{what} {amounts}: expected six finite numbers, none of them negative")
+                raise HousingError(f"{label} {amounts}: expected six finite numbers, none of them negative")
         if not any(self.stiffness) and not any(self.damping):
             raise HousingError("six springs and dashpots that are all zero hold nothing: give one of them an amount")
         frame = np.array(self.axes, dtype=np.float64)
@@ -75,7 +75,7 @@ class Bushing:
 
     @classmethod
     def along(cls, axis: Point, stiffness: Axial, damping: Axial | None = None) -> "Bushing":
-        """Springs and dashpots that are symmetric about an axis, given by a vector of any length, as their z.
+        """Make springs and dashpots that are symmetric about an axis z, given by a vector of any length.
 
         Raises
         ------
@@ -101,14 +101,14 @@ def axes_along(axis: Point, across: Point | None = None) -> Axes:
     Raises
     ------
     HousingError
-        Where a direction has no length, or both are one.
+        Where a direction has no length, or both are the same.
     """
     along = _unit(np.array(axis, dtype=np.float64), f"axis {axis}")
     if across is None:
         # The global axis farthest from it: with one axis of symmetry every direction across it is equivalent.
         across = GLOBAL_AXES[int(np.argmin(np.abs(along)))]
-    given = _unit(np.array(across, dtype=np.float64), f"axis {across}")
-    x = _unit(given - (given @ along) * along, f"axis {across} beside {axis}", least=1e-6)
+    reference = _unit(np.array(across, dtype=np.float64), f"axis {across}")
+    x = _unit(reference - (reference @ along) * along, f"axis {across} beside {axis}", least=1e-6)
     y = np.cross(along, x)
     frame = [(float(row[0]), float(row[1]), float(row[2])) for row in (x, y, along)]
     return frame[0], frame[1], frame[2]
@@ -124,7 +124,7 @@ class Mount:
     patch : Patch
     bushing : Bushing
     center : tuple of float, optional
-        Where its axes meet, so that translations do not tilt it [m]; the middle of the patch where not given.
+        Point where its axes meet, so that translations do not tilt it [m]; the middle of the patch where not given.
     """
 
     name: str
@@ -152,12 +152,12 @@ class Joint:
     first, second : Patch
     bushing : Bushing
     center : tuple of float, optional
-        Where its axes meet [m]; halfway between the middles of the patches where not given.
+        Point where its axes meet [m]; halfway between the middles of the patches where not given.
 
     Raises
     ------
     HousingError
-        Where both patches are one.
+        Where both patches are the same.
     """
 
     name: str

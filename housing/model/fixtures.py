@@ -28,7 +28,7 @@ MOST_PATCH_NODES = 2000
 Tensor = tuple[Point, Point, Point]
 
 NO_INERTIA: Tensor = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-_ROUNDING = 1e-9  # of the tensor's trace: rounding of numbers typed for a thin body
+_ROUNDING = 1e-9  # part of the tensor's trace: rounding of numbers typed for a thin body
 
 
 class Fixture(Protocol):
@@ -103,13 +103,13 @@ class LumpedMass:
     On a patch the body has the six motions r = P u of the patch's middle, and adds Pᵀ M₆ P to the mass matrix, with M₆
     the mass matrix of the rigid body about that point: total mass, centre of gravity and inertia of the housing change
     exactly as rigid-body mechanics demands, on any mesh. A point of a solid has no rotation, so that only the mass
-    itself acts there.
+    itself acts on it.
 
     Attributes
     ----------
     name : str
     mass : float
-        [kg].
+        Mass [kg].
     patch : Patch, optional
         Patch that it is fastened to; either this or ``position``.
     position : tuple of float, optional
@@ -117,7 +117,7 @@ class LumpedMass:
     inertia : three rows of three floats
         Inertia tensor about the body's own centre of gravity, along the global axes [kg m²]; on a patch only.
     offset : tuple of float
-        From the middle of the patch to the body's centre of gravity [m]; on a patch only.
+        Vector from the middle of the patch to the body's centre of gravity [m]; on a patch only.
 
     Raises
     ------

@@ -25,9 +25,9 @@ def rigid_motions(points: FloatArray, center: FloatArray) -> FloatArray:
     Parameters
     ----------
     points : ndarray, shape (..., 3)
-        [m].
+        Points [m].
     center : ndarray, shape (3,)
-        [m].
+        Centre [m].
 
     Returns
     -------
@@ -50,7 +50,7 @@ class RigidBody:
     Attributes
     ----------
     mass : float
-        [kg].
+        Mass [kg].
     center : ndarray, shape (3,)
         Centre of gravity [m].
     inertia : ndarray, shape (3, 3)
@@ -78,7 +78,7 @@ def rigid_body(points: FloatArray, matrices: Matrices) -> RigidBody:
     Parameters
     ----------
     points : ndarray, shape (n_nodes, 3)
-        The nodes [m].
+        Places of the nodes [m].
     matrices : Matrices
     """
     middle = points.mean(axis=0)
@@ -95,7 +95,7 @@ def rigid_body(points: FloatArray, matrices: Matrices) -> RigidBody:
 Point = tuple[float, float, float]
 
 _FLATTEST = 1e-8  # least of the patch's second moments as a part of the largest: a strip 10⁴ times as long as wide
-_FARTHEST = 1e4  # of a patch's radii may lie between it and its centre: beyond, a translation is all rotation
+_FARTHEST = 1e4  # radii of a patch between it and its centre at most: beyond, a translation is all rotation
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,11 @@ class Patch:
     surface : str, optional
         Name of a surface of the mesh.
     box : tuple of two points, optional
-        Its low and high corners [m]; the facets inside belong to the patch.
+        Low and high corners of a box [m]; the facets inside belong to the patch.
     plane : tuple of two points, optional
         A point of it [m] and its normal; the facets on it belong to the patch.
     circle : tuple of center, normal and diameter, optional
-        Of a flat face, the way it looks out of its material [m]; see :func:`meshes.circle_facets`.
+        Circle in a flat face, with the face's outward normal [m]; see :func:`meshes.circle_facets`.
     """
 
     surface: str | None = None

@@ -26,11 +26,11 @@ class Seat:
     Attributes
     ----------
     name : str
-        Its surface in the mesh.
+        Name of its surface in the mesh.
     center : tuple of float
         The point whose translations x, y, z come first, followed by the rotations about x, y, z [m].
     diameter : float, optional
-        Of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
+        Diameter of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
     """
 
     name: str
@@ -46,9 +46,9 @@ class Sensor:
     ----------
     name : str
     position : tuple of float
-        [m]; the nearest point of the surface is taken.
+        Place [m]; the sensor sits on the nearest point of the surface.
     direction : tuple of float, optional
-        Where it points, of any length; the outward normal where not given.
+        Direction, of any length; the outward normal where not given.
     """
 
     name: str
@@ -68,7 +68,7 @@ class SensorPort:
     position, direction : ndarray, shape (3,)
         The place on the surface [m] and the unit vector.
     distance : float
-        From the place asked for to the place found [m].
+        Distance from the place asked for to the place found [m].
     """
 
     name: str

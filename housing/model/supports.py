@@ -30,13 +30,13 @@ class Support:
     surface : str, optional
         Name of a surface of the mesh.
     box : tuple of two points, optional
-        Its low and high corners [m]; the facets inside belong to the patch.
+        Low and high corners of a box [m]; the facets inside belong to the patch.
     fixed : tuple of bool
         Whether x, y and z are held at zero.
     stiffness : tuple of float
         Springs to the ground along x, y, z [N/m], in all, spread evenly over the patch.
     damping : tuple of float
-        Dashpots to the ground along x, y, z [N s/m], spread likewise.
+        Dashpots to the ground along x, y, z [N s/m], in all, spread evenly over the patch.
     plane : tuple of two points, optional
         A point of a plane [m] and its normal; the facets on it belong to the patch.
     """
@@ -55,9 +55,9 @@ class Support:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
             raise HousingError(f"support {self.name!r} holds nothing: fix a component or give it stiffness or damping")
-        for what, unit, amounts in (("stiffness", "N/m", self.stiffness), ("damping", "N s/m", self.damping)):
+        for label, unit, amounts in (("stiffness", "N/m", self.stiffness), ("damping", "N s/m", self.damping)):
             if not all(0.0 <= amount < np.inf for amount in amounts):
-                raise HousingError(f"support {self.name!r}: {what} {amounts} {unit} must be finite and not negative")
+                raise HousingError(f"support {self.name!r}: {label} {amounts} {unit} must be finite and not negative")
 
     def facets(self, mesh: Mesh) -> Facets:
         """Return the facets of the patch."""
@@ -75,13 +75,13 @@ class Support:
 
 def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
     """Degrees of freedom held at zero, ascending."""
-    held = [
+    freedoms = [
         3 * facet_nodes(support.facets(mesh)) + component
         for support in supports
         for component in range(3)
         if support.fixed[component]
     ]
-    return np.unique(np.concatenate(held)) if held else np.empty(0, dtype=np.int64)
+    return np.unique(np.concatenate(freedoms)) if freedoms else np.empty(0, dtype=np.int64)
 
 
 RIGID_MOTIONS = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
@@ -100,9 +100,9 @@ class SupportHold:
     fixes : int
         Rigid motions that its fixed components alone would hold, 0 to 6.
     stiffness : ndarray, shape (6,)
-        Of its springs against translations x, y, z [N/m] and rotations about the centre of gravity [N m/rad].
+        Stiffness of its springs against translations x, y, z [N/m] and rotations about the centre of gravity [N m/rad].
     share : ndarray, shape (6,)
-        Of that of all supports' springs; 0 where there is none.
+        Part of the stiffness of all supports' springs; 0 where there is none.
     """
 
     name: str
@@ -140,7 +140,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
     ----------
     mesh : Mesh
     supports : sequence of Support or Mount
-        All that connect to the ground.
+        All fixtures that connect to the ground.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
@@ -148,10 +148,10 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
     scale = np.array([1.0] * 3 + [1.0 / reach] * 3)
     fields = rigid_motions(mesh.points, center).reshape(-1, 6)
     springs = [_spring_stiffness(mesh, support, fields) for support in supports]
-    held = [_fixed_rows(mesh, support, fields * scale) for support in supports]
-    own = [_by_size(rows.T @ rows) for rows in held]
+    fixed_rows = [_fixed_rows(mesh, support, fields * scale) for support in supports]
+    support_stiffness = [_by_size(rows.T @ rows) for rows in fixed_rows]
     total = np.sum(springs, axis=0) if springs else np.zeros((6, 6))
-    whole = _by_size(total * np.outer(scale, scale)) + np.sum(own, axis=0) if springs else total
+    whole = _by_size(total * np.outer(scale, scale)) + np.sum(support_stiffness, axis=0) if springs else total
     values, motions = np.linalg.eigh(whole)
     free = motions[:, values <= _HELD]
     part = np.linalg.norm(free, axis=1)
@@ -166,7 +166,7 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
                 stiffness=stiffness.diagonal(),
                 share=np.divide(stiffness.diagonal(), sums, out=np.zeros(6), where=sums > 0.0),
             )
-            for support, fixed, stiffness in zip(supports, own, springs, strict=True)
+            for support, fixed, stiffness in zip(supports, support_stiffness, springs, strict=True)
         ),
     )
 

@@ -66,7 +66,7 @@ _ATTEMPTS = 3
 _ASIDE = (1e-3, -1e-3, 1e-5, -1e-5)  # parts of a shift by which to step away from a mode beside it
 MOST_MODES = 2000
 """Largest number of modes of one search: the basis of more would exceed any memory."""
-_DRAFT = 1e-4  # residual of the last modes of a draft; those of half their frequency have all digits by then
+_DRAFT = 1e-4  # residual of the last modes of a draft; modes of half their frequency then have all digits
 _BELOW = 0.1  # part of the lowest elastic eigenvalue
 _RELATIVE_GAP = 1e-5  # modes closer than this count as one multiple mode when a limit is placed between them
 
@@ -228,9 +228,9 @@ def _incomplete(certificate: Certificate) -> IncompleteModesError:
     )
 
 
-def indefinite_stiffness_error(what: str) -> FactorizationError:
+def indefinite_stiffness_error(finding: str) -> FactorizationError:
     """Error for a stiffness with negative energies."""
-    return FactorizationError(f"{what}; the stiffness is not positive semidefinite")
+    return FactorizationError(f"{finding}; the stiffness is not positive semidefinite")
 
 
 def _refined(

@@ -1,7 +1,7 @@
 """Dominant modes, ranked by the transfer of a force at the bearing seats to the motion of the housing's skin.
 
 The eight modes that TM-104434 keeps of its 25 "represent a major part of the total global vibration"; the rule
-by which they were chosen is not printed. Here dominance is the lateral acceleration strength
+by which they were chosen is not printed. Dominance in this module is the lateral acceleration strength
 
     strength = rms over the seats of |φ_x, φ_y| times rms over the survey of φ_normal     [1/kg],
 
@@ -28,11 +28,11 @@ class Dominance:
     acceleration : ndarray, shape (n_modes,)
         The measure that decides [1/kg].
     velocity : ndarray, shape (n_modes,)
-        [s/kg].
+        Strength as a velocity [s/kg].
     absolute : ndarray, shape (n_modes,)
-        [1/kg].
+        Mean absolute strength [1/kg].
     frequencies : ndarray, shape (n_modes,)
-        [rad/s].
+        Circular frequencies [rad/s].
     """
 
     acceleration: FloatArray
@@ -79,7 +79,7 @@ def dominance(frequencies: FloatArray, seats: FloatArray, skin: FloatArray) -> D
     Parameters
     ----------
     frequencies : ndarray, shape (n_modes,)
-        [rad/s].
+        Circular frequencies [rad/s].
     seats : ndarray, shape (n_modes, n_seats, 2)
         x and y translation of each seat in the mass-normalised shapes [1/√kg].
     skin : ndarray, shape (n_modes, n_points)

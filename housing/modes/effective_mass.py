@@ -34,7 +34,7 @@ def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
     Returns
     -------
     ndarray, shape (n, n)
-        n modes and residual modes [1/s], symmetric, positive semidefinite.
+        Matrix of n modes and residual modes [1/s], symmetric, positive semidefinite.
     """
     shapes = modes.shapes.reshape(len(modes.shapes), -1)
     if modes.residual_modes is not None:
@@ -76,9 +76,9 @@ class EffectiveMass:
     participation : ndarray, shape (n_modes, 6)
         L [√kg, √(kg m²)].
     total : ndarray, shape (6,)
-        Of the whole body.
+        Mass of the whole body.
     free : ndarray, shape (6,)
-        Of the degrees of freedom that no support fixes: the sum over all modes.
+        Mass of the degrees of freedom that no support fixes: the sum over all modes.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
@@ -115,11 +115,11 @@ def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> Ef
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with supports.
+        Matrices of n_nodes nodes, with supports.
     points : ndarray, shape (n_nodes, 3)
-        Their places [m].
+        Places of the nodes [m].
     modes : ModeSet
-        Of these matrices.
+        Modes of these matrices.
     """
     center = rigid_body(points, matrices).center
     fields = rigid_motions(points, center).reshape(-1, 6)

@@ -35,12 +35,12 @@ from housing.fem.linear_algebra import BlockAlgebra, Operator
 FloatArray = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-9
-"""Of a Ritz pair's residual, as a part of ν."""
+"""Tolerance of a Ritz pair's residual, as a part of ν."""
 
 _BLOCK = 8
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
-_NEARLY_WITHIN = 1e-4  # the same, from where its rounding shows
-_ORTHONORMAL = 1e-14  # how far products of a new block's columns may be from those of orthonormal ones
+_NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
+_ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
 _ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
@@ -70,11 +70,12 @@ def block_lanczos(
     above : bool
         Whether the shift lies above the modes wanted, which are then all modes below it, rather than below them.
     seed : int
-        Of the random starting block; each also doubles its width.
+        Seed of the random starting block; each also doubles its width.
     threads : int
         Number of threads that orthogonalise; the modes are the same to the last bit for any number.
     tolerance : float
-        Of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of that.
+        Tolerance of the residual of the last mode to converge, as a part of its ν; its λ is off by about the square of
+        that.
 
     Returns
     -------
@@ -98,15 +99,17 @@ def block_lanczos(
 
     algebra = BlockAlgebra(n, threads)
     start = np.random.default_rng(seed).standard_normal((n, width))
-    found = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
+    block_step = _orthonormal(basis[:, :0], inertia[:, :0], 0, solve(np.ascontiguousarray(mass @ start)), mass, algebra)
     begin, size, checked = 0, 0, 0
-    while found.block.shape[1] and size + found.block.shape[1] <= most + width:
-        previous, begin, size = begin, size, size + found.block.shape[1]
-        basis[:, begin:size], inertia[:, begin:size] = found.block, found.inertia
-        found = _orthonormal(basis[:, :size], inertia[:, :size], size - previous, solve(found.inertia), mass, algebra)
-        small[:size, begin:size] = found.projections[:size]
-        remainder = found.projections[size:]
-        whole = found.block.shape[1] == 0
+    while block_step.block.shape[1] and size + block_step.block.shape[1] <= most + width:
+        previous, begin, size = begin, size, size + block_step.block.shape[1]
+        basis[:, begin:size], inertia[:, begin:size] = block_step.block, block_step.inertia
+        block_step = _orthonormal(
+            basis[:, :size], inertia[:, :size], size - previous, solve(block_step.inertia), mass, algebra
+        )
+        small[:size, begin:size] = block_step.projections[:size]
+        remainder = block_step.projections[size:]
+        whole = block_step.block.shape[1] == 0
         # Once in a twentieth of the basis: the small eigenproblem must not outgrow the large one.
         if size >= count and (whole or size - checked >= size // 20 or size + width > most):
             checked = size
@@ -120,7 +123,7 @@ def block_lanczos(
                 step = outside / wanted
                 norms = np.sqrt(1.0 + np.einsum("ij,ij->j", step, step))
                 order = np.argsort(1.0 / wanted)
-                vectors = algebra.combined(found.block, (step / norms)[:, order])
+                vectors = algebra.combined(block_step.block, (step / norms)[:, order])
                 algebra.subtract(vectors, basis[:, :size], -(mixture / norms)[:, order])
                 return shift + 1.0 / wanted[order], vectors
         small[size : size + len(remainder), begin:size] = remainder
@@ -173,11 +176,13 @@ def _orthonormal(
     inertia = mass @ block
     products = algebra.products(block, inertia)
     left = np.sqrt(np.maximum(products.diagonal(), 0.0))
-    given = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
-    kept = left > _DEPENDENT * given
-    values, turn = np.linalg.eigh(products[np.ix_(kept, kept)] / np.outer(left[kept], left[kept]))
+    norms = np.sqrt(np.einsum("ij,ij->j", within, within) + left**2)
+    independent = left > _DEPENDENT * norms
+    values, turn = np.linalg.eigh(
+        products[np.ix_(independent, independent)] / np.outer(left[independent], left[independent])
+    )
     mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
-    mixture[kept] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[kept, None]
+    mixture[independent] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[independent, None]
     new, new_inertia, shares = (
         algebra.combined(block, mixture),
         algebra.combined(inertia, mixture),
@@ -185,13 +190,13 @@ def _orthonormal(
     )
     if new.shape[1]:
         # Scaling up the remainder of a block that nearly lay in the basis scales up its rounding: once more.
-        if float(np.min(left[kept] / given[kept])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
+        if float(np.min(left[independent] / norms[independent])) < _NEARLY_WITHIN or values[0] < _NEARLY_WITHIN:
             algebra.subtract(new, basis, algebra.products(inertia_of_basis, new))
             new_inertia = mass @ new
             shares = algebra.products(new, inertia)
-        own = algebra.products(new, new_inertia)
-        if np.abs(own - np.eye(len(own))).max() > _ORTHONORMAL:
-            unit = np.linalg.inv(np.linalg.cholesky(own)).T
+        gram = algebra.products(new, new_inertia)
+        if np.abs(gram - np.eye(len(gram))).max() > _ORTHONORMAL:
+            unit = np.linalg.inv(np.linalg.cholesky(gram)).T
             new, new_inertia = algebra.combined(new, unit), algebra.combined(new_inertia, unit)
             shares = algebra.products(new, inertia)
     return _Addition(new, new_inertia, np.vstack([within, shares]))
@@ -225,9 +230,9 @@ def arpack_modes(
     solve, mass, shift, count, above
         As of :func:`block_lanczos`.
     seed : int
-        Of the start vector; each also doubles the basis.
+        Seed of the start vector; each also doubles the basis.
     tolerance : float
-        Of a Ritz pair's residual as a part of ν; 0 is rounding.
+        Tolerance of a Ritz pair's residual as a part of ν; 0 is rounding.
     """
     n = mass.shape[0]
     start = solve(mass @ np.random.default_rng(seed).standard_normal(n))

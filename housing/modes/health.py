@@ -24,7 +24,7 @@ from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-MASS_BOUND = 1e-6  # of mass, and of the centre over the diagonal: curved elements are integrated closely, not exactly
+MASS_BOUND = 1e-6  # error of mass, and of the centre over the diagonal: curved elements are not integrated exactly
 REGULAR_BOUND = 1e-9
 STRAIN_BOUND = 1e-10  # rounding of K R is about 1e-14
 SYMMETRY_BOUND = 1e-12
@@ -112,24 +112,24 @@ def health_report(
     unsupported, supported : Matrices
         The bare solid, and the same with all that is fastened to it.
     supports : sequence of Support or Mount
-        Those of its fixtures that connect to the ground.
+        The fixtures that connect to the ground.
     modes : ModeSet
-        Of ``supported``, with or without residual modes.
+        Modes of ``supported``, with or without residual modes.
     mass : float
-        By geometry: Σ density x volume, with lumped masses [kg].
+        Mass by geometry: Σ density x volume, with lumped masses [kg].
     center : ndarray, shape (3,), optional
         Centre of gravity by geometry, where it is known [m].
     """
     body = rigid_body(mesh.points, supported)
-    held = grounding(mesh, supports, body.center)
+    ground = grounding(mesh, supports, body.center)
     lines = [
         *_mass_lines(mesh, body, mass, center, supported),
         *_matrix_lines(mesh, unsupported, supported, body),
-        *_grounding_lines(held, modes),
+        *_grounding_lines(ground, modes),
         *_mode_lines(supported, modes),
         *_port_lines(modes),
     ]
-    return HealthReport(tuple(lines), body, held)
+    return HealthReport(tuple(lines), body, ground)
 
 
 def _mass_lines(
@@ -186,23 +186,23 @@ def _matrix_lines(mesh: Mesh, unsupported: Matrices, supported: Matrices, body: 
     ]
 
 
-def _grounding_lines(held: Grounding, modes: ModeSet) -> list[HealthLine]:
-    expected, found = held.free_motions, int(np.count_nonzero(modes.frequencies == 0.0))
+def _grounding_lines(ground: Grounding, modes: ModeSet) -> list[HealthLine]:
+    expected, zeros = ground.free_motions, int(np.count_nonzero(modes.frequencies == 0.0))
     # Rigid modes are all below any limit, but a search by number may have asked for fewer.
     expected_found = min(expected, len(modes.frequencies))
-    excess = found - expected_found
+    excess = zeros - expected_found
     loose = ": are its parts joined?" if excess > 0 else ""
     lines = [
         HealthLine(
             "rigid modes",
             float(abs(excess)),
             0.0,
-            f"{found} found, {expected_found} expected of these supports{loose}",
+            f"{zeros} found, {expected_found} expected of these supports{loose}",
             essential=excess < 0,
         )
     ]
-    if held.supports:
-        names = ", ".join(held.free_directions)
+    if ground.supports:
+        names = ", ".join(ground.free_directions)
         why = "all six motions of the body are held" if not expected else f"the housing can still move: {names}"
         lines.append(HealthLine("grounding", float(expected), 0.0, why, essential=False))
     return lines

@@ -42,11 +42,11 @@ class ModeSet:
     shapes : ndarray, shape (n_modes, n_nodes, 3)
         Displacement at each node, normalised to φᵀ M φ = 1 [1/√kg].
     certificate : Certificate
-        Of the modes as they were found; the residual modes then reduce their residuals further.
+        Certificate of the modes as computed; the residual modes then reduce their residuals further.
     seconds : dict of str to float
         Time taken by ``factorisation``, ``eigensolver`` and, where ports were given, ``reduction`` [s].
     backend : str
-        Which factorisation was used.
+        Name of the factorisation.
     shift : float
         The eigenvalue about which the modes were searched [rad²/s²].
     threads : int
@@ -105,13 +105,14 @@ def solve_modes(
     Parameters
     ----------
     matrices : Matrices
-        Of n_nodes nodes, with the supports and whatever else is attached to them, see :func:`housing.attach_fixtures`.
+        Matrices of n_nodes nodes, with the supports and whatever else is attached to them, see
+        :func:`housing.attach_fixtures`.
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
         Number of the lowest modes; a multiple mode at the end is completed.
     draft : bool
-        Of ``count``: skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
+        With ``count``, skip the inertia count behind the last mode, in two thirds of the time. The last modes are less
         accurate (their λ to some 1e-8), and the certificate is not complete.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes), optional
         Motions whose static compliance the mode set is to hold exactly, by residual modes.
@@ -119,7 +120,7 @@ def solve_modes(
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
         :func:`housing.modes.residual_modes.residual_attachment_modes`.
     solver : {"lanczos", "eigsh"}
-        Own block Lanczos, or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
+        Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
         See :class:`housing.fem.factorization.Factorizer`.
     progress : callable
@@ -151,12 +152,12 @@ def solve_modes(
     factorizer = Factorizer(backend=backend, threads=threads)
     factorizer.order_ahead(system.stiffness)
     search = CertifiedSearch(system, factorizer, system.floor(frequency_limit or 0.0), solver)
-    found = (
+    solution = (
         search.below(frequency_limit, progress)
         if frequency_limit is not None
         else search.lowest(count or 0, progress, draft=draft)
     )
-    values, vectors = found.values, _oriented(found.vectors)
+    values, vectors = solution.values, _oriented(solution.vectors)
     values[np.abs(values) < 1e-6 * search.floor] = 0.0
     if values[0] < -search.floor:
         raise indefinite_stiffness_error(f"the lowest eigenvalue of K is {values[0]:g} rad²/s²")
@@ -168,11 +169,11 @@ def solve_modes(
         residual_modes, vectors = residual_attachment_modes(
             system.stiffness,
             system.mass,
-            found.factor.solve,
+            solution.factor.solve,
             values,
             vectors,
             ports[:, system.free],
-            shift=found.certificate.limit**2,
+            shift=solution.certificate.limit**2,
             floor=search.floor,
             free=system.free,
             n_nodes=system.n_nodes,
@@ -183,10 +184,10 @@ def solve_modes(
     return ModeSet(
         frequencies=np.sqrt(np.maximum(values, 0.0)),
         shapes=system.expand(vectors),
-        certificate=found.certificate,
+        certificate=solution.certificate,
         seconds=search.seconds,
-        backend=found.factor.backend,
-        shift=found.shift,
+        backend=solution.factor.backend,
+        shift=solution.shift,
         threads=threads,
         residual_modes=residual_modes,
     )
@@ -195,7 +196,7 @@ def solve_modes(
 def _oriented(vectors: FloatArray) -> FloatArray:
     """Orient mode shapes so that the largest entry is positive, and equal input draws equal pictures.
 
-    Of entries that symmetry makes equally large, the first counts, or rounding would choose.
+    Among entries that symmetry makes equally large, the first counts, or rounding would choose.
     """
     size = np.abs(vectors)
     largest = np.argmax(size >= (1.0 - _ALIKE) * size.max(axis=0), axis=0)
@@ -224,7 +225,7 @@ def add_residual_modes(
     modes : ModeSet
         Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
+        Ports such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.
@@ -257,7 +258,7 @@ def add_residual_modes(
 
 
 class ModeSetExtension:
-    """Extension of a mode set by further residual modes; what it has stays in its span.
+    """Extension of a mode set by further residual modes; its span keeps all that it has.
 
     One factor of K - σM, σ at the limit of the modes, serves all of them.
 
@@ -285,10 +286,10 @@ class ModeSetExtension:
         Parameters
         ----------
         modes : ModeSet
-            The modes of this extension, with whatever residual modes.
+            The modes of this extension, with any residual modes.
         ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
         orders : int
-            As `port_orders` of :func:`solve_modes`.
+            Number of orders, as `port_orders` of :func:`solve_modes`.
 
         Raises
         ------
@@ -336,21 +337,21 @@ class ModeSetExtension:
         if beyond:
             raise HousingError(f"a harmonic load at {beyond[0]:g} rad/s; expected one below the limit of the modes")
         system, residual = self._system, modes.residual_modes
-        known = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
+        residual_vectors = residual.shapes.reshape(len(residual.shapes), -1).T[system.free]
         inertia = np.asarray(system.mass @ self._vectors)
-        found = [
+        vectors = [
             missing_harmonic_responses(
                 system.shifted(frequency**2),
                 self._factor.solve,
                 load[system.free],
                 self._vectors,
                 inertia,
-                known,
+                residual_vectors,
                 residual.frequencies**2 - frequency**2,
             )
             for frequency, load in loads
         ]
-        return self._joined(modes, np.hstack(found)) if found else modes
+        return self._joined(modes, np.hstack(vectors)) if vectors else modes
 
     def _joined(self, modes: ModeSet, columns: FloatArray) -> ModeSet:
         assert modes.residual_modes is not None

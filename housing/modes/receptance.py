@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
-_EVEN_POINTS = 400  # across a band, beside those that each resonance in it gets
+_EVEN_POINTS = 400  # frequencies across a band, beside those around each resonance
 _CHUNK = 1024  # frequencies at a time: bounds the working memory
 _AROUND = np.array([-6.0, -3.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 3.0, 6.0])  # half-power half-widths
 
@@ -37,14 +37,14 @@ class Selection:
     Attributes
     ----------
     band : tuple of float
-        [rad/s].
+        Band [rad/s].
     ranking : ndarray of int, shape (n_modes,)
         Indices of the modes, the strongest first.
     strength : ndarray, shape (n_modes,)
-        Of each mode in the order of the ranking: the largest gain of its term in the band [m/N].
+        The largest gain of each mode's term in the band, in the order of the ranking [m/N].
     error_left : ndarray, shape (n_modes + 1,)
-        With only the first 0, 1, 2, ... of the ranking (and the residual modes): the largest norm of the error in the
-        band, as a part of the largest norm of the whole receptance in it.
+        Error with only the first 0, 1, 2, ... of the ranking (and the residual modes): the largest norm of the error in
+        the band, as a part of the largest norm of the whole receptance in it.
     tolerance : float
     """
 
@@ -127,9 +127,9 @@ def select_modes(
     modes, damping_ratios, port_a, port_b
         As for :func:`receptance`; the motions of each port should be alike, such as translations.
     band : tuple of float
-        [rad/s], from above zero for a free body.
+        Band [rad/s], from above zero for a free body.
     tolerance : float
-        On the error left, as a part of the largest receptance in the band.
+        Bound of the error left, as a part of the largest receptance in the band.
 
     Raises
     ------

@@ -83,7 +83,7 @@ Solve = Callable[[FloatArray], FloatArray]
 
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
-_HARMONIC_SETTLED = 1e-7  # the same of what a harmonic response lacks, part of the whole response
+_HARMONIC_SETTLED = 1e-7  # part of a whole harmonic response by which a last sweep may still move its missing part
 _SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
@@ -100,7 +100,7 @@ class StaticProof:
     compliance : ndarray, shape (r, r)
         Elastic compliance: motion of one port by a unit load on another [m/N, rad/N, rad/(N m)].
     missing : ndarray, shape (r, r)
-        Its residual part, which the kept modes alone do not hold.
+        Residual part of the compliance, which the kept modes alone do not hold.
     error : float
         Bound on |C_ab - C'_ab| / sqrt(C_aa C_bb) over all pairs of motions, with C' by modes and residual modes and C
         the exact compliance of Eq. (4).
@@ -119,8 +119,8 @@ class StaticProof:
     @property
     def missing_parts(self) -> FloatArray:
         """Residual part of each port's own compliance, shape (r,): the error of the kept modes alone."""
-        own = self.compliance.diagonal()
-        return np.asarray(self.missing.diagonal() / np.where(own > 0.0, own, 1.0))
+        diagonal = self.compliance.diagonal()
+        return np.asarray(self.missing.diagonal() / np.where(diagonal > 0.0, diagonal, 1.0))
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,9 @@ def port_motions(port: sparse.csr_array, shapes: FloatArray) -> FloatArray:
     Only the entries of the shapes that the port has are read: a product with whole shapes begins with a copy of them.
     """
     places, columns = np.unique(port.indices, return_inverse=True)
-    taken = shapes.reshape(len(shapes), port.shape[1])[:, places]
+    port_shapes = shapes.reshape(len(shapes), port.shape[1])[:, places]
     narrow = sparse.csr_array((port.data, columns, port.indptr), shape=(port.shape[0], len(places)))
-    return np.asarray((narrow @ taken.T).T)
+    return np.asarray((narrow @ port_shapes.T).T)
 
 
 def residual_attachment_modes(
@@ -191,7 +191,7 @@ def residual_attachment_modes(
     floor : float
         λ up to which a mode counts as rigid [rad²/s²].
     free : ndarray of int, shape (n,)
-        Where these degrees of freedom stand among the mesh's 3 n_nodes.
+        Places of these degrees of freedom among the mesh's 3 n_nodes.
     n_nodes : int
         Nodes of the mesh.
     orders : int
@@ -242,11 +242,13 @@ def residual_attachment_modes(
     vectors, shapes = vectors + shapes @ turn, shapes - vectors @ turn.T
     motions = vectors.T @ loads
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
-    found = (ports @ shapes).T
-    missing = (found.T / squared) @ found
+    port_motions_of_modes = (ports @ shapes).T
+    missing = (port_motions_of_modes.T / squared) @ port_motions_of_modes
     # Each load without the part that accelerates rigid modes, and the displacements found for it.
     balanced = loads - inertia[:, ~elastic] @ motions[~elastic]
-    claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (found / squared[:, None])
+    claimed = vectors[:, elastic] @ (motions[elastic] / values[elastic][:, None]) + shapes @ (
+        port_motions_of_modes / squared[:, None]
+    )
     progress("proof")
     slack = 1.0 + max(-shift, 0.0) / max(float(values.max(initial=0.0)), floor)
     proof = StaticProof(
@@ -280,24 +282,24 @@ def extended_residual_modes(
     Parameters
     ----------
     stiffness, mass : matrix or operator, shape (n, n)
-        On the free degrees of freedom.
+        Matrices on the free degrees of freedom.
     residual_modes : ResidualModes
     further : ndarray, shape (n, m)
     vectors : ndarray, shape (n, p)
         Kept modes, orthonormal in M.
     free : ndarray of int, shape (n,)
-        Where the free degrees of freedom stand among all.
+        Places of the free degrees of freedom among all.
 
     Returns
     -------
     ResidualModes
-        With the proof of the given ones, whose static compliance at their ports they keep.
+        Extended modes, with the proof of the given ones, whose static compliance at their ports they keep.
     """
     shapes, frequencies = residual_modes.shapes, residual_modes.frequencies
     span = _extended(stiffness, shapes.reshape(len(shapes), -1).T[free] / frequencies, further)
-    squared, found = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
+    squared, vectors_found = _orthonormal(stiffness, mass, span, vectors, np.asarray(mass @ vectors))
     full = np.zeros((len(squared), shapes[0].size))
-    full[:, free] = found.T
+    full[:, free] = vectors_found.T
     return ResidualModes(np.sqrt(squared), full.reshape(len(squared), *shapes.shape[1:]), residual_modes.proof)
 
 
@@ -328,7 +330,7 @@ def missing_harmonic_responses(
     shapes : ndarray, shape (n, k)
         Residual modes.
     apart : ndarray, shape (k,)
-        Their ω_k² - ω² [rad²/s²].
+        ω_k² - ω² of the modes [rad²/s²].
 
     Returns
     -------
@@ -340,9 +342,9 @@ def missing_harmonic_responses(
     ReductionError
         Where the sweeps do not converge.
     """
-    held = shapes @ ((shapes.T @ loads) / apart[:, None])
-    energy = np.einsum("ij,ij->j", loads, held)
-    left = loads - np.asarray(dynamic @ held)
+    static = shapes @ ((shapes.T @ loads) / apart[:, None])
+    energy = np.einsum("ij,ij->j", loads, static)
+    left = loads - np.asarray(dynamic @ static)
     missing, _ = _static_response(dynamic, solve, left, vectors, inertia, _HARMONIC_SETTLED, energy)
     return _independent(dynamic, missing, energy)
 
@@ -354,27 +356,27 @@ def _static_response(
     vectors: FloatArray,
     inertia: FloatArray,
     settled: float,
-    known: FloatArray | float = 0.0,
+    covered: FloatArray | float = 0.0,
 ) -> tuple[FloatArray, int]:
     """X with K X = (I - M V Vᵀ) F and Vᵀ M X = 0 for some modes V, and the sweeps it took; K or K - ω²M alike.
 
     Block conjugate gradients in the M-orthogonal complement of V, preconditioned by A⁻¹: each sweep minimises the
     energy of every column over all columns' directions D, with Dᵀ K D = I. The iteration ends where a sweep moves no
-    column by more than a part ``settled`` in the norm of the strain energy. ``known`` [m/N] is the compliance held
+    column by more than a part ``settled`` in the norm of the strain energy. ``covered`` [m/N] is the compliance held
     already, added to the columns' own as the measure where little is left.
     """
     x = np.zeros_like(loads)
     left = loads - inertia @ (vectors.T @ loads)
-    directions = held = np.zeros((len(loads), 0))
+    directions = products = np.zeros((len(loads), 0))
     scale = np.ones(0)
     for sweep in range(1, _MOST_SWEEPS + 1):
         step = solve(left)
         step -= vectors @ (inertia.T @ step)
         product = np.asarray(stiffness @ step)
         if sweep > 1:
-            before = held.T @ step
+            before = products.T @ step
             step -= directions @ before
-            product -= held @ before
+            product -= products @ before
         energy = step.T @ product
         if sweep == 1:
             # Loads are scaled by their response, so that forces and moments count alike.
@@ -383,12 +385,12 @@ def _static_response(
         # A direction that the others have already waits until it is no longer rounding beside them.
         new = shares > _ALIKE * max(shares.max(initial=0.0), 0.0)
         mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
-        directions, held = step @ mixture, product @ mixture
+        directions, products = step @ mixture, product @ mixture
         length = directions.T @ left
         x += directions @ length
-        left -= held @ length
+        left -= products @ length
         moved = np.einsum("ij,ij->j", length, length)
-        if np.all(moved <= settled**2 * (known + np.einsum("ij,ij->j", loads, x))):
+        if np.all(moved <= settled**2 * (covered + np.einsum("ij,ij->j", loads, x))):
             return x - vectors @ (inertia.T @ x), sweep
     raise ReductionError(
         f"the static response to the ports' loads has not settled after {_MOST_SWEEPS} sweeps: the stiffness is not "
@@ -398,18 +400,18 @@ def _static_response(
 
 def _complement_solve(solve: Solve, right: FloatArray, vectors: FloatArray, inertia: FloatArray) -> FloatArray:
     """A⁻¹ of loads in the M-orthogonal complement of the modes: the response of the discarded modes at ω² = σ."""
-    found = solve(right - inertia @ (vectors.T @ right))
-    return np.asarray(found - vectors @ (inertia.T @ found))
+    solution = solve(right - inertia @ (vectors.T @ right))
+    return np.asarray(solution - vectors @ (inertia.T @ solution))
 
 
-def _independent(stiffness: Operator, residual: FloatArray, known: FloatArray) -> FloatArray:
+def _independent(stiffness: Operator, residual: FloatArray, known_energy: FloatArray) -> FloatArray:
     """Residual vectors orthonormal in K that span the given ones.
 
     Loads are measured by the response that they find, so that a port of rotations counts like one of translations;
     combinations of them whose response adds less than a part of 1e-12 to the ports' compliance are dropped.
     """
     energy = residual.T @ (stiffness @ residual)
-    whole = known + energy.diagonal()
+    whole = known_energy + energy.diagonal()
     scale = 1.0 / np.sqrt(np.where(whole > 0.0, whole, 1.0))
     shares, mixture = linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
     new = shares > _NOTHING_NEW
@@ -421,15 +423,15 @@ def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> Flo
 
     A combination that adds less than a part of 1e-10 of its own strain energy is dropped.
     """
-    held = np.asarray(stiffness @ further)
-    own = np.einsum("ij,ij->j", further, held)
-    scale = _ratio(np.ones(len(own)), np.sqrt(np.maximum(own, 0.0)))
-    further, held = further * scale, held * scale
+    force = np.asarray(stiffness @ further)
+    energy_before = np.einsum("ij,ij->j", further, force)
+    scale = _ratio(np.ones(len(energy_before)), np.sqrt(np.maximum(energy_before, 0.0)))
+    further, force = further * scale, force * scale
     for _ in range(2):
         # Twice, for the rounding that the first time leaves.
-        further = further - span @ (span.T @ held)
-        held = np.asarray(stiffness @ further)
-    energy = further.T @ held
+        further = further - span @ (span.T @ force)
+        force = np.asarray(stiffness @ further)
+    energy = further.T @ force
     shares, mixture = linalg.eigh(0.5 * (energy + energy.T))
     new = shares > _ADDS_NOTHING
     return np.hstack([span, further @ (mixture[:, new] / np.sqrt(shares[new]))])
@@ -460,8 +462,8 @@ def _turn(
 
 
 def _overlap(mass: Operator, shapes: FloatArray, inertia: FloatArray) -> float:
-    own = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
-    return float(max(np.abs(own).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
+    deviation = shapes.T @ (mass @ shapes) - np.eye(shapes.shape[1])
+    return float(max(np.abs(deviation).max(initial=0.0), np.abs(inertia.T @ shapes).max(initial=0.0)))
 
 
 def _static_error(
@@ -476,18 +478,18 @@ def _static_error(
     slack: float,
 ) -> float:
     """Bound the error of :class:`StaticProof` by Eq. (4), from the displacements claimed for the balanced loads."""
-    held = np.asarray(stiffness @ claimed)
-    left = loads - held
+    force = np.asarray(stiffness @ claimed)
+    left = loads - force
     cross = claimed.T @ loads
-    exact = cross + cross.T - claimed.T @ held
+    exact = cross + cross.T - claimed.T @ force
     along = vectors.T @ left
     beyond = left - inertia @ along
     solved = solve(beyond)
     unknown = slack * np.maximum(np.einsum("ij,ij->j", beyond, solved - vectors @ (inertia.T @ solved)), 0.0)
     elastic = values > 0.0
     unknown += (along[elastic] ** 2 / values[elastic][:, None]).sum(axis=0)
-    own = compliance.diagonal()
-    size = np.sqrt(np.where(own > 0.0, own, 1.0))
+    diagonal = compliance.diagonal()
+    size = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     rest = np.sqrt(unknown)
     return float(((np.abs(exact - compliance) + np.outer(rest, rest)) / np.outer(size, size)).max(initial=0.0))
 
@@ -508,7 +510,7 @@ def leading_residual_modes(
     Parameters
     ----------
     residual_modes : ResidualModes
-        k of them.
+        A set of k residual modes.
     ports : scipy.sparse.csr_array, shape (r, 3 n_nodes)
         Motions of the ports that they belong to.
     shift : float
@@ -519,9 +521,9 @@ def leading_residual_modes(
     Returns
     -------
     residual_modes : ResidualModes
-        l <= k of them, with the proof of the whole set, whose static compliance they share.
+        A set of l <= k residual modes, with the proof of the whole set, whose static compliance they share.
     mixture : ndarray, shape (k, l)
-        Their coefficients in terms of the given ones.
+        Coefficients of the new modes in terms of the given ones.
 
     Raises
     ------
@@ -543,7 +545,7 @@ def leading_residual_modes(
     length = np.linalg.norm(strained, axis=0)
     directions, sizes, _ = np.linalg.svd(strained[:, length > 0.0] / length[length > 0.0], full_matrices=False)
     span = directions[:, sizes > _SAME * sizes.max(initial=0.0)] / residual_modes.frequencies[:, None]
-    found, turned = linalg.eigh(span.T @ (squared[:, None] * span), span.T @ span)
+    squares, turned = linalg.eigh(span.T @ (squared[:, None] * span), span.T @ span)
     mixture = span @ turned
     shapes = (mixture.T @ residual_modes.shapes.reshape(len(squared), -1)).reshape(-1, *residual_modes.shapes.shape[1:])
-    return ResidualModes(np.sqrt(found), shapes, residual_modes.proof), mixture
+    return ResidualModes(np.sqrt(squares), shapes, residual_modes.proof), mixture

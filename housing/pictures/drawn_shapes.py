@@ -33,7 +33,7 @@ _CUTS = {
     9: [[0, 4, 8], [4, 1, 8], [1, 5, 8], [5, 2, 8], [2, 6, 8], [6, 3, 8], [3, 7, 8], [7, 0, 8]],
 }
 
-_NEIGHBOURS = 16  # of each point that a line may go to
+_NEIGHBOURS = 16  # neighbours of each point to which a line may go
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def drawn_name(modes: ModeSet, number: int) -> str:
 
 
 def check_numbers(modes: ModeSet, numbers: Sequence[int]) -> None:
-    """Refuse numbers, from 1, of modes that are not there.
+    """Refuse numbers of modes, from 1, that do not exist.
 
     Raises
     ------
@@ -102,11 +102,11 @@ class DrawnHousing:
     Attributes
     ----------
     rest : ndarray, shape (n_points, 3)
-        [m].
+        Points at rest [m].
     triangles : ndarray of int, shape (n_triangles, 3)
         Places in ``rest``.
     nodes : ndarray of int, shape (n_points,)
-        Their node numbers in the mesh.
+        Node numbers of the points in the mesh.
     """
 
     rest: FloatArray
@@ -126,23 +126,23 @@ class DrawnShape:
     Attributes
     ----------
     name : str
-        Of its file, without ending.
+        Name of its file, without ending.
     title, note : str
-        The line above the picture and those below that; the note may be empty.
+        The line above the picture and the lines below that; the note may be empty.
     motion : ndarray of float or complex, shape (n_points, 3)
         U, to any scale. A real one moves in one phase; a complex one may run around. Zero draws `values` on the surface
         at rest.
     quantity : str
         Quantity shown by the colours, with its unit.
     largest : float
-        That quantity where the motion is largest.
+        The coloured quantity where the motion is largest.
     values : ndarray, shape (n_points,), optional
         A quantity of either sign that the colours show in place of the displacement, from -`largest` to `largest`.
 
     Raises
     ------
     HousingError
-        Where nothing moves and there are no values, or a number of the motion is none.
+        Where nothing moves and there are no values, or the motion has a NaN or infinity.
     """
 
     name: str
@@ -225,8 +225,8 @@ def wireframe(geometry: MeasuredGeometry) -> IntArray:
     places, count = geometry.positions, len(geometry.labels)
     if count < 2:
         return np.zeros((0, 2), dtype=np.int64)
-    found = KDTree(places).query(places, k=min(_NEIGHBOURS + 1, count))
-    distances, near = np.asarray(found[0]), np.asarray(found[1])
+    neighbours = KDTree(places).query(places, k=min(_NEIGHBOURS + 1, count))
+    distances, near = np.asarray(neighbours[0]), np.asarray(neighbours[1])
     edges = {
         (min(point, int(other)), max(point, int(other)))
         for point in range(count)
@@ -237,7 +237,7 @@ def wireframe(geometry: MeasuredGeometry) -> IntArray:
 
 
 def _between(places: FloatArray, near: IntArray, point: int, other: int, length: float) -> bool:
-    """Whether a third point is closer to both; it is then among the neighbours of the first that are nearer yet."""
+    """Whether a third point is closer to both; it is then among the nearer neighbours of the first."""
     third = places[[place for place in near if place not in (point, other)]]
     longest = np.maximum(
         np.linalg.norm(third - places[point], axis=1),
@@ -253,11 +253,11 @@ def point_motions(geometry: MeasuredGeometry, values: FloatArray) -> FloatArray:
     not measured, or are NaN, are at rest.
     """
     motions = np.zeros((len(geometry.labels), 3))
-    known = np.isfinite(values)
+    measured = np.isfinite(values)
     for point in range(len(motions)):
-        here = np.flatnonzero((geometry.points == point) & known)
-        if here.size:
-            motions[point] = np.linalg.pinv(geometry.directions[here]) @ values[here]
+        freedoms = np.flatnonzero((geometry.points == point) & measured)
+        if freedoms.size:
+            motions[point] = np.linalg.pinv(geometry.directions[freedoms]) @ values[freedoms]
     return motions
 
 
@@ -266,11 +266,11 @@ def laid_over(measured: ComplexArray, model: FloatArray) -> FloatArray:
 
     It is turned by the angle of ψᴴφ, which brings it nearest to φ, and has φ's norm over the measured entries.
     """
-    known = np.isfinite(measured)
-    psi, phi = measured[known], model[known]
+    is_measured = np.isfinite(measured)
+    psi, phi = measured[is_measured], model[is_measured]
     size = float(np.linalg.norm(psi))
     likeness = np.vdot(psi, phi)
     turn = likeness / abs(likeness) if abs(likeness) > 0.0 else 1.0
     laid = np.full(len(measured), np.nan)
-    laid[known] = (psi * turn).real * (float(np.linalg.norm(phi)) / size if size > 0.0 else 0.0)
+    laid[is_measured] = (psi * turn).real * (float(np.linalg.norm(phi)) / size if size > 0.0 else 0.0)
     return laid

@@ -35,7 +35,7 @@ _MAGIC, _VERSION, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 2, 0x4E4F534A, 0x004E
 _FLOAT, _UNSIGNED_INT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 _TRIANGLES = 4
-_PERIOD = 2.0  # of the animation [s], whatever the mode's own
+_PERIOD = 2.0  # period of the animation [s], whatever that of the mode
 _FRAMES = 48  # linear pieces of a sine, visually smooth
 
 
@@ -44,12 +44,12 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
 
     Parameters
     ----------
-    mesh, modes
-        The housing and its modes.
+    mesh : Mesh
+    modes : ModeSet
     numbers : sequence of int
-        Which modes, from 1.
+        Numbers of the modes, from 1.
     folder : path
-        Where the models go; made where it is missing.
+        Folder of the models; made where it is missing.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def light_model(surface: DrawnHousing, shape: DrawnShape, most_triangles: int) -
 
 
 def _decimated(surface: DrawnHousing, shape: DrawnShape, most: int) -> tuple[DrawnHousing, DrawnShape]:
-    """Return surface and motion with at most so many triangles; its points are some of those before."""
+    """Return surface and motion with at most `most` triangles; its points are some of those before."""
     count = len(surface.triangles)
     if count <= most:
         return surface, shape

@@ -23,11 +23,11 @@ from meshes import Mesh
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
 
-_COLUMNS = 4  # of a sheet
-_FRAMES = 24  # of one period; even, so that half of them mirror the others where the motion has one phase
-_FRAME = 80  # duration of each [ms]
-_PAPER = 240  # all three colours of a pixel above it: the background and its soft edges
-_PERIODS = 4  # of an MP4, which players show once; a GIF goes round
+_COLUMNS = 4  # columns of a sheet
+_FRAMES = 24  # frames of one period; even, so that half of them mirror the others where the motion has one phase
+_FRAME = 80  # duration of each frame [ms]
+_PAPER = 240  # a pixel with all three colours above it is background or its soft edge
+_PERIODS = 4  # periods of an MP4, which players show once; a GIF goes round
 
 
 def render_modes(
@@ -45,12 +45,12 @@ def render_modes(
 
     Parameters
     ----------
-    mesh, modes
-        The housing and its modes.
+    mesh : Mesh
+    modes : ModeSet
     numbers : sequence of int
-        Which modes, from 1.
+        Numbers of the modes, from 1.
     folder : path
-        Where the pictures go; made where it is missing.
+        Folder of the pictures; made where it is missing.
     notes : mapping of int to str, optional
         A second line under a mode's title.
     view : str
@@ -175,8 +175,8 @@ def find_encoder() -> str:
     EncoderUnavailableError
         Where there is neither.
     """
-    if found := shutil.which("ffmpeg"):
-        return found
+    if path := shutil.which("ffmpeg"):
+        return path
     try:
         import imageio_ffmpeg
 
@@ -204,9 +204,9 @@ def animate_shapes(
     ----------
     housing : DrawnHousing
     shapes : sequence of DrawnShape
-        Each gives its name to a file. The colours are titled by the quantity of the first.
+        Shapes, each of which names a file. The colours are titled by the quantity of the first.
     folder : path
-        Made where it is missing.
+        Folder of the films; made where it is missing.
     film : {"gif", "mp4"}
     view : str
         One of :data:`housing.pictures.images.VIEWS`.

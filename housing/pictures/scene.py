@@ -81,7 +81,7 @@ STRIP = 34
 
 _COLOURS, _SIGNED_COLOURS = "viridis", "RdBu_r"
 _INK = "#202428"
-_FINER = 1.5  # times larger than shown are pictures drawn
+_FINER = 1.5  # pictures are drawn this many times larger than shown
 _LOWER = 0.06  # how far below the middle the housing stands, as a part of half the height: captions are above it
 _FULL, _GROWTH = 1000.0, 0.6  # letters have their full size at this width [pixels], and grow slower than the picture
 _SHARP = 30.0  # angle between faces from which an edge is drawn as one [degrees]
@@ -243,8 +243,8 @@ class Scene:
         """
         if beside:
             self._title.input, self._note.input = " ", "The other side, in the same colours"
-        for one in self._plotter.scalar_bars.values():
-            one.SetVisibility(bar)
+        for scalar_bar in self._plotter.scalar_bars.values():
+            scalar_bar.SetVisibility(bar)
         self._aim(view)
 
     def _aim(self, view: str) -> None:

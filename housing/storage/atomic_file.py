@@ -16,7 +16,7 @@ from pathlib import Path
 def atomic_file(path: Path) -> Iterator[Path]:
     """Give a path to write to; where the block ends without an error, that file takes the place of ``path``.
 
-    The file is written under its own name in a hidden folder beside, which goes away in any case.
+    The file is written under its own name in a hidden folder beside it, which is removed in any case.
     """
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         staged = Path(folder, path.name)

@@ -101,8 +101,8 @@ def _volume_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
     }
     if sum(sizes):
         members = np.concatenate(list(mesh.volumes.values()))
-        what = "elements of all volumes, one volume after another, numbered from 0 over all kinds"
-        arrays["volume_element"] = LabelledArray(("volume_member",), members, "1", what)
+        long_name = "elements of all volumes, one volume after another, numbered from 0 over all kinds"
+        arrays["volume_element"] = LabelledArray(("volume_member",), members, "1", long_name)
     return arrays
 
 
@@ -116,9 +116,9 @@ def _volumes(arrays: Mapping[str, LabelledArray]) -> dict[str, IntArray]:
     return {str(name): part for name, part in zip(arrays["volume_name"].values, parts, strict=True)}
 
 
-def _names(dimension: str, names: list[str], what: str) -> LabelledArray:
-    return LabelledArray((dimension,), np.array(names), "1", what)
+def _names(dimension: str, names: list[str], long_name: str) -> LabelledArray:
+    return LabelledArray((dimension,), np.array(names), "1", long_name)
 
 
-def _whole(dimensions: tuple[str, ...], numbers: Sequence[int], what: str) -> LabelledArray:
-    return LabelledArray(dimensions, np.array(numbers, dtype=np.int64), "1", what)
+def _whole(dimensions: tuple[str, ...], numbers: Sequence[int], long_name: str) -> LabelledArray:
+    return LabelledArray(dimensions, np.array(numbers, dtype=np.int64), "1", long_name)

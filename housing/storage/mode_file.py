@@ -105,7 +105,7 @@ class ModeRecord:
     mesh : Mesh
     modes : ModeSet
     mass : float
-        Of the housing [kg].
+        Mass of the housing [kg].
     seats : tuple of Seat
     seat_motions : ndarray, shape (n_modes, n_seats, 6)
         Modes' translations [1/√kg] and rotations [1/(m √kg)] at the seats.

@@ -48,8 +48,8 @@ class LabelledArray:
     @property
     def labelled(self) -> "tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]":
         """Dimensions, values, and unit and name where it has them, as :func:`write_netcdf` takes them."""
-        told = {"units": self.units, "long_name": self.long_name}
-        return self.dimensions, self.values, {key: text for key, text in told.items() if text}
+        attributes = {"units": self.units, "long_name": self.long_name}
+        return self.dimensions, self.values, {key: text for key, text in attributes.items() if text}
 
 
 def canonical_json(document: Mapping[str, Any]) -> str:
@@ -94,7 +94,7 @@ def _bytes(document: Mapping[str, Any]) -> bytes:
 
 
 Variables = dict[str, tuple[Any, Any, dict[str, Any]]]
-"""By name: its dimensions (one as plain text), its values, and its attributes."""
+"""For each name, its dimensions (one as plain text), its values, and its attributes."""
 
 
 def write_netcdf(
@@ -109,14 +109,14 @@ def write_netcdf(
 
     Parameters
     ----------
-    path
-        Of a file that is not there yet.
-    variables, coordinates
+    path : path
+        Path of a new file.
+    variables, coordinates : mapping of str to (dimensions, values, attributes)
         Numbers, truth values or text. An array named after a dimension is a coordinate in either.
-    attributes
-        Of the whole file.
-    fill
-        Declare NaN as the missing number, as xarray does.
+    attributes : mapping
+        Attributes of the whole file.
+    fill : bool
+        Whether to declare NaN as the missing number, as xarray does.
 
     Raises
     ------
@@ -127,9 +127,9 @@ def write_netcdf(
     """
     import h5py
 
-    given = {**(coordinates or {}), **variables}
-    arrays = {name: _array(values) for name, (_, values, _) in given.items()}
-    dimensions = {name: _names(of) for name, (of, _, _) in given.items()}
+    entries = {**(coordinates or {}), **variables}
+    arrays = {name: _array(values) for name, (_, values, _) in entries.items()}
+    dimensions = {name: _names(of) for name, (of, _, _) in entries.items()}
     sizes = _sizes(arrays, dimensions)
     numbers = {name: np.int32(number) for number, name in enumerate(sizes)}
     along_itself = {name for name in sizes if dimensions.get(name) == (name,)}
@@ -143,15 +143,15 @@ def write_netcdf(
                 scales[name].make_scale(_NO_VARIABLE + f"{size:10}".encode())
         datasets = {}
         for name, array in arrays.items():
-            told = dict(given[name][2])
+            variable_attributes = dict(entries[name][2])
             if array.dtype.kind == "b":
-                array, told["dtype"] = array.astype(np.int8), "bool"
+                array, variable_attributes["dtype"] = array.astype(np.int8), "bool"
             if name in variables and name not in sizes:
                 near = sorted(other for other, among in beside.items() if among <= set(dimensions[name]))
-                told |= {"coordinates": " ".join(near)} if near else {}
+                variable_attributes |= {"coordinates": " ".join(near)} if near else {}
             stored = f"_nc4_non_coord_{name}" if name in scales else name
             if fill and array.dtype.kind == "f":
-                told["_FillValue"] = missing = array.dtype.type(np.nan)
+                variable_attributes["_FillValue"] = missing = array.dtype.type(np.nan)
                 dataset = file.create_dataset(
                     stored, data=array, fillvalue=missing, track_order=True, **_open(array.shape)
                 )
@@ -161,17 +161,19 @@ def write_netcdf(
                 dataset.make_scale(name)
                 scales[name] = dataset
             datasets[name] = dataset
-            _tell(dataset.attrs, told)
+            _tell(dataset.attrs, variable_attributes)
         for name, scale in scales.items():
             scale.attrs["_Netcdf4Dimid"] = numbers[name]
         for name, dataset in datasets.items():
-            # The one dimension of a coordinate is told by its name; to look a number up, readers look at every scale.
+            # A coordinate's name gives its one dimension; to look a number up, readers look at every scale.
             if not dimensions[name] or name in along_itself:
                 continue
-            dataset.attrs["_Netcdf4Coordinates"] = np.array([numbers[one] for one in dimensions[name]], dtype=np.int32)
+            dataset.attrs["_Netcdf4Coordinates"] = np.array(
+                [numbers[dimension] for dimension in dimensions[name]], dtype=np.int32
+            )
             dataset.attrs["_Netcdf4Dimid"] = numbers[dimensions[name][0]]
-            for axis, one in enumerate(dimensions[name]):
-                dataset.dims[axis].attach_scale(scales[one])
+            for axis, dimension in enumerate(dimensions[name]):
+                dataset.dims[axis].attach_scale(scales[dimension])
         file.attrs["_NCProperties"] = np.bytes_(f"version=2,hdf5={h5py.version.hdf5_version},h5py={h5py.__version__}")
 
 
@@ -179,7 +181,7 @@ _NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."
 
 
 def _open(shape: tuple[int, ...]) -> dict[str, Any]:
-    """Arguments of an array, of whose lengths those of 0 may grow: NetCDF knows no others of that length."""
+    """Arguments of an array; its lengths of 0 may grow, as NetCDF has no other lengths of 0."""
     return {"maxshape": tuple(size or None for size in shape)} if 0 in shape else {}
 
 
@@ -195,7 +197,7 @@ def read_netcdf(path: Path, names: Collection[str] | None = None) -> tuple[dict[
     ----------
     path : Path
     names : collection of str, optional
-        Of the variables to read, where they are there; every one by default.
+        Variables to read, where they are there; every one by default.
 
     Raises
     ------

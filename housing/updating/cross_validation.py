@@ -2,7 +2,7 @@
 
 Many parameters fit few frequencies, so that a small error proves little. A mode that took no part in the fit tests it;
 and where random frequencies are fitted as well as the measured ones, the fit alone proves nothing about the housing.
-Each of these repeats the whole procedure, from the same start with as many solves; only the mesh is a coarser one.
+Each test repeats the whole procedure, from the same start with as many solves; only the mesh is coarser.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,7 +29,7 @@ class LeftOutMode:
     Attributes
     ----------
     mode : int
-        Its index among the measured ones, from 0.
+        Index among the measured modes, from 0.
     measured, predicted : float
         Circular frequencies [rad/s].
     deviation : float
@@ -39,7 +39,7 @@ class LeftOutMode:
     start : float
         Frequency of the start design [rad/s].
     rms_percent : float
-        Of the modes that were fitted.
+        Root mean square error of the modes that were fitted.
     """
 
     mode: int
@@ -68,7 +68,7 @@ class NullFit:
     Attributes
     ----------
     frequencies : ndarray, shape (n,)
-        Circular [rad/s], ascending.
+        Circular frequencies [rad/s], ascending.
     rms_percent, max_percent : float
         Errors of the dominant modes.
     gap : float
@@ -98,7 +98,7 @@ class Procedure(Generic[AnyDesign]):
         See :data:`housing.updating.Solve`.
     parameters : sequence of Parameter
     start : Design
-        Solved.
+        Start design, solved.
     effort : Effort
     count : int
         Number of starts, the given one among them.
@@ -114,11 +114,11 @@ class Procedure(Generic[AnyDesign]):
         """Run the search: misfit of the result, by dominant modes, and posterior of the parameters."""
         meshes = Meshes(self.solve, None)
         best = multistart_search(meshes, target, self.parameters, self.start, None, self.effort, self.count)
-        found = polish(self.solve, best, target, self.parameters, self.effort)
-        design, coordinates = found.design, found.design.coordinates
+        polished = polish(self.solve, best, target, self.parameters, self.effort)
+        design, coordinates = polished.design, polished.design.coordinates
         near = design.surrogate().at(coordinates)
         judged = measure(target, design.state, coordinates, strict=True)
-        return judged, posterior(target, found.misfit, coordinates, near)
+        return judged, posterior(target, polished.misfit, coordinates, near)
 
 
 def leave_one_out(
@@ -143,9 +143,9 @@ def leave_one_out(
     first = measure(target, start.state, start.coordinates, strict=True)
     before = start.surrogate().at(start.coordinates)
     modes = range(len(target.noise))
-    held = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
+    targets = [replace(target, noise=np.where(np.arange(len(modes)) == mode, np.inf, target.noise)) for mode in modes]
     rows = []
-    for mode, (misfit, after) in enumerate(each(procedure, held)):
+    for mode, (misfit, after) in enumerate(each(procedure, targets)):
         rows.append(
             LeftOutMode(
                 mode=mode,
@@ -184,7 +184,7 @@ def null_fits(
     count : int
         Number of random sets.
     seed : int
-        Of their frequencies.
+        Seed of their frequencies.
     each, progress
         See :func:`leave_one_out`.
 

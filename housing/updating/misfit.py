@@ -34,13 +34,13 @@ _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # ln ω on the wrong side of the limit of a known number of modes that costs one σ
 _COUNT_CLEAR = 0.005  # ln ω by which a mode has to be clear of that limit, so that the mesh does not decide
 _TOO_FEW_MODES = 1e6  # J for each mode that a design has too few of to pair
-_WITHIN = 2.0  # largest error in σ of a frequency that is met
-_UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside its shape's: that of an error of five σ
+_WITHIN = 2.0  # largest error of a frequency that counts as met, in σ
+_UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside that of its shape: an error of five σ
 
 
 @dataclass(frozen=True)
 class ModeCount:
-    """A number of modes that is known: from ``least`` to ``most`` below ``limit`` [rad/s]."""
+    """A known number of modes: from ``least`` to ``most`` below ``limit`` [rad/s]."""
 
     limit: float
     least: int
@@ -125,7 +125,7 @@ class Misfit:
     count : int
         Modes below the limit of :class:`ModeCount`; 0 where none is given.
     mac : ndarray, shape (n,), or None
-        Of each pair, where shapes were measured.
+        MAC of each pair, where shapes were measured.
     choice_shortfall : ChoiceShortfall, or None
         Shortfalls of the choice of modes from a clear one, where shapes do not decide.
     """
@@ -190,8 +190,8 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
             penalty += _TOO_FEW_MODES * (n - len(pairs))
             return Misfit(penalty, np.full(n, UNPAIRED), np.full(n, np.nan), 0.0, 0.0, 0)
         if not strict:
-            asked = (target.gap, target.margin, target.firmness)
-            pairs = choose_modes(target.logarithms, target.noise, strengths, target.band, *asked)
+            rules = (target.gap, target.margin, target.firmness)
+            pairs = choose_modes(target.logarithms, target.noise, strengths, target.band, *rules)
         gap, margin = strengths.gaps(pairs, target.band)
         clear = choice_shortfall(pairs, strengths, target.band, target.gap, target.margin, target.firmness)
         penalty += clear.cost
@@ -223,12 +223,12 @@ def is_met(target: Target, misfit: Misfit) -> bool:
     included = np.isfinite(target.noise)
     if (misfit.pairs[included] == UNPAIRED).any() or (np.abs(misfit.errors / target.noise)[included] > _WITHIN).any():
         return False
-    known = target.count
-    counted = known is None or known.least <= misfit.count <= known.most
+    bounds = target.count
+    counted = bounds is None or bounds.least <= misfit.count <= bounds.most
     return counted and misfit.gap >= target.gap and (misfit.margin > 0.0 or not np.isfinite(target.margin))
 
 
-def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
+def misplaced_modes(bounds: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
     """Return the modes that violate a known number of modes below a limit, or nearly do.
 
     Returns
@@ -237,10 +237,10 @@ def misplaced_modes(known: ModeCount, state: ModalState) -> tuple[IntArray, Floa
     beyond : ndarray, shape (n,)
         Distance of each from its own side of the limit in units of the penalty's scale: positive above, negative below.
     """
-    beyond = np.log(state.frequencies / known.limit)
+    beyond = np.log(state.frequencies / bounds.limit)
     shortfall = np.zeros(len(beyond))
-    shortfall[: known.least] = np.maximum(beyond[: known.least] + _COUNT_CLEAR, 0.0)
-    shortfall[known.most :] = np.minimum(beyond[known.most :] - _COUNT_CLEAR, 0.0)
+    shortfall[: bounds.least] = np.maximum(beyond[: bounds.least] + _COUNT_CLEAR, 0.0)
+    shortfall[bounds.most :] = np.minimum(beyond[bounds.most :] - _COUNT_CLEAR, 0.0)
     modes = np.flatnonzero(shortfall)
     return modes, shortfall[modes] / _COUNT_SCALE
 
@@ -275,7 +275,7 @@ def residuals(
     ----------
     target : Target
     misfit : Misfit
-        Of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
+        Misfit of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
     near : Neighbour
         The design's modes, and their slopes.
     penalties : bool
@@ -303,14 +303,14 @@ def residuals(
         scale = np.sqrt(target.shapes.shape[1]) / target.shape_noise
         model, turning = near.state.measured[modes], near.measured_slopes(modes)
         length = np.linalg.norm(model, axis=1)[:, None]
-        own = model / length
-        turning = (turning - np.einsum("pmd,md->pm", turning, own)[..., None] * own) / length
+        direction = model / length
+        turning = (turning - np.einsum("pmd,md->pm", turning, direction)[..., None] * direction) / length
         shapes = target.shapes[included]
         unit = shapes / np.linalg.norm(shapes, axis=1)[:, None]
-        along = (unit * own).sum(axis=1)[:, None]
-        missed.append(scale * (along * own - unit).ravel())
+        along = (unit * direction).sum(axis=1)[:, None]
+        missed.append(scale * (along * direction - unit).ravel())
         # d(ψ·v v) = (ψ·dv) v + (ψ·v) dv, with v the model's unit shape.
-        change = np.einsum("pmd,md->pm", turning, unit)[..., None] * own + along * turning
+        change = np.einsum("pmd,md->pm", turning, unit)[..., None] * direction + along * turning
         rows.append(scale * change.reshape(len(change), -1).T)
     return np.concatenate(missed), np.concatenate(rows)
 

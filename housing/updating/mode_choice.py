@@ -36,7 +36,7 @@ _CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the ba
 _CLEAR_SCALE = 0.005
 _TURNS = 8
 _SETTLED = 1e-9
-_PLACES = 2  # up and down from the number of modes, of the thresholds to begin with
+_PLACES = 2  # places of the initial thresholds above and below the number of modes
 _FAINT = 1e-300  # strength of modes that have none
 
 
@@ -52,7 +52,7 @@ class ChoiceShortfall:
     sign : ndarray, shape (n,)
         Sign of ln strength (or ln ω) in the shortfall: -1 where more is wanted, 1 where less.
     values : ndarray, shape (n,)
-        Positive.
+        Shortfalls, positive.
     scale : ndarray, shape (n,)
         Unit of each in ln strength or ln ω.
     """
@@ -71,13 +71,13 @@ class ChoiceShortfall:
 
 @dataclass(frozen=True)
 class _Strengths:
-    """Logarithms of the strengths by the measures in use, and the gaps asked of them."""
+    """Logarithms of the strengths by the measures in use, and the gaps required of them."""
 
     rows: IntArray
     logarithms: FloatArray  # (n_measures, n_modes)
     asked: FloatArray  # (n_measures,)
-    scale: float  # of ln strength; either side of a threshold has half of a gap
-    end_scale: float  # of ln ω
+    scale: float  # unit: ln strength; half of a gap lies on either side of a threshold
+    end_scale: float  # unit: ln ω
     beyond: FloatArray  # ln ω beyond the end of the band, negative inside; (n_modes,)
     upward: FloatArray  # 1 where that is the upper end, else -1; (n_modes,)
 
@@ -96,12 +96,12 @@ class _Strengths:
         lacks = self.logarithms - thresholds[..., None] + 0.5 * self.asked[:, None]
         return np.asarray(np.maximum(lacks, 0.0) / self.scale)
 
-    def split(self, taken: BoolArray, thresholds: FloatArray) -> _Shortfalls:
-        """Shortfalls of the modes chosen, of those left as weak, and of those left as beyond the band.
+    def split(self, chosen: BoolArray, thresholds: FloatArray) -> _Shortfalls:
+        """Shortfalls of the modes chosen, of the modes left as weak, and of the modes left as beyond the band.
 
         Parameters
         ----------
-        taken : ndarray of bool, shape (..., n_modes)
+        chosen : ndarray of bool, shape (..., n_modes)
         thresholds : ndarray, shape (..., n_measures)
 
         Returns
@@ -110,24 +110,24 @@ class _Strengths:
         edge : ndarray, shape (..., n_modes)
         """
         above = self.above(thresholds)
-        weak = ~taken & ((above**2).sum(axis=-2) < self.edge**2)
-        below = np.where(taken[..., None, :], self.below(thresholds), 0.0)
-        return below, np.where(weak[..., None, :], above, 0.0), np.where(taken | weak, 0.0, self.edge)
+        weak = ~chosen & ((above**2).sum(axis=-2) < self.edge**2)
+        below = np.where(chosen[..., None, :], self.below(thresholds), 0.0)
+        return below, np.where(weak[..., None, :], above, 0.0), np.where(chosen | weak, 0.0, self.edge)
 
 
 def _strengths(
     strengths: Dominance, band: tuple[float, float], gap: float, margin: float, firmness: float
 ) -> _Strengths:
     every = np.array([strengths.acceleration, strengths.velocity, strengths.absolute])
-    asked = np.array([gap, margin, margin])
-    rows = np.flatnonzero(np.isfinite(asked))
+    least = np.array([gap, margin, margin])
+    rows = np.flatnonzero(np.isfinite(least))
     omega = np.log(np.maximum(strengths.frequencies, _FAINT))
     over, under = omega - np.log(band[1]), np.log(band[0]) - omega
     logarithms = np.log(np.maximum(every[rows], _FAINT))
     return _Strengths(
         rows=rows,
         logarithms=logarithms,
-        asked=asked[rows],
+        asked=least[rows],
         scale=GAP_SCALE / np.sqrt(2.0) / firmness,
         end_scale=_CLEAR_SCALE / firmness,
         beyond=np.maximum(over, under),
@@ -158,18 +158,18 @@ def choice_shortfall(
     firmness : float
         Factor on the penalties, before they are squared.
     """
-    known = _strengths(strengths, band, gap, margin, firmness)
-    taken = np.zeros(known.logarithms.shape[1], dtype=bool)
-    taken[chosen] = True
-    _, (below, above, edge) = _settled(known, taken)
+    table = _strengths(strengths, band, gap, margin, firmness)
+    is_chosen = np.zeros(table.logarithms.shape[1], dtype=bool)
+    is_chosen[chosen] = True
+    _, (below, above, edge) = _settled(table, is_chosen)
     parts = []
     for values, sign in ((below, -1.0), (above, 1.0)):
         rows, modes = np.nonzero(values)
         same = np.ones(len(rows))
-        parts.append((known.rows[rows], modes, sign * same, values[rows, modes], known.scale * same))
+        parts.append((table.rows[rows], modes, sign * same, values[rows, modes], table.scale * same))
     (modes,) = np.nonzero(edge)
     same = np.ones(len(modes))
-    parts.append((np.full(len(modes), -1), modes, -known.upward[modes], edge[modes], known.end_scale * same))
+    parts.append((np.full(len(modes), -1), modes, -table.upward[modes], edge[modes], table.end_scale * same))
     return ChoiceShortfall(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
@@ -187,11 +187,11 @@ def choose_modes(
     Parameters
     ----------
     logarithms : ndarray, shape (n,)
-        ln ω of those measured, ascending.
+        ln ω of the measured modes, ascending.
     noise : ndarray, shape (n,)
         Relative standard deviation of each.
     strengths : Dominance
-        Of all modes, of which ``n`` or more are in the band.
+        Strengths of all modes, of which ``n`` or more are in the band.
     band, gap, margin, firmness
         See :func:`choice_shortfall`.
 
@@ -199,25 +199,25 @@ def choose_modes(
     -------
     ndarray of int, shape (n,)
     """
-    known = _strengths(strengths, band, gap, margin, firmness)
-    inside = np.flatnonzero(known.beyond <= 0.0)
+    table = _strengths(strengths, band, gap, margin, firmness)
+    inside = np.flatnonzero(table.beyond <= 0.0)
     n = len(logarithms)
     if len(inside) == n:
         return inside
     # Initial thresholds: between the n strongest and the rest, and some places up and down.
-    ranked = np.sort(known.logarithms[:, inside], axis=1)[:, ::-1]
+    ranked = np.sort(table.logarithms[:, inside], axis=1)[:, ::-1]
     places = np.arange(max(n - _PLACES, 1), min(n + _PLACES + 1, len(inside)))
-    if not len(places) or not len(known.rows):
+    if not len(places) or not len(table.rows):
         return strengths.strongest(n, band)
     thresholds = 0.5 * (ranked[:, places - 1] + ranked[:, places]).T
     errors = ((np.log(strengths.frequencies[inside]) - logarithms[:, None]) / noise[:, None]) ** 2
-    best, least, taken = inside[:n], np.inf, np.zeros((0, 0), dtype=bool)
+    best, least, selection = inside[:n], np.inf, np.zeros((0, 0), dtype=bool)
     for _ in range(_TURNS):
-        before, taken = taken, _best_choices(known, inside, errors, thresholds)
-        if np.array_equal(taken, before):
-            break  # the same thresholds and costs again
-        thresholds, (below, above, edge) = _settled(known, taken)
-        numbers = np.nonzero(taken[:, inside])[1].reshape(-1, n)
+        before, selection = selection, _best_choices(table, inside, errors, thresholds)
+        if np.array_equal(selection, before):
+            break  # thresholds and costs repeat
+        thresholds, (below, above, edge) = _settled(table, selection)
+        numbers = np.nonzero(selection[:, inside])[1].reshape(-1, n)
         costs = (
             (below**2 + above**2).sum(axis=(1, 2)) + (edge**2).sum(axis=1) + errors[np.arange(n), numbers].sum(axis=1)
         )
@@ -228,60 +228,60 @@ def choose_modes(
     return best
 
 
-def _settled(known: _Strengths, taken: BoolArray) -> tuple[FloatArray, _Shortfalls]:
+def _settled(table: _Strengths, selection: BoolArray) -> tuple[FloatArray, _Shortfalls]:
     """Find the thresholds of least cost for choices (..., n_modes), by Newton's steps, shape (..., n_measures).
 
-    Beside them the shortfalls there, as of :meth:`_Strengths.split`.
+    Return with them the shortfalls at these thresholds, as of :meth:`_Strengths.split`.
     """
-    inside = known.beyond <= 0.0
-    weakest = np.where(taken[..., None, :], known.logarithms, np.inf).min(axis=-1)
-    strongest = np.where((~taken & inside)[..., None, :], known.logarithms, -np.inf).max(axis=-1)
+    inside = table.beyond <= 0.0
+    weakest = np.where(selection[..., None, :], table.logarithms, np.inf).min(axis=-1)
+    strongest = np.where((~selection & inside)[..., None, :], table.logarithms, -np.inf).max(axis=-1)
     # Initially midway; where no other mode is left, low enough for all.
-    thresholds = np.where(np.isfinite(strongest), 0.5 * (weakest + strongest), weakest - 0.5 * known.asked)
+    thresholds = np.where(np.isfinite(strongest), 0.5 * (weakest + strongest), weakest - 0.5 * table.asked)
     for _ in range(_TURNS):
-        shortfalls = below, above, _ = known.split(taken, thresholds)
+        shortfalls = below, above, _ = table.split(selection, thresholds)
         active = (below > 0.0).sum(axis=-1) + (above > 0.0).sum(axis=-1)
-        step = known.scale * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
+        step = table.scale * (above.sum(axis=-1) - below.sum(axis=-1)) / np.maximum(active, 1)
         if not step.any():
             return thresholds, shortfalls
         thresholds = thresholds + step
         if np.abs(step).max() < _SETTLED:
             break
-    return thresholds, known.split(taken, thresholds)
+    return thresholds, table.split(selection, thresholds)
 
 
-def _best_choices(known: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:
+def _best_choices(table: _Strengths, inside: IntArray, errors: FloatArray, thresholds: FloatArray) -> BoolArray:
     """Choose the modes of least cost for each row of thresholds, in order of frequency (dynamic programming).
 
     Parameters
     ----------
-    known : _Strengths
+    table : _Strengths
     inside : ndarray of int, shape (n_inside,)
         The modes in the band.
     errors : ndarray, shape (n, n_inside)
-        Cost of each as the partner of each measured mode.
+        Cost of each model mode as the partner of each measured mode.
     thresholds : ndarray, shape (n_rows, n_measures)
 
     Returns
     -------
     ndarray of bool, shape (n_rows, n_modes)
     """
-    taking = (known.below(thresholds)[..., inside] ** 2).sum(axis=1).T
-    leaving = np.minimum((known.above(thresholds)[..., inside] ** 2).sum(axis=1), known.edge[inside] ** 2).T
+    taking = (table.below(thresholds)[..., inside] ** 2).sum(axis=1).T
+    leaving = np.minimum((table.above(thresholds)[..., inside] ** 2).sum(axis=1), table.edge[inside] ** 2).T
     n, rows = len(errors), len(thresholds)
     # cost[r, k]: least cost with k of the modes considered so far chosen.
     cost = np.full((rows, n + 1), np.inf)
     cost[:, 0] = 0.0
     took = np.zeros((len(inside), rows, n + 1), dtype=bool)
     for place in range(len(inside)):
-        taken = cost[:, :-1] + taking[place, :, None] + errors[:, place]
+        cost_taking = cost[:, :-1] + taking[place, :, None] + errors[:, place]
         cost = cost + leaving[place, :, None]
-        np.less(taken, cost[:, 1:], out=took[place, :, 1:])
-        np.minimum(cost[:, 1:], taken, out=cost[:, 1:])
-    chosen = np.zeros((rows, known.logarithms.shape[1]), dtype=bool)
+        np.less(cost_taking, cost[:, 1:], out=took[place, :, 1:])
+        np.minimum(cost[:, 1:], cost_taking, out=cost[:, 1:])
+    chosen = np.zeros((rows, table.logarithms.shape[1]), dtype=bool)
     number, every = np.full(rows, n), np.arange(rows)
     for place in range(len(inside) - 1, -1, -1):
-        taken = took[place, every, number]
-        chosen[:, inside[place]] = taken
-        number = number - taken
+        cost_taking = took[place, every, number]
+        chosen[:, inside[place]] = cost_taking
+        number = number - cost_taking
     return chosen

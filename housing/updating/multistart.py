@@ -24,16 +24,16 @@ from housing.updating.trust_region import AnyDesign, Effort, SearchResult, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
-_DRAWN = 8  # from the prior for each start that is solved
-_DESCENT = 25  # steps of each on the surrogate
+_DRAWN = 8  # draws from the prior for each start that is solved
+_DESCENT = 25  # steps of each draw on the surrogate
 _APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
 _NEVER_PARTED = (4, 2)  # least number of searches that continue into each round on the fine mesh
-FIRMNESS = (0.4, 1.0, 3.0)  # of the penalties in the rounds, the first of which is on the coarse mesh
-TRUST = (0.25, 0.15, 0.1)  # likewise
-_FINE_SOLVES = (3, 5)  # of each runner there
-_STARTS = 16  # on the surrogate
-_POLISHED = 6  # final solves where the target is not met
-_REFINED = 0.05  # trust region of these
+FIRMNESS = (0.4, 1.0, 3.0)  # firmness of the penalties in each round, the first on the coarse mesh
+TRUST = (0.25, 0.15, 0.1)  # trust radius in each round
+_FINE_SOLVES = (3, 5)  # full solutions of each runner in the rounds on the fine mesh
+_STARTS = 16  # starts on the surrogate
+_POLISHED = 6  # final full solutions where the target is not met
+_REFINED = 0.05  # trust region of the final solutions
 
 
 class Each(Protocol):
@@ -59,7 +59,7 @@ class Meshes(Generic[AnyDesign]):
     fine : callable
         Solver on the fine mesh, which is made anew at each design; None where there is one mesh only.
     light : callable
-        Reduces a design of that mesh for the next round, so that it is not solved again.
+        Reduces a design of the fine mesh for the next round, so that it is not solved again.
     """
 
     coarse: Solve[AnyDesign]
@@ -80,9 +80,9 @@ class Runner(Generic[AnyDesign]):
     number : int
     coordinates : ndarray, shape (n_parameters,)
     judged : ModalState, or None
-        Modes of the fine mesh here; None where it was not solved yet.
+        Modes of the fine mesh at these coordinates; None where it was not solved yet.
     design : Design, or None
-        The fine mesh's design here, reduced, where the last round was run on it.
+        The fine mesh's design at these coordinates, reduced, where the last round was run on it.
     """
 
     number: int
@@ -98,7 +98,7 @@ class MultistartResult(Generic[AnyDesign]):
     Attributes
     ----------
     coordinates : ndarray, shape (n_parameters,)
-        Of the best design on the fine mesh.
+        Coordinates of the best design on the fine mesh.
     misfit : Misfit
         Misfit of that design.
     is_met : bool
@@ -108,7 +108,7 @@ class MultistartResult(Generic[AnyDesign]):
     seen : tuple of ndarray
         Coordinates of every design solved on the fine mesh.
     design : Design, or None
-        The best on the fine mesh, where it was found there.
+        The best design on the fine mesh, where it was found there.
     """
 
     coordinates: FloatArray
@@ -141,11 +141,11 @@ class _Run(Generic[AnyDesign]):
         except HousingError:
             return runner, np.inf, ()
         effort = replace(self.effort, seed=self.effort.seed + runner.number)
-        found = search(debiased(solve, self.bias), self.target, self.parameters, Debiased(begin, self.bias), effort)
-        ended = replace(runner, coordinates=found.design.coordinates, judged=None)
+        searched = search(debiased(solve, self.bias), self.target, self.parameters, Debiased(begin, self.bias), effort)
+        ended = replace(runner, coordinates=searched.design.coordinates, judged=None)
         if self.on_fine:
-            ended = replace(ended, judged=found.design.state, design=self.meshes.light(found.design.design))
-        return ended, found.misfit.value, found.steps
+            ended = replace(ended, judged=searched.design.state, design=self.meshes.light(searched.design.design))
+        return ended, searched.misfit.value, searched.steps
 
 
 def multistart_search(
@@ -167,11 +167,11 @@ def multistart_search(
     target : Target
     parameters : sequence of Parameter
     start : Design
-        Solved on the coarse mesh.
+        Start design, solved on the coarse mesh.
     judged : ModalState, or None
         Modes of the start on the fine mesh; None where there is one mesh only.
     effort : Effort
-        Its solves are those of all searches in the round on the coarse mesh.
+        Effort; its solves are those of all searches in the round on the coarse mesh.
     count : int
         Number of starts, the given one among them.
     each : callable
@@ -196,13 +196,13 @@ def multistart_search(
         if best.is_met:
             break
         solves = _FINE_SOLVES[index - 1] if on_fine else max(1, effort.solves // count)
-        own = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
+        round_effort = replace(effort, solves=solves, trust=TRUST[index], starts=_STARTS)
         weighed, off = replace(target, firmness=FIRMNESS[index]), None if on_fine else bias
-        run = _Run(meshes, weighed, tuple(parameters), own, off, on_fine)
+        run = _Run(meshes, weighed, tuple(parameters), round_effort, off, on_fine)
         ran = sorted(each(run, runners[:number]), key=lambda row: row[1])
         steps += [step for *_, own_steps in ran for step in own_steps]
-        told = ", ".join(f"{value:.4g}" for _, value, _ in ran)
-        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {told}")
+        misfits = ", ".join(f"{value:.4g}" for _, value, _ in ran)
+        progress(f"round {index + 1} of {len(going)}: {len(ran)} searches, misfits {misfits}")
         runners = [runner for runner, value, _ in ran if np.isfinite(value)]
         if on_fine:
             best = _best(best, target, runners, progress)
@@ -226,20 +226,21 @@ def polish(
     Parameters
     ----------
     solve : callable
-        On the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the result.
+        Solves a design on the fine mesh. Each design is meshed anew, so that no property of a morphed mesh enters the
+        result.
     best : MultistartResult
         Result of :func:`multistart_search`.
     target, parameters, effort, progress
         See :func:`multistart_search`.
     """
     firm = replace(target, firmness=FIRMNESS[-1])
-    own = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
+    polish_effort = replace(effort, solves=0 if best.is_met else _POLISHED, trust=_REFINED)
     begin = solve(best.coordinates, None) if best.design is None else best.design
 
     def is_enough(design: AnyDesign) -> bool:
         return is_met(target, measure(firm, design.state, design.coordinates, strict=True))
 
-    return search(lambda point, _: solve(point, None), firm, parameters, begin, own, progress, is_enough)
+    return search(lambda point, _: solve(point, None), firm, parameters, begin, polish_effort, progress, is_enough)
 
 
 def _best(

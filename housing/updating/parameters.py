@@ -8,7 +8,7 @@ About the design of least misfit, with S the slopes of the residuals by the coor
 
     A = Sᵀ S,      C = (I + A)⁻¹,
 
-A is the data's information, the unit matrix that of the prior and C the posterior covariance of z (Gauss's
+A is the information of the data, the unit matrix that of the prior and C the posterior covariance of z (Gauss's
 approximation; Beck and Katafygiotis 1998). An eigenvector of A is a combination of parameters; its eigenvalue is the
 data's information on it in units of the prior's: below one, the prior knows more. The bounds are left out of account,
 so that a parameter at its bound is less uncertain than stated.
@@ -37,7 +37,7 @@ class Parameter:
     ----------
     name : str
     low, high : float
-        Bounds.
+        Bounds of the parameter.
     nominal : float
         Expected value of the prior.
     spread : float
@@ -125,7 +125,7 @@ class Posterior:
     information : ndarray, shape (n,)
         Eigenvalues of A, descending.
     directions : ndarray, shape (n, n)
-        Their eigenvectors, a row each.
+        Eigenvectors of A, a row each.
     slopes : ndarray, shape (n_modes, n)
         d ln ω of every mode of the design.
     """
@@ -188,7 +188,7 @@ def posterior(target: Target, misfit: Misfit, coordinates: FloatArray, near: Nei
     ----------
     target : Target
     misfit : Misfit
-        Of the design.
+        Misfit of the design.
     coordinates : ndarray, shape (n,)
     near : Neighbour
         The design's own modes with their slopes.

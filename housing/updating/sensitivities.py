@@ -33,8 +33,8 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _WORKING_SET = 2**19  # numbers in the modes' gradients of one chunk: 4 MB, that a core keeps at hand
-_STILL = 1e-10  # part of the largest motion within an element below which another is carried along as it is
-_EVEN = 1e-11  # likewise of a divergence's changes within elements
+_STILL = 1e-10  # part of the largest velocity: nodes of an element that differ by less move as one
+_EVEN = 1e-11  # part of the largest divergence below which its changes within elements are none
 
 _PAIRS = ((0, 1), (1, 2), (2, 0))  # components of the shears, after the three stretches
 
@@ -74,11 +74,11 @@ class Part:
     ----------
     kind : ElementKind
     elements : ndarray of int, shape (n,)
-        Their numbers over all blocks.
+        Numbers of the elements over all blocks.
     nodes : ndarray of int, shape (n, n_nodes)
     affine : bool
     spans : tuple of (int, slice)
-        Numbers of the parameters that concern some of the elements, and the first to the last of those.
+        Each parameter that concerns some of the elements, and the range of these elements.
     """
 
     kind: ElementKind
@@ -200,16 +200,16 @@ def _add_stiffness(
         strains[:, :, i] = gradients[:, :, i, i]
     for place, (i, j) in enumerate(_PAIRS):
         np.add(gradients[:, :, i, j], gradients[:, :, j, i], out=strains[:, :, 3 + place])
-    own = _stresses(strains, places.volumes, *constants[:2, part.elements])
+    stresses = _stresses(strains, places.volumes, *constants[:2, part.elements])
     for number, span in part.spans:
-        given = changes[number].constants
-        if given is not None and given[:2, part.elements[span]].any():
-            stress = _stresses(strains[span], places.volumes[span], *given[:2, part.elements[span]])
+        constant_changes = changes[number].constants
+        if constant_changes is not None and constant_changes[:2, part.elements[span]].any():
+            stress = _stresses(strains[span], places.volumes[span], *constant_changes[:2, part.elements[span]])
             stiffness[number] += stress.reshape(-1, n_modes).T @ strains[span].reshape(-1, n_modes)
         if number in moving:
             tilt = _tilt(moving[number])
             tilted = tilt @ gradients[span].reshape(-1, *places.volumes.shape[1:], 9, n_modes)
-            half = own[span].reshape(-1, n_modes).T @ tilted.reshape(-1, n_modes)
+            half = stresses[span].reshape(-1, n_modes).T @ tilted.reshape(-1, n_modes)
             stiffness[number] += half + half.T
 
 
@@ -255,7 +255,7 @@ def _add_even_mass(
     points, weights = quadrature(part.kind.name, 2 * part.kind.order)
     values = shape_functions(part.kind.name, points)[0]
     n, n_modes = len(part.elements), mass.shape[1]
-    # Of density 1: Nᵀ N over the reference element as Rᵀ R, and the size of the element.
+    # For density 1: Nᵀ N over the reference element as Rᵀ R, and the size of the element.
     unit = values.T @ (weights[:, None] * values) / weights.sum()
     turned = (np.linalg.cholesky(unit).T @ fields).reshape(n, -1, n_modes)
     modal = (turned.transpose(0, 2, 1) @ turned).reshape(n, -1)
@@ -264,9 +264,9 @@ def _add_even_mass(
     for row, (number, span) in zip(amounts, part.spans, strict=True):
         if number in divergences:
             row[span] += constants[2, part.elements[span]] * divergences[number][:, 0]
-        given = changes[number].constants
-        if given is not None:
-            row[span] += given[2, part.elements[span]]
+        constant_changes = changes[number].constants
+        if constant_changes is not None:
+            row[span] += constant_changes[2, part.elements[span]]
     numbers = [number for number, _ in part.spans]
     mass[numbers] += ((amounts * volumes) @ modal).reshape(-1, n_modes, n_modes)
 
@@ -341,7 +341,7 @@ class ModalSensitivities:
         """Return the derivatives of the shapes, c_ab of dφ_b = Σ_a φ_a c_ab, shape (n_parameters, n_modes, n_modes).
 
         c_ab = φ_aᵀ (dK - λ_b dM) φ_b / (λ_b - λ_a) and c_bb = -½ φ_bᵀ dM φ_b (Fox and Kapoor 1968). Contributions of
-        modes above those at hand are missing. For multiple modes that separate it has no meaning.
+        modes above those at hand are missing. The result has no meaning for multiple modes that separate.
         """
         eigenvalues = frequencies**2
         apart = eigenvalues[None, :] - eigenvalues[:, None]
@@ -364,7 +364,7 @@ def modal_sensitivities(
     constants : ndarray, shape (3, n_elements)
         λ, μ [Pa] and ρ [kg/m³].
     shapes : ndarray, shape (n_modes, n_nodes, 3)
-        Mass-normalised.
+        Mass-normalised shapes [1/√kg].
     rates : sequence of ModelSensitivity
 
     Raises

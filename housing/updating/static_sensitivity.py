@@ -74,12 +74,12 @@ class StaticSensitivity:
         rates : sequence of ModelSensitivity
             Derivatives of the housing's model by each parameter.
         ports : sequence of PortRates
-            Those of the ports.
+            Derivatives of the ports.
         """
         weight = np.broadcast_to(self.gravity, self.displacement.shape)
         fields = np.concatenate([np.stack([self.displacement, weight]), self.adjoint])
-        found = modal_sensitivities(self.mesh, self.constants, fields, rates)
-        total = found.mass[:, 1, 2:] - found.stiffness[:, 0, 2:]
+        sensitivities = modal_sensitivities(self.mesh, self.constants, fields, rates)
+        total = sensitivities.mass[:, 1, 2:] - sensitivities.stiffness[:, 0, 2:]
         for row, changes in zip(total, ports, strict=True):
             for name, change in changes.items():
                 row += self.forces[name] @ (change @ self.adjoint.reshape(len(self.adjoint), -1).T)
@@ -93,8 +93,8 @@ class StaticSensitivity:
         """
         fields = np.concatenate([self.displacement[None], self.adjoint])
         strains, constants = _strains(self.mesh, fields, self.constants)
-        own = np.einsum("nij,anij->an", _stress(strains[0], constants), strains[1:], optimize=True)
-        return np.asarray(constants[2] * (self.adjoint @ self.gravity) - own)
+        strain_density = np.einsum("nij,anij->an", _stress(strains[0], constants), strains[1:], optimize=True)
+        return np.asarray(constants[2] * (self.adjoint @ self.gravity) - strain_density)
 
 
 def harmonic_surface_density(
@@ -115,9 +115,9 @@ def harmonic_surface_density(
     parts = np.stack([motion.real, motion.imag, adjoint.real, adjoint.imag])
     strains, means = _strains(mesh, parts, constants)
     total = np.zeros(len(mesh.points))
-    for own, sign in ((0, 1.0), (1, -1.0)):
-        inertia = frequency**2 * means[2] * np.einsum("ni,ni->n", parts[own], parts[own + 2])
-        strained = np.einsum("nij,nij->n", _stress(strains[own], means), strains[own + 2])
+    for part, sign in ((0, 1.0), (1, -1.0)):
+        inertia = frequency**2 * means[2] * np.einsum("ni,ni->n", parts[part], parts[part + 2])
+        strained = np.einsum("nij,nij->n", _stress(strains[part], means), strains[part + 2])
         total += sign * (inertia - strained)
     return total
 
@@ -146,12 +146,12 @@ def _nodal_means(mesh: Mesh, fields: FloatArray, constants: FloatArray) -> tuple
         jacobian = jacobians(mesh.points, block.nodes, reference)
         determinant = determinants(jacobian)
         inverse = inverses(jacobian, determinant)
-        own = constants[:, first : first + len(block)]
+        block_constants = constants[:, first : first + len(block)]
         first += len(block)
         slopes = np.einsum("kjeq,qak->eqja", inverse, reference, optimize=True)
         at = block.nodes.ravel()
         np.add.at(weights, at, determinant.ravel())
-        for mean, values in zip(means, own, strict=True):
+        for mean, values in zip(means, block_constants, strict=True):
             np.add.at(mean, at, (determinant * values[:, None]).ravel())
         for gradient, field in zip(gradients, fields, strict=True):
             local = np.einsum("eqja,eai->eqij", slopes, field[block.nodes], optimize=True)

@@ -35,7 +35,7 @@ class ModalState:
     Attributes
     ----------
     frequencies : ndarray, shape (n_modes,)
-        [rad/s].
+        Circular frequencies [rad/s].
     seats : ndarray, shape (n_modes, n_seats, 2)
         x and y translation of each bearing seat in the mass-normalised shapes [1/√kg].
     skin : ndarray, shape (n_modes, n_points)
@@ -58,9 +58,11 @@ class ModalState:
 def elastic(state: ModalState) -> tuple[ModalState, BoolArray]:
     """Return the elastic modes, and a mask of which modes they are, shape (n_modes,)."""
     eigenvalues = state.frequencies**2
-    kept = eigenvalues > _RIGID * eigenvalues[-1]
-    measured = None if state.measured is None else state.measured[kept]
-    return ModalState(state.frequencies[kept], state.seats[kept], state.skin[kept], measured), kept
+    is_elastic = eigenvalues > _RIGID * eigenvalues[-1]
+    measured = None if state.measured is None else state.measured[is_elastic]
+    return ModalState(
+        state.frequencies[is_elastic], state.seats[is_elastic], state.skin[is_elastic], measured
+    ), is_elastic
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,8 @@ class Neighbour:
 
     def strength_slopes(self, modes: IntArray) -> FloatArray:
         """Return d ln strength of modes by acceleration, velocity and absolute, shape (3, n_parameters, n_modes)."""
-        own, base, turning = self.state, self.surrogate.state, self._turning(modes)
-        seats, skin = own.seats[modes], own.skin[modes]
+        state, base, turning = self.state, self.surrogate.state, self._turning(modes)
+        seats, skin = state.seats[modes], state.skin[modes]
         seats_rate = (turning @ base.seats.reshape(len(base.seats), -1)).reshape(len(turning), *seats.shape)
         skin_rate = turning @ base.skin
         along = (seats * seats_rate).sum(axis=3)  # radial motion times its rate, (n_parameters, n_modes, n_seats)
@@ -116,7 +118,7 @@ class Neighbour:
         surrogate, mixture = self.surrogate, self.mixture
         logarithms = 2.0 * np.log(self.state.frequencies)
         apart = logarithms[modes] - logarithms[:, None]
-        # Modes of one frequency have no shapes of their own, and those of each do not turn into themselves.
+        # Modes of one frequency have no distinct shapes, and do not turn into each other; nor does a mode into itself.
         inverse = np.divide(1.0, apart, out=np.zeros_like(apart), where=np.abs(apart) > _TOGETHER)
         turned = mixture @ ((mixture.T @ (surrogate.rates @ mixture[:, modes])) * inverse)
         whole = turned - 0.5 * _weighted(self.step, surrogate.mass) @ turned
@@ -133,7 +135,7 @@ class Surrogate:
     center : ndarray, shape (n_parameters,)
         The design's coordinates.
     state : ModalState
-        At the design, elastic modes only.
+        State at the design, elastic modes only.
     rates : ndarray, shape (n_parameters, n_modes, n_modes)
         Λ^-½ [...] Λ^-½ of each coordinate.
     mass : ndarray, shape (n_parameters, n_modes, n_modes)
@@ -148,12 +150,12 @@ class Surrogate:
     @classmethod
     def about(cls, center: FloatArray, state: ModalState, rates: ModalSensitivities) -> "Surrogate":
         """Build the surrogate about a design; rigid modes, which no parameter moves, are left out."""
-        own, kept = elastic(state)
-        eigenvalues = own.frequencies**2
-        stiffness, mass = rates.stiffness[:, kept][:, :, kept], rates.mass[:, kept][:, :, kept]
+        elastic_state, is_elastic = elastic(state)
+        eigenvalues = elastic_state.frequencies**2
+        stiffness, mass = rates.stiffness[:, is_elastic][:, :, is_elastic], rates.mass[:, is_elastic][:, :, is_elastic]
         change = stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
         scale = 1.0 / np.sqrt(eigenvalues)
-        return cls(center, own, scale[:, None] * change * scale, mass)
+        return cls(center, elastic_state, scale[:, None] * change * scale, mass)
 
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""

@@ -19,7 +19,7 @@ from housing.updating.surrogate import ModalState, Neighbour, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
 
-_STEPS = 8  # of Gauss and Newton from each start
+_STEPS = 8  # Gauss-Newton steps from each start
 _WORTH = 0.02  # least predicted decrease for a full solution, as a part of the misfit
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 
@@ -42,7 +42,7 @@ class Design(Protocol):
 AnyDesign = TypeVar("AnyDesign", bound=Design)
 
 Solve = Callable[[FloatArray, AnyDesign | None], AnyDesign]
-"""Solves a design at coordinates z; the second is a neighbour whose mesh it may start from.
+"""Solves a design at coordinates z; the second argument is a neighbour whose mesh it may start from.
 
 Raises :class:`housing.HousingError` where there is no sound model."""
 
@@ -56,7 +56,7 @@ class Effort:
     solves : int
         Largest number of full solutions.
     starts : int
-        On the surrogate, in each region.
+        Starts on the surrogate, in each region.
     trust : float
         Half-width of the first region, as a part of each range.
     least_trust : float
@@ -116,7 +116,7 @@ def search(
     progress : callable
         Called with a line of text for each solution.
     until : callable
-        Of a design, whether the search may end there.
+        Whether the search may end at a design.
 
     Returns
     -------
@@ -144,22 +144,22 @@ def search(
             steps.append(Step(promised, np.inf, False, trust, np.inf))
             trust *= 0.5
             continue
-        found = measure(target, trial.state, trial.coordinates)
-        accepted = found.value < misfit.value
-        steps.append(Step(promised, found.value, accepted, trust, found.rms_percent))
-        kept = (misfit.value - found.value) / (misfit.value - promised)
+        measured = measure(target, trial.state, trial.coordinates)
+        accepted = measured.value < misfit.value
+        steps.append(Step(promised, measured.value, accepted, trust, measured.rms_percent))
+        gain_ratio = (misfit.value - measured.value) / (misfit.value - promised)
         progress(
-            f"solve {len(steps)}: misfit {found.value:.4g} ({'better' if accepted else 'no better'} than "
-            f"{misfit.value:.4g}, {promised:.4g} promised), rms {found.rms_percent:.2f} %, "
-            f"{found.in_words}, "
+            f"solve {len(steps)}: misfit {measured.value:.4g} ({'better' if accepted else 'no better'} than "
+            f"{misfit.value:.4g}, {promised:.4g} promised), rms {measured.rms_percent:.2f} %, "
+            f"{measured.in_words}, "
             f"trust {trust:.3f}"
         )
         enough = until(trial)
         if accepted or enough:
-            design, misfit, surrogate = trial, found, None
+            design, misfit, surrogate = trial, measured, None
         if enough:
             break
-        trust = min(trust * 1.4, 0.4) if kept > 0.6 else trust if kept > 0.25 else trust * 0.5
+        trust = min(trust * 1.4, 0.4) if gain_ratio > 0.6 else trust if gain_ratio > 0.25 else trust * 0.5
     return SearchResult(design, misfit, tuple(steps))
 
 
@@ -172,7 +172,7 @@ def search_surrogate(
     points = [center, *(low + (high - low) * generator.random((starts, len(low))))]
     first, *others = (_Place.on(surrogate, target, point) for point in points)
     best_point, best = center, first.misfit.value
-    # The surrogate's own centre, and the better half of the others, since most of those reach the same minima.
+    # The surrogate's centre, and the better half of the others, since most of these reach the same minima.
     for start in [first, *sorted(others, key=lambda place: place.misfit.value)[: max(1, starts // 2)]]:
         point, value = descend(surrogate, target, start, region)
         if value < best:

@@ -138,14 +138,14 @@ def _on_rim(box: Box, cover: Cover, bolt: Bolt) -> bool:
     to_edge = [min(u - outer.low[axis], outer.high[axis] - u) for u, axis in zip(place, axes, strict=True)]
     beside = [max(opening.low[axis] - u, 0.0, u - opening.high[axis]) for u, axis in zip(place, axes, strict=True)]
     rounding = box.fillets.outside
-    if max(to_edge) < rounding:  # in a corner, rounded where the plate is
+    if max(to_edge) < rounding:  # in a corner of the rounded plate
         within = math.hypot(rounding - to_edge[0], rounding - to_edge[1]) + radius <= rounding + SLACK
     else:
         within = min(to_edge) >= radius - SLACK
     return within and math.hypot(*beside) >= radius - SLACK
 
 
-_LEAST_CORNER = 0.25  # of the thinner wall must be left where an edge is rounded
+_LEAST_CORNER = 0.25  # part of the thinner wall that must be left where an edge is rounded
 
 
 def misfits(box: Box) -> Iterator[BoxMisfit]:
@@ -205,14 +205,14 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
         )
         yield BoxMisfit((*location, "center", 2), expected)
     x, y, _ = bore.center
-    for what, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
+    for feature, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
         over = max(abs(x) + diameter / 2.0 - box.size[0] / 2.0, diameter / 2.0 - y, y + diameter / 2.0 - box.size[1])
         if over > SLACK:
             expected = (
-                f"a {what} within its wall of {mm(box.size[0])} by {mm(box.size[1])}; around "
+                f"a {feature} within its wall of {mm(box.size[0])} by {mm(box.size[1])}; around "
                 f"x = {mm(x)}, y = {mm(y)} it reaches {mm(over)} beyond the edge"
             )
-            yield BoxMisfit((*location, "diameter") if what == "bore" else (*location, "boss", "diameter"), expected)
+            yield BoxMisfit((*location, "diameter") if feature == "bore" else (*location, "boss", "diameter"), expected)
             return
 
 
@@ -383,6 +383,6 @@ def _joint_clashes(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
         return
     plane = layout.parting_plane(box, box.cover.face)
     if way * (plane - bore.center[normal]) < radius - SLACK:
-        what = "boss" if bore.boss else "bore"
-        expected = f"a {what} clear of the joint under the {box.cover.face} cover, at {'xyz'[normal]} = {mm(plane)}"
+        feature = "boss" if bore.boss else "bore"
+        expected = f"a {feature} clear of the joint under the {box.cover.face} cover, at {'xyz'[normal]} = {mm(plane)}"
         yield BoxMisfit(("bores", index, "center"), expected)

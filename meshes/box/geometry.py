@@ -22,9 +22,9 @@ class BoxMisfitError(GeometryError):
         Everything that does not fit.
     """
 
-    def __init__(self, found: tuple[BoxMisfit, ...]) -> None:
-        self.misfits = found
-        super().__init__("\n".join(str(misfit) for misfit in found))
+    def __init__(self, all_misfits: tuple[BoxMisfit, ...]) -> None:
+        self.misfits = all_misfits
+        super().__init__("\n".join(str(misfit) for misfit in all_misfits))
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class BoxGeometry:
     size : tuple of float
         Outside lengths along x, y, z [m], without bosses, feet, outside ribs and flange.
     wall : WallThickness
-        [m]; that of the cover's face is the thickness of its plate.
+        Thickness of each wall [m]; at the cover's face, the thickness of its plate.
     bores : tuple of Bore
     feet : Feet, optional
     ribs : tuple of Rib
@@ -46,7 +46,7 @@ class BoxGeometry:
     Raises
     ------
     GeometryError
-        Where a size is not positive, a boss is no wider than its bore, or a seat has no name of its own.
+        Where a size is not positive, a boss is no wider than its bore, or a seat has the name of another surface.
     BoxMisfitError
         Where the parts do not fit each other, with everything that does not: walls that meet, feet that touch, bores
         that leave their wall or touch another, ribs, cover, fillets, bolt patches.
@@ -76,9 +76,9 @@ class BoxGeometry:
         for name in names:
             if names.count(name) > 1:
                 raise GeometryError(f"two seats are named {name!r}")
-        found = tuple(misfits(self))
-        if found:
-            raise BoxMisfitError(found)
+        problems = tuple(misfits(self))
+        if problems:
+            raise BoxMisfitError(problems)
         patches = {name for bolt in self.bolts for name in (bolt.cover_surface, bolt.body_surface)}
         for bore in self.bores:
             if bore.name in {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}:

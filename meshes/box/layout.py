@@ -86,7 +86,7 @@ def plate_block(box: Box, cover: Cover) -> Block:
 
 
 def parting_plane(box: Box, face: Face) -> float:
-    """Where cover and body meet, along the normal of the cover's face [m]."""
+    """Place of the plane between cover and body along the normal of the cover's face [m]."""
     normal, way = FACES[face]
     outer = outer_block(box)
     return (outer.high if way > 0 else outer.low)[normal] - way * box.wall.of(face)
@@ -211,11 +211,11 @@ def cover_bolts(box: Box) -> tuple[Bolt, ...]:
     cover = box.cover
     if cover is None or cover.bonded or cover.bolts is None:
         return ()
-    given, (normal, way) = cover.bolts, FACES[cover.face]
+    pattern, (normal, way) = cover.bolts, FACES[cover.face]
     thickness = box.wall.of(cover.face)
-    depth = given.diameter if cover.flange is None else min(cover.flange.thickness, given.diameter)
+    depth = pattern.diameter if cover.flange is None else min(cover.flange.thickness, pattern.diameter)
     bolts = []
-    for number, place in enumerate(given.positions or _rows(box, cover), start=1):
+    for number, place in enumerate(pattern.positions or _rows(box, cover), start=1):
         position, axis = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         position[normal], axis[normal] = parting_plane(box, cover.face), float(way)
         for plane_axis, value in zip(plane_axes(cover.face), place, strict=True):
@@ -225,9 +225,9 @@ def cover_bolts(box: Box) -> tuple[Bolt, ...]:
                 name=f"bolt-{number}",
                 position=(position[0], position[1], position[2]),
                 axis=(axis[0], axis[1], axis[2]),
-                diameter=given.diameter,
-                grip=thickness + depth / 2 if given.grip is None else given.grip,
-                patch_diameter=2 * given.diameter if given.patch_diameter is None else given.patch_diameter,
+                diameter=pattern.diameter,
+                grip=thickness + depth / 2 if pattern.grip is None else pattern.grip,
+                patch_diameter=2 * pattern.diameter if pattern.patch_diameter is None else pattern.patch_diameter,
             )
         )
     return tuple(bolts)

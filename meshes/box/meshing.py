@@ -314,7 +314,7 @@ def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh
     Returns
     -------
     Mesh
-        With the surfaces left, right, bottom, top, back, front (plane outer faces), the undersides of the feet and
+        Mesh with the surfaces left, right, bottom, top, back, front (plane outer faces), the undersides of the feet and
         their bolts' circles, the two circles of each bolt of a cover, and one surface for each bore under its own
         name. The volume housing is all of it; with a cover, body and cover stand in its place, which share nodes
         only where the cover is bonded.
@@ -330,7 +330,7 @@ def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh
     with gmsh_session("housing box") as gmsh:
         solid = build_solid(gmsh, geometry)
         surfaces = named_faces(gmsh, geometry, solid)
-        # Parts and no whole beside them: some formats know one volume for each element.
+        # Either the parts or the whole: some formats know one volume for each element.
         volumes = {"body": [*solid.body], "cover": [*solid.cover]} if solid.cover else {"housing": [*solid.body]}
         filled = sum(gmsh.model.occ.getMass(3, tag) for tag in (*solid.body, *solid.cover))
         check_mesh_size(filled, max(geometry.size), mesh_size)

@@ -197,15 +197,15 @@ class BoxMorph:
             raise MorphError("the box has other parts than its mesh: mesh it anew")
         points = self._mesh.points
         moved = np.zeros_like(points)
-        given = np.full_like(points, np.nan)
+        shifts = np.full_like(points, np.nan)
         for axis, number, nodes in self._on_plane:
             shift = others[number].at - planes[number].at
-            self._give(given, nodes, axis, np.full(len(nodes), shift))
+            self._give(shifts, nodes, axis, np.full(len(nodes), shift))
         for number, nodes, _ in self._round:
             for axis in range(2):
-                self._give(given, nodes, axis, carried(points[nodes], cylinders[number], turned[number])[:, axis])
+                self._give(shifts, nodes, axis, carried(points[nodes], cylinders[number], turned[number])[:, axis])
         for axis, harmonic in enumerate(self._harmonic):
-            moved[self._vertices, axis] = harmonic.extended(given[self._vertices, axis])
+            moved[self._vertices, axis] = harmonic.extended(shifts[self._vertices, axis])
         moved = with_middles(self._mesh, moved)
         for number, _, nodes in self._round:
             moved[nodes, :2] = carried(points[nodes], cylinders[number], turned[number])
@@ -227,40 +227,40 @@ class BoxMorph:
             raise MorphError(f"the mesh cannot follow so far: {error}") from error
 
     def _given_nodes(self, axis: int) -> npt.NDArray[np.bool_]:
-        held = np.zeros(len(self._mesh.points), dtype=bool)
-        for own, _, nodes in self._on_plane:
-            if own == axis:
-                held[nodes] = True
+        is_given = np.zeros(len(self._mesh.points), dtype=bool)
+        for plane_axis, _, nodes in self._on_plane:
+            if plane_axis == axis:
+                is_given[nodes] = True
         for _, nodes, _ in self._round:
             if axis < 2:
-                held[nodes] = True
-        return np.asarray(held[self._vertices])
+                is_given[nodes] = True
+        return np.asarray(is_given[self._vertices])
 
-    def _give(self, given: FloatArray, nodes: IntArray, axis: int, shift: FloatArray) -> None:
-        before = given[nodes, axis]
+    def _give(self, shifts: FloatArray, nodes: IntArray, axis: int, shift: FloatArray) -> None:
+        before = shifts[nodes, axis]
         apart = np.abs(before - shift) > 1e-9 * max(self._geometry.size)
         if (apart & ~np.isnan(before)).any():
             x, y, z = self._mesh.points[nodes[np.argmax(apart & ~np.isnan(before))]]
             raise MorphError(
                 f"faces that meet flush at ({x:.4g}, {y:.4g}, {z:.4g}) m would part along {'xyz'[axis]}: mesh it anew"
             )
-        given[nodes, axis] = shift
+        shifts[nodes, axis] = shift
 
 
 class _Harmonic:
     """Harmonic extension of a component from given corners to all of them: ∇²u = 0 by linear tetrahedra."""
 
-    def __init__(self, mesh: Mesh, vertices: IntArray, held: npt.NDArray[np.bool_]) -> None:
+    def __init__(self, mesh: Mesh, vertices: IntArray, prescribed: npt.NDArray[np.bool_]) -> None:
         laplacian = _laplacian(mesh)[vertices][:, vertices]
-        self._held = held
-        self._coupling = laplacian[~held][:, held]
-        free = sparse.csc_array(laplacian[~held][:, ~held])
+        self._prescribed = prescribed
+        self._coupling = laplacian[~prescribed][:, prescribed]
+        free = sparse.csc_array(laplacian[~prescribed][:, ~prescribed])
         self._factor = splu(free) if free.shape[0] else None
 
     def extended(self, values: FloatArray) -> FloatArray:
         whole = values.copy()
         if self._factor is not None:
-            whole[~self._held] = self._factor.solve(-(self._coupling @ values[self._held]))
+            whole[~self._prescribed] = self._factor.solve(-(self._coupling @ values[self._prescribed]))
         return whole
 
 

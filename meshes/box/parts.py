@@ -72,7 +72,7 @@ class Bore:
     center : tuple of float
         A point of its axis [m]; its z selects the wall.
     diameter : float
-        [m].
+        Diameter [m].
     boss : Boss, optional
         Material around the bore on the outside of the wall.
     """
@@ -112,10 +112,10 @@ class Rib:
     at : float
         Position of its middle plane along the other axis [m].
     height, thickness : float
-        [m]; the height is taken from the wall.
+        Height above the wall and thickness [m].
     side : {"outside", "inside"}
     start, end : float, optional
-        Its ends along its axis [m]; by default it runs the whole length of the wall.
+        Ends of the rib along its axis [m]; by default it runs the whole length of the wall.
     """
 
     face: Face
@@ -144,7 +144,7 @@ class CoverBolts:
     Attributes
     ----------
     diameter : float
-        Nominal, of the thread [m].
+        Nominal diameter of the thread [m].
     per_edge : tuple of int, optional
         Number along each of the two axes of the cover's plane (in the order x, y, z), corners counted with both, on
         the middle line of the rim.
@@ -171,9 +171,9 @@ class Cover:
     Attributes
     ----------
     face : str
-        The wall; its thickness is the plate's.
+        The wall, whose thickness is that of the plate.
     flange : Flange, optional
-        By default the rim is as wide as the walls are thick.
+        Rim; by default as wide as the walls are thick.
     bolts : CoverBolts, optional
         Bolts that hold the plate on the body; needed unless bonded.
     bonded : bool
@@ -206,11 +206,11 @@ class Bolt:
     name : str
         ``bolt-1`` and so on. The mesh's surfaces of its patches are ``bolt-1-cover`` and ``bolt-1-body``.
     position : tuple of float
-        Its middle in the plane between cover and body [m].
+        Middle of the bolt in the plane between cover and body [m].
     axis : tuple of float
         Unit vector from the body to the cover.
     diameter, grip, patch_diameter : float
-        As of :class:`CoverBolts`, defaults resolved [m].
+        Lengths of :class:`CoverBolts`, defaults resolved [m].
     """
 
     name: str

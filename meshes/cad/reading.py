@@ -18,7 +18,7 @@ from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from meshes.gmsh_meshing import Tetrahedra, check_mesh_request
 from meshes.mesh import Mesh
 
-_LONGEST = 3600.0  # seconds that a file is given in all
+_LONGEST = 3600.0  # seconds for a file in all
 # Seconds to read and join solids, and more by the byte: a sound file of 20 kB takes a tenth of a second, a damaged one
 # may keep the kernel busy for ever.
 _READING, _READING_PER_BYTE = 5.0, 3e-4
@@ -75,13 +75,13 @@ def mesh_cad(
         Unit of the file's numbers [m], where it states none itself (BREP; default a millimetre). What a STEP or
         IGES file states holds, unless the part would then be no housing by its size and is one in this unit.
     glue : bool
-        Whether solids that touch share their nodes there, as one piece; else they are apart until joints tie them.
+        Whether solids share their nodes where they touch, as one piece; else they are apart until joints tie them.
     order : {1, 2}
         Polynomial order of the elements.
     refine : sequence of (center, diameter)
         Bores around which the elements are to be smaller [m].
     refined_size : float, optional
-        Edge length aimed at there [m].
+        Edge length aimed at around these bores [m].
     time_limit : float, optional
         Seconds after which the attempt is given up, meshing included; by default reading and joining the solids is
         given five seconds and five minutes for each megabyte of the file, meshing six seconds and two for each thousand
@@ -171,7 +171,7 @@ def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: flo
             return worker.communicate(timeout=_LOOK)[1]
         except subprocess.TimeoutExpired as error:
             now, stage = time.monotonic(), _stage(folder)
-            # Reading and joining are one.
+            # Reading and joining count as one stage.
             spent = now - since.setdefault(READING if stage == JOINING else stage, now)
             limit = {READING: reading_limit, JOINING: reading_limit, MESHING: _meshing_limit(folder)}.get(
                 stage, _LONGEST

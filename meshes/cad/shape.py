@@ -41,12 +41,12 @@ def stated_unit(path: Path, kind: str) -> float | None:
 def _step_unit(text: str) -> float | None:
     """Read the unit of length of a STEP file's geometry [m]; None unless there is exactly one.
 
-    An inch is itself defined by way of a millimetre, so that converted units, where there are any, decide.
+    An inch is defined by way of a millimetre, so that converted units, where there are any, decide.
     """
     plain: set[float] = set()
     converted: set[float] = set()
-    for found in re.finditer(r"LENGTH_UNIT\s*\(\s*\)", text):
-        entity = text[text.rfind(";", 0, found.start()) + 1 : text.find(";", found.end())]
+    for match in re.finditer(r"LENGTH_UNIT\s*\(\s*\)", text):
+        entity = text[text.rfind(";", 0, match.start()) + 1 : text.find(";", match.end())]
         by_name = re.search(r"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", entity)
         by_prefix = re.search(r"SI_UNIT\s*\(\s*(\$|\.\w+\.)\s*,\s*\.METRE\.", entity)
         if by_name is not None:
@@ -162,19 +162,19 @@ def read_solids(gmsh: Any, path: str, kind: str) -> list[int]:
         Where the file holds nothing, or surfaces that do not close.
     """
     try:
-        found = gmsh.model.occ.importShapes(path, highestDimOnly=True, format=kind)
+        entities = gmsh.model.occ.importShapes(path, highestDimOnly=True, format=kind)
     except Exception as error:  # gmsh raises bare Exception for every failure of its kernel
         if type(error) is not Exception:
             raise
         raise GeometryError(f"it is empty or broken, or no {kind.upper()} file; export it anew") from error
     gmsh.model.occ.synchronize()
-    if not found:
+    if not entities:
         raise GeometryError("it holds no shape, or is broken")
-    solids = [tag for dimension, tag in found if dimension == 3]
+    solids = [tag for dimension, tag in entities if dimension == 3]
     if solids:
         _drop_all_but(gmsh, solids)
         return solids
-    n_faces = sum(dimension == 2 for dimension, _ in found)
+    n_faces = sum(dimension == 2 for dimension, _ in entities)
     if n_faces == 0:
         raise GeometryError("it holds curves or points only, and no solid")
     return _sewn(gmsh, path, kind, n_faces)
@@ -188,11 +188,11 @@ def extent(gmsh: Any) -> float:
 
 def _drop_all_but(gmsh: Any, solids: list[int]) -> None:
     """Remove loose faces and wires that a file carries beside its solids."""
-    kept = {(3, tag) for tag in solids}
+    needed = {(3, tag) for tag in solids}
     for dimension in (2, 1, 0):
-        below = gmsh.model.getBoundary(sorted(kept), combined=False, oriented=False) if kept else []
-        kept = set(below)
-        loose = [entity for entity in gmsh.model.getEntities(dimension) if entity not in kept]
+        below = gmsh.model.getBoundary(sorted(needed), combined=False, oriented=False) if needed else []
+        needed = set(below)
+        loose = [entity for entity in gmsh.model.getEntities(dimension) if entity not in needed]
         if loose:
             gmsh.model.occ.remove(loose)
     gmsh.model.occ.synchronize()
@@ -206,14 +206,14 @@ def _sewn(gmsh: Any, path: str, kind: str, n_faces: int) -> list[int]:
     tolerance = _SEWING * extent(gmsh)
     gmsh.model.occ.remove(gmsh.model.occ.getEntities(2), recursive=True)
     gmsh.model.occ.synchronize()
-    own = gmsh.option.getNumber("Geometry.Tolerance")
+    default_tolerance = gmsh.option.getNumber("Geometry.Tolerance")
     gmsh.option.setNumber("Geometry.OCCSewFaces", 1)
     gmsh.option.setNumber("Geometry.Tolerance", tolerance)
     try:
         gmsh.model.occ.importShapes(path, highestDimOnly=False, format=kind)
     finally:
         gmsh.option.setNumber("Geometry.OCCSewFaces", 0)
-        gmsh.option.setNumber("Geometry.Tolerance", own)
+        gmsh.option.setNumber("Geometry.Tolerance", default_tolerance)
     gmsh.model.occ.synchronize()
     shells = _shells(gmsh, n_faces)
     outer = sorted(shells, key=lambda shell: -_diagonal(gmsh, shell))
@@ -297,26 +297,28 @@ def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:
     volumes = [gmsh.model.occ.getMass(3, tag) for tag in solids]
     _, pieces = gmsh.model.occ.fragment([(3, tag) for tag in solids], named)
     gmsh.model.occ.synchronize()
-    parts = {name: [tag for d, tag in own if d == 3] for name, own in zip(names, pieces[: len(names)], strict=True)}
+    parts = {name: [tag for d, tag in piece if d == 3] for name, piece in zip(names, pieces[: len(names)], strict=True)}
     for i, first in enumerate(names):
         for j, second in enumerate(names[:i]):
             shared = sorted(set(parts[first]) & set(parts[second]))
             if _volume(gmsh, shared) > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
                 raise _overlapping(gmsh, second, first, shared)
     faces = {}
-    for entity, own in zip(named, pieces[len(names) :], strict=True):
-        faces[labels[entity]] = [tag for d, tag in own if d == 2]
+    for entity, piece in zip(named, pieces[len(names) :], strict=True):
+        faces[labels[entity]] = [tag for d, tag in piece if d == 2]
     return Shape(parts, faces)
 
 
 def _check_apart(gmsh: Any, solids: dict[str, int]) -> None:
     """Refuse solids that overlap, without changing them."""
     parts = list(solids.items())
-    for i, (first, one) in enumerate(parts):
+    for i, (first, solid) in enumerate(parts):
         for second, other in parts[:i]:
-            shared, _ = gmsh.model.occ.intersect([(3, one)], [(3, other)], removeObject=False, removeTool=False)
+            shared, _ = gmsh.model.occ.intersect([(3, solid)], [(3, other)], removeObject=False, removeTool=False)
             common = [tag for dimension, tag in shared if dimension == 3]
-            if _volume(gmsh, common) > _OVERLAP * min(gmsh.model.occ.getMass(3, one), gmsh.model.occ.getMass(3, other)):
+            if _volume(gmsh, common) > _OVERLAP * min(
+                gmsh.model.occ.getMass(3, solid), gmsh.model.occ.getMass(3, other)
+            ):
                 raise _overlapping(gmsh, second, first, common)
             if shared:
                 gmsh.model.occ.remove(shared, recursive=True)

@@ -38,7 +38,7 @@ class Request:
     path : str
     kind : {"step", "iges", "brep"}
     mesh_size : float
-        [m].
+        Mesh size [m].
     order : {1, 2}
     stated, given : float or None
         Units of length [m], as of :func:`meshes.cad.shape.choose_unit`.
@@ -47,7 +47,7 @@ class Request:
     places : list of (x, y, z, diameter)
         Bores to refine around [m].
     place_size : float or None
-        Element size there [m].
+        Element size around these bores [m].
     """
 
     path: str
@@ -62,7 +62,7 @@ class Request:
 
 
 def end_with(parent: int, folder: Path) -> None:
-    """Watch a process from a thread; end this one, and remove its folder, once that one is gone.
+    """Watch the parent process from a thread; once it is gone, remove the folder and end this process.
 
     A process whose parent has died gets another one. The parent's number is handed over, because the parent may be
     gone before this begins. A thread is enough: gmsh's calls leave Python's lock to it while they last.

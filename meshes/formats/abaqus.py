@@ -16,7 +16,7 @@ from meshes.errors import GeometryError
 from meshes.formats.content import MeshContent, corner_rows, find_faces
 from meshes.mesh import Mesh
 
-_DEPTH = 20  # of files that include files
+_DEPTH = 20  # levels of files that include files
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
 
 
@@ -27,7 +27,7 @@ class Card:
     Attributes
     ----------
     keyword : str
-        Such as ``ELSET``.
+        Keyword, such as ``ELSET``.
     parameters : dict of str to str
         Values without quotes; empty where a parameter has none.
     lines : list of list of str
@@ -105,7 +105,7 @@ SOLID_TYPES = {
     "15": "wedge15",
 }
 _SOLID_TYPE = re.compile(r"(?:C3D|DC3D|F3D)(\d+)[A-Z]*$")
-# Of the 27-node brick the centre comes before the middles of the faces bottom, top, front, right, back, left.
+# In the 27-node brick the centre comes before the middles of the faces bottom, top, front, right, back, left.
 BRICK_27 = [*range(20), 26, 24, 25, 22, 21, 23, 20]
 _TO_VTK = {"hexahedron27": [BRICK_27.index(place) for place in range(27)]}
 # The faces S1, S2, ... by corners counted from one.
@@ -162,7 +162,7 @@ def _take(deck: _Deck, card: Card) -> None:
         _add(deck.node_sets, card.parameters.get("NSET"), _members(card, deck.node_sets))
     elif card.keyword == "ELSET":
         _add(deck.element_sets, card.parameters.get("ELSET"), _members(card, deck.element_sets))
-        if "INTERNAL" in card.parameters:  # of a surface, not meant to be seen
+        if "INTERNAL" in card.parameters:  # a surface's set, not meant to be seen
             deck.internal.add(card.parameters.get("ELSET", ""))
     elif card.keyword == "SURFACE":
         name = card.parameters.get("NAME")
@@ -228,10 +228,10 @@ def _numbers(part: str, sets: dict[str, list[int]]) -> list[int]:
         return [int(part)]
     if not part:
         return []
-    known = {name.upper(): members for name, members in sets.items()}
-    if part.upper() not in known:
+    by_name = {name.upper(): members for name, members in sets.items()}
+    if part.upper() not in by_name:
         raise GeometryError(f"the file names a set {part!r} that is not in it")
-    return known[part.upper()]
+    return by_name[part.upper()]
 
 
 def _content(deck: _Deck, path: Path) -> MeshContent:
@@ -278,7 +278,7 @@ def _shell_corners(nodes: list[int], place: dict[int, int]) -> list[int]:
 def _face_corners(
     deck: _Deck, part: str, label: str, where: dict[int, tuple[str, int]], place: dict[int, int], name: str
 ) -> Iterator[list[int]]:
-    """Corners of face S1, S2, ... of an element or of those of a set."""
+    """Corners of face S1, S2, ... of an element or of the elements of a set."""
     for number in _numbers(part, deck.element_sets):
         if number in deck.shells:
             yield _shell_corners(deck.shells[number], place)
@@ -322,10 +322,10 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
         for name, facets in mesh.surfaces.items():
             file.write(f"*SURFACE, TYPE=ELEMENT, NAME={_quoted(name)}\n")
             for block in facets:
-                found = find_faces(mesh, corner_rows(block))
-                if (found < 0).any():
+                faces = find_faces(mesh, corner_rows(block))
+                if (faces < 0).any():
                     raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
-                for number, place in zip(mesh.faces.element[found] + 1, mesh.faces.source[found], strict=True):
+                for number, place in zip(mesh.faces.element[faces] + 1, mesh.faces.source[faces], strict=True):
                     file.write(f"{number}, {_label(mesh.blocks[place[0]], int(place[2]))}\n")
 
 
@@ -336,7 +336,7 @@ def _quoted(name: str) -> str:
 
 
 def _label(block: ElementBlock, face: int) -> str:
-    """Label S1, S2, ... of a face by its number here."""
+    """Label S1, S2, ... of a face, by its number in the element kind."""
     corners = {corner + 1 for corner in block.of.corner_faces[face]}
     labels = [{int(corner) for corner in label} for label in FACE_LABELS[block.of.corners]]
     return f"S{labels.index(corners) + 1}"

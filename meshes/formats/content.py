@@ -18,7 +18,7 @@ class MeshContent:
     Attributes
     ----------
     points : ndarray, shape (n_points, 3)
-        In the file's unit of length; nodes that no element uses may be among them.
+        Points in the file's unit of length; nodes that no element uses may be among them.
     solids : tuple of ElementBlock
         Elements may be numbered left-handed.
     volumes : mapping of str to ndarray of int
@@ -63,13 +63,13 @@ class MeshContent:
             if facets := pick_facets(bare.boundary, np.concatenate(chosen)):
                 surfaces[name] = facets
         for name, corners in self.facets.items():
-            found = find_faces(bare, renumbered[corners])
-            if (found >= 0).all() and len(found):
-                surfaces[name] = faces_as_facets(bare.blocks, bare.faces, found)
-            elif (found >= 0).any():
-                x, y, z = self.points[corners[np.argmin(found)][:3]].mean(axis=0) * unit
+            faces = find_faces(bare, renumbered[corners])
+            if (faces >= 0).all() and len(faces):
+                surfaces[name] = faces_as_facets(bare.blocks, bare.faces, faces)
+            elif (faces >= 0).any():
+                x, y, z = self.points[corners[np.argmin(faces)][:3]].mean(axis=0) * unit
                 raise GeometryError(
-                    f"{np.count_nonzero(found < 0)} of the {len(found)} facets of surface {name!r} are no faces of "
+                    f"{np.count_nonzero(faces < 0)} of the {len(faces)} facets of surface {name!r} are no faces of "
                     f"solid elements, the first at ({x:.6g}, {y:.6g}, {z:.6g}) m; the others are"
                 )
         return Mesh(points, blocks, surfaces, bare.volumes)
@@ -90,14 +90,14 @@ def find_faces(mesh: Mesh, corners: IntArray) -> IntArray:
     ----------
     mesh : Mesh
     corners : ndarray of int, shape (n, 4)
-        In any order of turn; the fourth is -1 in triangles. A face shared by two elements is that of the first.
+        Corners in any order of turn; the fourth is -1 in triangles. A face shared by two elements is that of the first.
     """
     table = mesh.faces
     numbers = group_rows(np.sort(np.concatenate([table.corners, corners]), axis=1))
-    known, asked = numbers[: len(table.corners)], numbers[len(table.corners) :]
+    listed, wanted = numbers[: len(table.corners)], numbers[len(table.corners) :]
     first = np.full(numbers.max() + 1, -1, dtype=np.int64)
-    first[known[::-1]] = np.arange(len(known))[::-1]
-    return np.asarray(first[asked])
+    first[listed[::-1]] = np.arange(len(listed))[::-1]
+    return np.asarray(first[wanted])
 
 
 def corner_rows(block: ElementBlock) -> IntArray:

@@ -39,7 +39,7 @@ def framed_deck(text: str) -> str:
 
 @contextmanager
 def framed_file(path: Path) -> Iterator[Path]:
-    """Write a temporary copy of a deck in this form; files of other formats are given as they are."""
+    """Write a temporary copy of a deck in this form; files of other formats stay as they are."""
     if path.suffix.lower() not in ENDINGS:
         yield path
         return
@@ -131,7 +131,7 @@ def _write(mesh: Mesh, path: Path) -> None:
         write_abaqus(mesh, path)
         return
     meshio = load_meshio()
-    # Version 2.2 of gmsh's format is the one that every reader knows.
+    # Every reader knows version 2.2 of gmsh's format.
     format_name = "gmsh22" if path.suffix == ".msh" else None
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
         meshio.write(path, meshio_from_mesh(mesh, path.suffix), file_format=format_name)
@@ -149,10 +149,10 @@ def _through_meshio(path: Path) -> MeshContent:
     return content_from_meshio(content, path)
 
 
-def _check_ending(path: Path, known: Mapping[str, list[str]]) -> None:
+def _check_ending(path: Path, endings_known: Mapping[str, list[str]]) -> None:
     """Refuse a file whose ending has no reader."""
     endings = ["".join(path.suffixes[first:]).lower() for first in range(len(path.suffixes))]
-    if not any(ending in known for ending in endings):
+    if not any(ending in endings_known for ending in endings):
         raise GeometryError(
             f"mesh file {path}: no format of meshes has the ending {path.suffix!r}; "
             f"such as {' '.join(WRITABLE)} .bdf .nas .e do"

@@ -44,14 +44,14 @@ def content_from_meshio(content: Any, path: Path) -> MeshContent:
     GeometryError
         Where there are no solid elements, or elements of an unknown type.
     """
-    found = sorted({block.type for block in content.cells})
+    types = sorted({block.type for block in content.cells})
     others = sorted({block.type for block in content.cells if block.dim == 3} - set(SOLIDS))
     if others:
         raise GeometryError(
             f"mesh file {path} holds {', '.join(others)} elements, which are not known here; known: {', '.join(SOLIDS)}"
         )
-    if not set(found) & set(SOLIDS):
-        have = ", ".join(found) or "nothing"
+    if not set(types) & set(SOLIDS):
+        have = ", ".join(types) or "nothing"
         raise GeometryError(f"mesh file {path} holds no solid elements of {', '.join(SOLIDS)}; it holds: {have}")
     solids: list[ElementBlock] = []
     volumes: dict[str, list[IntArray]] = {}
@@ -84,7 +84,7 @@ def content_from_meshio(content: Any, path: Path) -> MeshContent:
 def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
     """Named groups of one block, as (name, members).
 
-    Of gmsh's format 4 meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
+    For gmsh's format 4, meshio gives the groups twice, as sets and as tags, and the tags name one group only of an
     element that is in several: the union of both is the file's content.
     """
     groups: dict[str, IntArray] = {}
@@ -137,8 +137,8 @@ def _tagged(content: Any, key: str, word: str, number: int, dimension: int) -> I
         if tag == 0:
             continue
         name = by_tag.get((int(tag), dimension), f"{word}-{int(tag)}")
-        for each in families.get(tag, [name]):
-            yield each, np.flatnonzero(tags == tag)
+        for family in families.get(tag, [name]):
+            yield family, np.flatnonzero(tags == tag)
 
 
 def _node_sets(content: Any) -> Iterator[tuple[str, IntArray]]:
@@ -150,7 +150,7 @@ def _node_sets(content: Any) -> Iterator[tuple[str, IntArray]]:
             yield name, np.flatnonzero(np.asarray(tags) == tag)
 
 
-_NAME_LENGTH = 80  # of a group in MED
+_NAME_LENGTH = 80  # characters of a group's name in MED
 _LOST = {".med": ("hexahedron27",)}
 
 
@@ -214,10 +214,10 @@ def _face_flags(mesh: Mesh, name: str) -> IntArray:
     """Bits of the faces of each element that are in a surface: meshio reads no facets beside solids of order 2."""
     flags = np.zeros(mesh.n_elements, dtype=np.int64)
     for block in mesh.surfaces[name]:
-        found = find_faces(mesh, corner_rows(block))
-        if (found < 0).any():
+        faces = find_faces(mesh, corner_rows(block))
+        if (faces < 0).any():
             raise GeometryError(f"surface {name!r} has facets that are no faces of elements")
-        np.bitwise_or.at(flags, mesh.faces.element[found], 1 << mesh.faces.source[found, 2])
+        np.bitwise_or.at(flags, mesh.faces.element[faces], 1 << mesh.faces.source[faces, 2])
     return flags
 
 

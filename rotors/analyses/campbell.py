@@ -43,20 +43,20 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 BoolArray = npt.NDArray[np.bool_]
 
-# A jump by this part of the eigenvalue weighs as much as no likeness at all; no jump weighs more than so many of these.
+# Relative jump of an eigenvalue that costs as much as zero likeness, and the largest cost of a jump in such jumps.
 JUMP_SCALE = 0.1
 MOST_JUMPS = 100.0
-# A branch that would have to jump further than this part of its frequency has ended.
+# Relative jump of a frequency beyond which a branch ends.
 LONGEST_JUMP = 0.5
-# Damped sets are proved at this many speeds, spread over the range.
+# Number of speeds, spread over the range, at which damped sets are proved.
 PROOFS = 3
-# Branches are followed this far beyond the limit at every speed.
+# Factor on the limit up to which branches are followed at every speed.
 WINDOW = 1.1
-# Narrower gaps between starting values may vanish between the roots.
+# Least relative gap between starting values; narrower gaps may vanish between the roots.
 WIDE_GAP = 1e-3
-# With whirl direction and axial share in place of the shape.
+# A branch point with whirl direction and axial share in place of the shape.
 Point = BranchPoint[tuple[float, float]]
-# A root further from its starting value than this part of it belongs to another branch.
+# Largest relative distance of a root from its starting value on the same branch.
 CROSSING_JUMP = 0.1
 CROSSING_STEPS = 30
 CROSSING_TOLERANCE = 1e-11
@@ -68,8 +68,10 @@ class Branch:
 
     Attributes
     ----------
-    eigenvalues, direction, axial_share
-        (s,): rad/s, and as in `rotors.WhirlModes`.
+    eigenvalues : ndarray of complex, shape (s,)
+        Eigenvalues [rad/s].
+    direction, axial_share : ndarray, shape (s,)
+        Directions and shares as in `rotors.WhirlModes`.
     """
 
     eigenvalues: ComplexArray
@@ -78,7 +80,7 @@ class Branch:
 
     @property
     def first_frequency(self) -> float:
-        """|λ| where the branch begins, rad/s."""
+        """|λ| where the branch begins [rad/s]."""
         return float(np.abs(self.eigenvalues[np.isfinite(self.eigenvalues)][0]))
 
 
@@ -89,20 +91,20 @@ def followed(equations: WhirlEquations, roots: Sequence[ExactRoots], speeds: Flo
     criterion of the nodes' displacements.
     """
     inside = equations.layout.displacements.ravel()
-    shapes = [one.solutions[:, inside] for one in roots]
-    shapes = [one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300) for one in shapes]
+    shapes = [root_set.solutions[:, inside] for root_set in roots]
+    shapes = [root_set / np.maximum(np.linalg.norm(root_set, axis=1, keepdims=True), 1e-300) for root_set in shapes]
     table = np.zeros((0, 0), dtype=np.intp)
-    for k, one in enumerate(roots):
+    for k, root_set in enumerate(roots):
         partner = np.zeros(0, dtype=np.intp)
         if k:
             expected = _continued(roots[max(k - 2, 0) : k], table, speeds[max(k - 2, 0) : k + 1])
-            jump = np.abs(expected[:, None] - one.eigenvalues) / np.abs(one.eigenvalues)
+            jump = np.abs(expected[:, None] - root_set.eigenvalues) / np.abs(root_set.eigenvalues)
             likeness = np.abs(shapes[k - 1].conj() @ shapes[k].T) ** 2
             partner = paired_modes(
                 jump, likeness, jump_scale=JUMP_SCALE, most_jumps=MOST_JUMPS, longest_jump=LONGEST_JUMP
             )
-        table = extended_branches(table, partner, one.eigenvalues.size)
-    values = along_branches(table, [one.eigenvalues for one in roots], complex(np.nan, np.nan))
+        table = extended_branches(table, partner, root_set.eigenvalues.size)
+    values = along_branches(table, [root_set.eigenvalues for root_set in roots], complex(np.nan, np.nan))
     ways = along_branches(table, _characters_of_all(equations, roots, speeds), np.nan)
     return [
         Branch(eigenvalues, direction, axial_share)
@@ -133,7 +135,7 @@ def _characters_of_all(equations: WhirlEquations, roots: Sequence[ExactRoots], s
 def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray) -> ComplexArray:
     """Linear continuation of the last speed's roots to the next speed, along the branches of a table, (w,).
 
-    ``roots`` are those of the last two speeds, or of the first alone; ``speeds`` are theirs and the next.
+    ``roots`` are the roots of the last two speeds, or of the first speed; ``speeds`` are their speeds and the next one.
     """
     expected = roots[-1].eigenvalues.copy()
     if len(roots) > 1:
@@ -145,7 +147,7 @@ def _continued(roots: Sequence[ExactRoots], table: IntArray, speeds: FloatArray)
 
 
 def limits_behind(starts: Sequence[ComplexArray], frequency_limit: float | None, count: int | None) -> FloatArray:
-    """At every speed a frequency in a gap above the wanted branches, (s,)."""
+    """Limit at every speed, (s,): a frequency in a gap above the wanted branches."""
     sizes = np.sort(np.abs(np.concatenate(starts, axis=1)), axis=1)
     if count is None:
         assert frequency_limit is not None
@@ -178,11 +180,11 @@ def roots_at_speeds(
         if near[k]:
             roots.append(refine_roots(equation_sets[k], row, constant_speed(float(speeds[k]))))
         else:
-            own = batch.take(batch_owner == k)
-            good = own.residuals <= ACCEPTED
+            roots_here = batch.take(batch_owner == k)
+            good = roots_here.residuals <= ACCEPTED
             if not good.all():
-                own = refine_roots(equation_sets[k], own.eigenvalues, constant_speed(float(speeds[k])))
-            roots.append(distinct(own))
+                roots_here = refine_roots(equation_sets[k], roots_here.eigenvalues, constant_speed(float(speeds[k])))
+            roots.append(distinct(roots_here))
     return roots
 
 
@@ -199,11 +201,11 @@ def proved_at(
     if undriven:
         chosen = np.arange(speeds.size)
         expected = _expected(equation_sets, speeds, least, limits)
-        found = [
+        counts = [
             int(oscillating(least, float(limit)).holds(one.eigenvalues).sum())
             for one, limit in zip(roots, limits, strict=True)
         ]
-        doubtful = np.flatnonzero(expected != np.array(found))
+        doubtful = np.flatnonzero(expected != np.array(counts))
     else:
         chosen = np.arange(speeds.size) if prove_all else np.linspace(0, speeds.size - 1, PROOFS).round().astype(int)
         doubtful = np.unique(chosen)
@@ -238,18 +240,18 @@ class Crossing:
 
     Attributes
     ----------
-    speed
-        Ω, rad/s.
-    eigenvalue
-        λ there, with Im λ = order · Ω; exact.
-    order
-        The multiple.
-    direction
-        Of the whirl, as in `rotors.WhirlModes`.
-    branch
+    speed : float
+        Speed of rotation Ω [rad/s].
+    eigenvalue : complex
+        Exact eigenvalue λ with Im λ = order · Ω [rad/s].
+    order : float
+        Multiple of the speed.
+    direction : float
+        Whirl direction, as in `rotors.WhirlModes`.
+    branch : int
         Index in the diagram.
-    axial_share
-        Of the motion, as in `rotors.WhirlModes`.
+    axial_share : float
+        Axial share of the motion, as in `rotors.WhirlModes`.
     """
 
     speed: float
@@ -270,29 +272,29 @@ def stability_onset(speeds: FloatArray, damping_ratios: FloatArray) -> tuple[flo
 
     Parameters
     ----------
-    speeds
-        (s,): ascending in size, rad/s.
-    damping_ratios
-        (s, m): of the branches, taken as linear between two speeds; NaN where a branch is not.
+    speeds : ndarray, shape (s,)
+        Speeds, ascending in size [rad/s].
+    damping_ratios : ndarray, shape (s, m)
+        Damping ratios of the branches, taken as linear between two speeds; NaN where a branch does not exist.
 
     Returns
     -------
     (float, int) or None
         None where all are stable.
     """
-    found: list[tuple[float, int]] = []
+    onsets: list[tuple[float, int]] = []
     for branch, ratios in enumerate(damping_ratios.T):
         unstable = np.flatnonzero(np.nan_to_num(ratios) < -NEUTRAL)
         if not unstable.size:
             continue
         first = int(unstable[0])
         if first == 0 or np.isnan(ratios[first - 1]):
-            found.append((float(speeds[first]), branch))
+            onsets.append((float(speeds[first]), branch))
             continue
         before, after = max(float(ratios[first - 1]), 0.0), float(ratios[first])
         step = float(speeds[first] - speeds[first - 1])
-        found.append((float(speeds[first - 1]) + step * before / (before - after), branch))
-    return min(found, default=None)
+        onsets.append((float(speeds[first - 1]) + step * before / (before - after), branch))
+    return min(onsets, default=None)
 
 
 @dataclass(frozen=True)
@@ -301,16 +303,16 @@ class Campbell(ComplexFrequencies):
 
     Attributes
     ----------
-    speeds
-        (s,): Ω, rad/s.
-    eigenvalues
-        (s, m) complex, rad/s.
-    direction
-        (s, m), as in `rotors.WhirlModes`.
-    axial_share
-        (s, m), as in `rotors.WhirlModes`.
-    proved
-        (s,): speeds at which the number of roots was proved.
+    speeds : ndarray, shape (s,)
+        Speeds of rotation Ω [rad/s].
+    eigenvalues : ndarray of complex, shape (s, m)
+        Eigenvalues [rad/s].
+    direction : ndarray, shape (s, m)
+        Directions as in `rotors.WhirlModes`.
+    axial_share : ndarray, shape (s, m)
+        Axial shares as in `rotors.WhirlModes`.
+    proved : ndarray of bool, shape (s,)
+        Speeds at which the number of roots was proved.
     """
 
     speeds: FloatArray
@@ -323,7 +325,7 @@ class Campbell(ComplexFrequencies):
 
     @property
     def unstable_from(self) -> float | None:
-        """Lowest speed of the diagram, without its sense, at which a mode grows, rad/s; None where none does.
+        """Lowest speed of the diagram, without its sense, at which a mode grows [rad/s]; None where none does.
 
         The onset between two speeds is :func:`stability_onset`.
         """
@@ -341,8 +343,8 @@ class Campbell(ComplexFrequencies):
         """
         require_finite("order", order, positive=True)
         intervals = order_intervals(self.damped_frequencies, order, self.speeds)
-        found = [self._crossing(branch, left, order) for left, branch in intervals]
-        return tuple(sorted(found, key=lambda crossing: (abs(crossing.speed), crossing.branch)))
+        crossings = [self._crossing(branch, left, order) for left, branch in intervals]
+        return tuple(sorted(crossings, key=lambda crossing: (abs(crossing.speed), crossing.branch)))
 
     def _crossing(self, branch: int, left: int, order: float) -> Crossing:
         """Find the crossing between two neighbouring speeds, every λ on the way refined on the exact equations."""
@@ -364,13 +366,13 @@ class Campbell(ComplexFrequencies):
             BranchPoint(speed, complex(value), float(value.imag - order * abs(speed)), (np.nan, np.nan))
             for speed, value in zip(speeds, ends, strict=True)
         ]
-        found = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
-        if found is None:
+        crossing = refined_crossing(points[0], points[1], solve, tolerance=CROSSING_TOLERANCE, steps=CROSSING_STEPS)
+        if crossing is None:
             raise IncompleteModesError(
                 f"the crossing of order {order:g} between {speeds[0]:g} and {speeds[1]:g} rad/s does "
                 "not settle; ask for more speeds about there"
             )
-        return Crossing(found.speed, found.eigenvalue, order, found.shape[0], branch, found.shape[1])
+        return Crossing(crossing.speed, crossing.eigenvalue, order, crossing.shape[0], branch, crossing.shape[1])
 
     def _equations(self, branch: int, highest: float, speed: float) -> WhirlEquations:
         sets = self.blocks[branch]
@@ -392,17 +394,17 @@ def campbell(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at each speed.
-    speeds
-        (s,): Ω, rad/s, ascending.
-    frequency_limit
-        rad/s: branches below it at some speed.
-    count
+    speeds : array_like, shape (s,)
+        Speeds of rotation Ω, ascending [rad/s].
+    frequency_limit : float, optional
+        Frequency below which a branch lies at some speed [rad/s].
+    count : int, optional
         Number of branches, the lowest at every speed, instead of a limit; with neither, 12.
-    prove_all
+    prove_all : bool
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
-    solver
+    solver : WhirlSolver, optional
         A `rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
 
     Raises
@@ -424,13 +426,15 @@ def campbell(
     wanted = None if frequency_limit is not None else count or DEFAULT_COUNT
     starts = []
     for blocks in sets:
-        one = ModalProjection.of(rotor, at_speeds[0], blocks, chosen)
+        projection = ModalProjection.of(rotor, at_speeds[0], blocks, chosen)
         if tabled:
-            rows = [one.pencil(b).eigenvalues(turning[k : k + 1]) for k, b in enumerate(at_speeds)]
+            rows = [projection.pencil(b).eigenvalues(turning[k : k + 1]) for k, b in enumerate(at_speeds)]
             values = np.concatenate(rows)
         else:
-            values = one.pencil(at_speeds[0]).eigenvalues(turning)
-        oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (np.abs(values) > NO_OSCILLATION * one.floor)
+            values = projection.pencil(at_speeds[0]).eigenvalues(turning)
+        oscillates = (values.imag > NO_OSCILLATION * np.abs(values)) & (
+            np.abs(values) > NO_OSCILLATION * projection.floor
+        )
         starts.append(np.where(oscillates, values, np.nan))
     limits = limits_behind(starts, frequency_limit, wanted)
     least = NO_OSCILLATION * chosen.floor
@@ -464,7 +468,7 @@ def campbell(
 
 
 def _inside(bearing: Bearing, speed: float) -> float:
-    """Clip a speed (rad/s) to the range of a bearing's tables."""
+    """Clip a speed [rad/s] to the range of a bearing's tables."""
     if bearing.speeds is None:
         return speed
     return float(np.clip(abs(speed), bearing.speeds[0], bearing.speeds[-1]))

@@ -24,7 +24,7 @@ from rotors.whirl.modal_projection import ModalProjection
 from rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
 from rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
 
-# Speeds at which tables are looked at for critical ones, and how far beyond them branches are followed.
+# Number of speeds at which bearing tables are searched, and the factor beyond them up to which branches are followed.
 TABLE_SPEEDS = 60
 TABLE_REACH = 1.2
 
@@ -37,13 +37,13 @@ class CriticalSpeeds:
 
     Attributes
     ----------
-    speeds
-        (c,): ascending, rad/s.
-    direction
-        (c,): 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
-    axial_share
-        (c,): part of the kinetic energy along the axis, as in `rotors.WhirlModes`.
-    certificate
+    speeds : ndarray, shape (c,)
+        Critical speeds, ascending [rad/s].
+    direction : ndarray, shape (c,)
+        Whirl direction: 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+    axial_share : ndarray, shape (c,)
+        Part of the kinetic energy along the axis, as in `rotors.WhirlModes`.
+    certificate : ModeCertificate
         Proof that none is missing.
     """
 
@@ -55,9 +55,12 @@ class CriticalSpeeds:
     @property
     def lateral(self) -> "CriticalSpeeds":
         """The critical speeds of lateral motion, without mostly axial ones, which no unbalance drives."""
-        kept = self.axial_share <= MOSTLY_AXIAL
+        is_lateral = self.axial_share <= MOSTLY_AXIAL
         return replace(
-            self, speeds=self.speeds[kept], direction=self.direction[kept], axial_share=self.axial_share[kept]
+            self,
+            speeds=self.speeds[is_lateral],
+            direction=self.direction[is_lateral],
+            axial_share=self.axial_share[is_lateral],
         )
 
     @property
@@ -87,11 +90,11 @@ def critical_speeds(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings.
-    speed_limit
-        rad/s: all critical speeds strictly below.
-    count
+    speed_limit : float, optional
+        Speed strictly below which all critical speeds are found [rad/s].
+    count : int, optional
         Number of critical speeds, instead of a limit; with neither, 12.
 
     Raises
@@ -120,11 +123,11 @@ def _tabled_critical_speeds(
     high = min(high, limit or np.inf)
     require(low < high, "speeds of the bearings' tables", (low, high), "a range of speeds that they share")
     diagram = campbell(rotor, bearings, np.linspace(low, high, TABLE_SPEEDS), frequency_limit=TABLE_REACH * high)
-    found = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
-    speeds = np.array([crossing.speed for crossing in found])
+    crossings = [crossing for crossing in diagram.crossings() if crossing.speed < (limit or np.inf)][:count]
+    speeds = np.array([crossing.speed for crossing in crossings])
     proof = ModeCertificate(high, speeds.size, speeds.size, ACCEPTED, "crossings")
-    direction = np.array([crossing.direction for crossing in found])
-    return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in found]), proof)
+    direction = np.array([crossing.direction for crossing in crossings])
+    return CriticalSpeeds(speeds, direction, np.array([crossing.axial_share for crossing in crossings]), proof)
 
 
 def certified_criticals(
@@ -155,11 +158,11 @@ class CriticalSpeedMap:
 
     Attributes
     ----------
-    stiffnesses
-        (s,): of every bearing, N/m.
-    speeds
-        (s, c): ascending, rad/s; NaN where a disc's polar inertia leaves fewer.
-    direction
+    stiffnesses : ndarray, shape (s,)
+        Stiffness of every bearing [N/m].
+    speeds : ndarray, shape (s, c)
+        Critical speeds, ascending [rad/s]; NaN where a disc's polar inertia leaves fewer.
+    direction : int
         1 of forward whirl, −1 of backward.
     """
 
@@ -176,17 +179,17 @@ def critical_speed_map(
     count: int = DEFAULT_CRITICALS,
     direction: int = 1,
 ) -> CriticalSpeedMap:
-    """Undamped critical speeds with every bearing's stiffness replaced by each of some.
+    """Undamped critical speeds with every bearing's stiffness replaced by each of ``stiffnesses``.
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor, and where its bearings are; a bearing's own stiffness and damping do not matter.
-    stiffnesses
-        (s,): N/m, alike in all directions.
-    count
+    stiffnesses : array_like, shape (s,)
+        Stiffnesses [N/m], alike in all directions.
+    count : int
         Number of critical speeds.
-    direction
+    direction : int
         1 for forward whirl, −1 for backward.
 
     Raises
@@ -205,13 +208,13 @@ def critical_speed_map(
         raise RotorError(f"rotor {rotor.name!r} has no bearings; expected at least one to vary")
     rows = np.full((values.size, count), np.nan)
     for k, stiffness in enumerate(values.tolist()):
-        held = [
+        replaced = [
             replace(b, stiffness=stiffness * np.eye(2), damping=np.zeros((2, 2)), speeds=None, pedestal=None)
             for b in bearings
         ]
-        basis = planar_basis(rotor, held, None, 2 * count)
-        one = ModalProjection.of(rotor, held, (direction,), basis)
-        roots, _ = certified_criticals(rotor, held, [one], None, count)
+        basis = planar_basis(rotor, replaced, None, 2 * count)
+        projection = ModalProjection.of(rotor, replaced, (direction,), basis)
+        roots, _ = certified_criticals(rotor, replaced, [projection], None, count)
         speeds = np.sort(roots.eigenvalues.imag)
         rows[k, : speeds.size] = speeds
     return CriticalSpeedMap(values, rows, direction)

@@ -30,10 +30,10 @@ class Orbit:
 
     Attributes
     ----------
-    major, minor
-        Half axes, m; the minor one is positive where the orbit runs counter-clockwise, negative where clockwise.
-    inclination
-        Of the major axis from x, rad, between −π/2 and π/2.
+    major, minor : ndarray
+        Half axes [m]; the minor one is positive where the orbit runs counter-clockwise, negative where clockwise.
+    inclination : ndarray
+        Angle of the major axis from x, between −π/2 and π/2 [rad].
     """
 
     major: FloatArray
@@ -47,14 +47,14 @@ class HarmonicResponse:
 
     Attributes
     ----------
-    frequencies, speeds
-        (b,): ω and the speed of rotation Ω, rad/s.
-    motion
+    frequencies, speeds : ndarray, shape (b,)
+        Frequencies ω and speeds of rotation Ω [rad/s].
+    motion : ShaftMotion
         The shaft's exact motion.
-    bearings
-        Their names.
-    bearing_forces
-        (b, bearings, 5) complex: on what carries each bearing, over x, y, z (N) and about x and about y (N·m).
+    bearings : tuple of str
+        Names of the bearings.
+    bearing_forces : ndarray of complex, shape (b, bearings, 5)
+        Force on the carrier of each bearing, over x, y, z [N] and about x and y [N·m].
     """
 
     frequencies: FloatArray
@@ -64,16 +64,16 @@ class HarmonicResponse:
     bearing_forces: ComplexArray = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex x and y at positions z (m), both (b, len(z)), m."""
+        """Complex x and y at positions z [m], both (b, len(z)) [m]."""
         return self.motion.evaluate(z)
 
     def probe(self, z: float, angle: float) -> ComplexArray:
-        """Complex amplitude along a direction at ``angle`` (rad) from x, (b,), m: abs is it, −angle its phase lag."""
+        """Complex amplitude along a direction at ``angle`` [rad] from x, (b,) [m]: abs is it, −angle its phase lag."""
         x, y = self.motion.evaluate([z])
         return np.asarray(x[:, 0] * np.cos(angle) + y[:, 0] * np.sin(angle))
 
     def orbit(self, z: npt.ArrayLike) -> Orbit:
-        """Orbits at positions z (m), axes (b, len(z))."""
+        """Orbits at positions z [m], axes (b, len(z))."""
         x, y = self.motion.evaluate(z)
         return orbit_of(x, y, self.frequencies[:, None])
 
@@ -100,14 +100,14 @@ def harmonic_response(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at ``speed``.
-    forces
-        Their places and complex amplitudes.
-    frequencies
-        (b,): ω, rad/s.
-    speed
-        Ω, rad/s.
+    forces : sequence of HarmonicForce
+        Forces with their places and complex amplitudes.
+    frequencies : array_like, shape (b,)
+        Frequencies ω [rad/s].
+    speed : float
+        Speed of rotation Ω [rad/s].
 
     Raises
     ------
@@ -133,14 +133,17 @@ def frequency_response(
 
     Parameters
     ----------
-    loaded, read
+    loaded, read : sequence of (float, str)
         Place in m and direction, "x" or "y".
-    frequencies, speed
-        ω (b,) and Ω, rad/s.
+    frequencies : array_like, shape (b,)
+        Frequencies ω [rad/s].
+    speed : float
+        Speed of rotation Ω [rad/s].
 
     Returns
     -------
-    (b, read, loaded) complex, m/N.
+    ndarray of complex, shape (b, read, loaded)
+        Receptances [m/N].
 
     Raises
     ------
@@ -208,14 +211,14 @@ def bearing_forces(equations: WhirlEquations, solutions: ComplexArray, scale: Fl
     for index, (node_bearing, places) in enumerate(
         zip(equations.node_bearings, equations.layout.bearings, strict=True)
     ):
-        own = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
-        own[:, list(node_bearing.directions)] = solutions[:, places.forces] * scale[:, None]
+        force = np.zeros((solutions.shape[0], 5), dtype=np.complex128)
+        force[:, list(node_bearing.directions)] = solutions[:, places.forces] * scale[:, None]
         if node_bearing.circular:
             # The change of coordinates is unitary: its inverse is its adjoint.
-            own = (own / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
+            force = (force / np.array([length, angle, length, angle, length])) @ CIRCULAR.conj()
         else:
-            own = own / np.array([length, length, length, angle, angle])
-        forces[:, index] = own
+            force = force / np.array([length, length, length, angle, angle])
+        forces[:, index] = force
     return forces
 
 
@@ -229,10 +232,10 @@ def _sides(equations: WhirlEquations, places: Sequence[float], loads: Loads) -> 
     return sides
 
 
-def finite_values(what: str, values: npt.ArrayLike) -> FloatArray:
-    """Return one or more finite values as a vector; ``what`` names them in the message of the error."""
+def finite_values(label: str, values: npt.ArrayLike) -> FloatArray:
+    """Return one or more finite values as a vector; ``label`` names them in the message of the error."""
     array = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    require(array.ndim == 1 and array.size > 0, f"{what} shape", array.shape, "one dimension and at least one value")
+    require(array.ndim == 1 and array.size > 0, f"{label} shape", array.shape, "one dimension and at least one value")
     for value in array.tolist():
-        require_finite(what, value)
+        require_finite(label, value)
     return array

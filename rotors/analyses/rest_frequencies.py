@@ -21,7 +21,7 @@ from rotors.whirl.whirl_modes import solve_whirl
 
 FloatArray = npt.NDArray[np.float64]
 
-# Bisections after which roots of both planes that are not separated count as one.
+# Number of bisections after which roots of both planes that are not separated count as one.
 MOST_HALVINGS = 50
 
 
@@ -31,12 +31,12 @@ class RestFrequencies:
 
     Attributes
     ----------
-    frequencies
-        (m,): ascending, rad/s; an isotropic root stands twice.
-    axial_share
-        (m,): share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple
-        axial and lateral motion.
-    certificate
+    frequencies : ndarray, shape (m,)
+        Natural frequencies, ascending [rad/s]; an isotropic root stands twice.
+    axial_share : ndarray, shape (m,)
+        Share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple axial
+        and lateral motion.
+    certificate : ModeCertificate
         Proof of completeness over both planes, and over axial motion where it is coupled to them.
     """
 
@@ -59,11 +59,11 @@ def rest_frequencies(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings, none for a free rotor. Tables over speed are read at their lowest speed.
-    frequency_limit
-        rad/s: all frequencies strictly below.
-    count
+    frequency_limit : float, optional
+        Limit strictly below which all frequencies are found [rad/s].
+    count : int, optional
         Number of frequencies over both planes, instead of a limit; with neither, 12. Multiple roots stay whole.
 
     Raises
@@ -71,16 +71,16 @@ def rest_frequencies(
     RotorError, IncompleteModesError
         As `rotors.solve_lateral_modes`.
     """
-    held = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
-    if not all(_is_planar(bearing) for bearing in held):
-        modes = solve_whirl(rotor, held, 0.0, frequency_limit=frequency_limit, count=count)
+    undamped_bearings = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
+    if not all(_is_planar(bearing) for bearing in undamped_bearings):
+        modes = solve_whirl(rotor, undamped_bearings, 0.0, frequency_limit=frequency_limit, count=count)
         return RestFrequencies(modes.damped_frequencies, modes.axial_share, modes.certificate)
 
     wanted = count
     if frequency_limit is None and count is None:
         wanted = DEFAULT_COUNT
     require_count("count of frequencies", wanted)
-    planes = [tuple(bearing.plane_support(direction) for bearing in held) for direction in (0, 1)]
+    planes = [tuple(bearing.plane_support(direction) for bearing in undamped_bearings) for direction in (0, 1)]
     for supports in planes:
         require_unbuckled(rotor, supports)
     continuous_shafts = bending_shafts(rotor, planes)
@@ -93,26 +93,26 @@ def rest_frequencies(
             discretise_together(continuous_shafts[:1] if alike else continuous_shafts, frequency_limit),
         )
         expected = wittrick_williams_counts(shafts, limit)
-        found = [
+        by_plane = [
             lowest_natural_frequencies(shaft, number, limit) for shaft, number in zip(shafts, expected, strict=True)
         ]
     else:
         shafts, shares = _shares(continuous_shafts, wanted or DEFAULT_COUNT)
         if alike:
             shafts, shares = shafts[:1], shares[:1]
-        found = [
+        by_plane = [
             lowest_natural_frequencies(shaft, share, shaft.highest) for shaft, share in zip(shafts, shares, strict=True)
         ]
-        both = np.sort(np.concatenate(found * 2 if alike else found))
+        both = np.sort(np.concatenate(by_plane * 2 if alike else by_plane))
         if count is not None:
             most = f"at most {both.size}, all this lumped rotor has"
             require(count <= both.size, "count of frequencies", count, most)
         limit = limit_above(float(both[min(wanted or DEFAULT_COUNT, both.size) - 1]), shafts[0])
         expected = wittrick_williams_counts(shafts, limit)
-        found = [one[:number] for one, number in zip(found, expected, strict=True)]
+        by_plane = [one[:number] for one, number in zip(by_plane, expected, strict=True)]
     solved = [
         proved_modes(shaft, frequencies, number, limit)
-        for shaft, frequencies, number in zip(shafts, found, expected, strict=True)
+        for shaft, frequencies, number in zip(shafts, by_plane, expected, strict=True)
         if number
     ]
     if alike:

@@ -42,13 +42,13 @@ from rotors.transfer_matrix.timoshenko import ShaftElements
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-# Of each motion, in the order of `StaticShaft.motions`: the node's displacements and their signs. The slope in x is the
+# Node displacements of each motion, in the order of `StaticShaft.motions`, and their signs. The slope in x is the
 # rotation about y, the slope in y minus that about x.
 _DISPLACEMENTS = ([0, 4], [1, 3], [2], [5])
 _SIGNS = ([1.0, 1.0], [1.0, -1.0], [1.0], [1.0])
 # Rows of a profile's coefficients that hold ρA, of the beam and of the rod.
 _MASS_ROWS = [2, 9]
-# Asymmetry of a stiffness, as a part of its largest entry, above which it is not rounding.
+# Asymmetry of a stiffness over its largest entry above which it is not rounding.
 _ASYMMETRY = 1e-9
 
 
@@ -56,16 +56,16 @@ _ASYMMETRY = 1e-9
 class StaticShaft:
     """Exact static stiffness of a free shaft between N nodes.
 
-    The six displacements of a node are those along x, y, z (m) and the rotations about x, y, z (rad), right-handed,
-    with z along the shaft. Loads on nodes are forces (N) and moments (N·m) in the same order.
+    The six displacements of a node are those along x, y, z [m] and the rotations about x, y, z [rad], right-handed,
+    with z along the shaft. Loads on nodes are forces [N] and moments [N·m] in the same order.
 
     Attributes
     ----------
-    places
-        (N,): positions of the nodes, ascending, m from the left end.
-    stiffness
-        (6N, 6N): symmetric. Without axial forces it is positive semidefinite, and its null space are the six rigid
-        motions; an axial force of a segment does work on a tilt.
+    places : ndarray, shape (N,)
+        Positions of the nodes, ascending from the left end [m].
+    stiffness : ndarray, shape (6N, 6N)
+        Static stiffness, symmetric. Without axial forces it is positive semidefinite, with the six rigid motions as
+        null space; an axial force of a segment does work on a tilt.
     """
 
     places: FloatArray
@@ -74,24 +74,24 @@ class StaticShaft:
 
     @property
     def length(self) -> float:
-        """Length of the shaft, m."""
+        """Length of the shaft [m]."""
         return float(self._motions[0].nodes[-1])
 
     def node(self, at: float) -> int:
-        """Index of the node at a position (m); raises `RotorError` where there is none."""
+        """Index of the node at a position [m]; raises `RotorError` where there is none."""
         index = station_index(self.places, at)
         slack = 2.0 * STATION_TOLERANCE * self.length
         require(abs(self.places[index] - at) <= slack, "node position", at, f"one of {self.places.tolist()} m")
         return index
 
     def weight(self, gravity: Sequence[float]) -> FloatArray:
-        """Nodal loads (6N,) of the weight of shaft, couplings and discs under an acceleration (3,) over x, y, z, m/s².
+        """Nodal loads (6N,) of the weight of shaft, couplings and discs under an acceleration (3,) over x, y, z [m/s²].
 
         They are consistent: nodal displacements under them are those of the distributed weight.
         """
         loads = np.zeros((self.places.size, 6))
-        for motion, own, sign, pull in zip(self._motions, _DISPLACEMENTS, _SIGNS, _pulls(gravity), strict=True):
-            loads[:, own] = pull * motion.load * sign
+        for motion, components, sign, pull in zip(self._motions, _DISPLACEMENTS, _SIGNS, _pulls(gravity), strict=True):
+            loads[:, components] = pull * motion.load * sign
         return loads.ravel()
 
     def motions(self, displacement: FloatArray, z: npt.ArrayLike, gravity: Sequence[float] | None = None) -> FloatArray:
@@ -99,17 +99,17 @@ class StaticShaft:
 
         Parameters
         ----------
-        displacement
-            (..., 6N): of the nodes; of the identity, the motions are the shape functions of all nodes.
-        z
-            (m,): positions, m from the left end.
-        gravity
-            (3,): acceleration over x, y, z, m/s², under which the displacements are; without it, no weight acts.
+        displacement : ndarray, shape (..., 6N)
+            Displacements of the nodes [m, rad]; the identity gives the shape functions of all nodes.
+        z : array_like, shape (m,)
+            Positions from the left end [m].
+        gravity : sequence of float, shape (3,), optional
+            Acceleration over x, y, z [m/s²] under which the displacements occur; without it no weight acts.
 
         Returns
         -------
-        (..., 6, m)
-            Along x, y, z (m) and about x, y, z (rad).
+        ndarray, shape (..., 6, m)
+            Motions along x, y, z [m] and about x, y, z [rad].
 
         Raises
         ------
@@ -127,9 +127,9 @@ class StaticShaft:
 
         Returns
         -------
-        (..., 6, m)
-            Shear forces along x and y, axial force (tension positive, without the segments' own ``axial_force``), N;
-            bending moments about x and y and torque about z, N·m.
+        ndarray, shape (..., 6, m)
+            Shear forces along x and y, axial force (tension positive, without the segments' own ``axial_force``) [N];
+            bending moments about x and y and torque about z [N·m].
         """
         return self._states(displacement, z, gravity)[1]
 
@@ -140,10 +140,10 @@ class StaticShaft:
         lead = displacement.shape[:-1]
         nodal = displacement.reshape(*lead, self.places.size, 6)
         moved, forces = np.zeros((*lead, 6, positions.size)), np.zeros((*lead, 6, positions.size))
-        for motion, own, sign, pull in zip(self._motions, _DISPLACEMENTS, _SIGNS, _pulls(gravity), strict=True):
-            states = np.moveaxis(motion.states(nodal[..., own] * sign, pull, positions), -1, -2)
-            moved[..., own, :] = states[..., : len(own), :] * np.array(sign)[:, None]
-            forces[..., own, :] = states[..., len(own) :, :] * np.array(sign)[:, None]
+        for motion, components, sign, pull in zip(self._motions, _DISPLACEMENTS, _SIGNS, _pulls(gravity), strict=True):
+            states = np.moveaxis(motion.states(nodal[..., components] * sign, pull, positions), -1, -2)
+            moved[..., components, :] = states[..., : len(components), :] * np.array(sign)[:, None]
+            forces[..., components, :] = states[..., len(components) :, :] * np.array(sign)[:, None]
         return moved, forces
 
 
@@ -154,10 +154,10 @@ def static_shaft(rotor: Rotor, stations: Sequence[float]) -> StaticShaft:
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft with its couplings and discs.
-    stations
-        Positions of the nodes, m from the left end, in any order; those closer than 1e-9 of the length are one node.
+    stations : sequence of float
+        Positions of the nodes from the left end [m], in any order; those closer than 1e-9 of the length are one node.
         The stiffness of a short span is exact to rounding, but a solution on it for displacements loses digits: between
         nodes a micrometre apart on a shaft of 0.4 m, it keeps nine.
 
@@ -186,16 +186,16 @@ def static_shaft(rotor: Rotor, stations: Sequence[float]) -> StaticShaft:
 
     motions, count = (bending, bending, axial, torsion), station.size
     stiffness = np.zeros((count, 6, count, 6))
-    for motion, own, sign in zip(motions, _DISPLACEMENTS, _SIGNS, strict=True):
-        scale = np.outer(motion.units[: len(own)], motion.units[: len(own)])
-        given, turned = motion.stiffness, motion.stiffness.transpose(1, 0, 3, 2)
-        if not np.abs((given - turned) * scale).max() <= _ASYMMETRY * np.abs(given * scale).max():
+    for motion, components, sign in zip(motions, _DISPLACEMENTS, _SIGNS, strict=True):
+        scale = np.outer(motion.units[: len(components)], motion.units[: len(components)])
+        matrix, transposed = motion.stiffness, motion.stiffness.transpose(1, 0, 3, 2)
+        if not np.abs((matrix - transposed) * scale).max() <= _ASYMMETRY * np.abs(matrix * scale).max():
             raise RotorError(
                 f"{where}: its axial forces leave the static stiffness no digits between two stations; "
                 "expected smaller forces, or more stations"
             )
-        both = 0.5 * (given + turned) * np.outer(sign, sign)
-        stiffness[np.ix_(range(count), own, range(count), own)] = both.transpose(0, 2, 1, 3)
+        both = 0.5 * (matrix + transposed) * np.outer(sign, sign)
+        stiffness[np.ix_(range(count), components, range(count), components)] = both.transpose(0, 2, 1, 3)
     return StaticShaft(nodes[station], stiffness.reshape(6 * count, 6 * count), motions)
 
 
@@ -205,17 +205,23 @@ class _Motion:
 
     Attributes
     ----------
-    nodes
-        (p + 1,): ends of the elements, m.
-    elements, units
-        In scaled units, and the SI values of their displacements and forces, (2n,).
-    span
-        (p,): of each element, its span: 0 is the left overhang, N the right one.
-    starts, spans
-        (p, 2n + 1, 2n + 1), (N + 1, 2n + 1, 2n + 1): maps, in SI, of displacements, forces and the acceleration from
-        the left end of a span to just right of each element's left end, and to the right end of the span.
-    stiffness, load
-        (N, N, n, n) and (N, n), the load per unit acceleration.
+    nodes : ndarray, shape (p + 1,)
+        Ends of the elements [m].
+    elements : ShaftElements
+        Elements in scaled units.
+    units : ndarray, shape (2n,)
+        SI values of a scaled displacement and force of one.
+    span : ndarray of int, shape (p,)
+        Span of each element: 0 is the left overhang, N the right one.
+    starts : ndarray, shape (p, 2n + 1, 2n + 1)
+        Maps, in SI, of displacements, forces and the acceleration from the left end of a span to just right of each
+        element's left end.
+    spans : ndarray, shape (N + 1, 2n + 1, 2n + 1)
+        The same maps to the right end of each span.
+    stiffness : ndarray, shape (N, N, n, n)
+        Stiffness between the stations.
+    load : ndarray, shape (N, n)
+        Load of the stations per unit acceleration.
     """
 
     nodes: FloatArray
@@ -266,9 +272,9 @@ def _motion(nodes: FloatArray, coefficients: FloatArray, node_mass: FloatArray, 
     span = np.searchsorted(station, np.arange(nodes.size - 1), side="right")
     starts, spans = np.empty_like(steps), np.tile(np.eye(2 * n + 1), (station.size + 1, 1, 1))
     spans[0, n, -1] -= carried[0]
-    for element, own in enumerate(span.tolist()):
-        starts[element] = spans[own]
-        spans[own] = steps[element] @ spans[own]
+    for element, span_number in enumerate(span.tolist()):
+        starts[element] = spans[span_number]
+        spans[span_number] = steps[element] @ spans[span_number]
 
     t11, t12, t21, t22, p_u, p_f = _parts(spans)
     inverse, first = _inverse(t12[1:-1]), np.arange(station.size - 1)

@@ -29,15 +29,15 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 STANDARD_GRAVITY = (0.0, -9.80665, 0.0)
-# The imaginary ω² of the derivative: no difference is taken, so that it may be arbitrarily small.
+# Imaginary step of ω² in the derivative: no difference is taken, so that it may be arbitrarily small.
 TINY = 1e-30
-# A rigid motion whose stiffness is below this part of the largest is free.
+# Part of the largest stiffness below which a rigid motion is free.
 NOT_HELD = 1e-12
 
 
 @dataclass(frozen=True)
 class StaticForce:
-    """A constant force (N) and moments (N·m, about x and about y) on the shaft at a place (m)."""
+    """A constant force [N] and moments (N·m, about x and about y) on the shaft at a place [m]."""
 
     at: float
     x: float = 0.0
@@ -49,12 +49,12 @@ class StaticForce:
     def __post_init__(self) -> None:
         """Check that position, forces and moments are finite."""
         require_finite("force position", self.at, minimum=0.0)
-        for what in ("x", "y", "z", "about_x", "about_y"):
-            require_finite(f"force {what}", getattr(self, what))
+        for attribute in ("x", "y", "z", "about_x", "about_y"):
+            require_finite(f"force {attribute}", getattr(self, attribute))
 
     @property
     def circular(self) -> ComplexArray:
-        """Over r+, β+, r−, β− and z."""
+        """Loads over r+, β+, r−, β− and z."""
         return np.asarray(CIRCULAR @ np.array([self.x, self.y, self.z, self.about_x, self.about_y]))
 
 
@@ -64,12 +64,12 @@ class StaticDeflection:
 
     Attributes
     ----------
-    gravity
-        (3,): acceleration over x, y, z, m/s².
-    bearings
-        Their names.
-    bearing_loads
-        (bearings, 5): on what carries each, over x, y, z (N) and about x and about y (N·m).
+    gravity : ndarray, shape (3,)
+        Acceleration over x, y, z [m/s²].
+    bearings : tuple of str
+        Names of the bearings.
+    bearing_loads : ndarray, shape (bearings, 5)
+        Load on the carrier of each bearing, over x, y, z [N] and about x and y [N·m].
     """
 
     gravity: FloatArray
@@ -79,21 +79,21 @@ class StaticDeflection:
     states: tuple[dict[int, ComplexArray], ...] = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> FloatArray:
-        """Displacement over x, y and z at positions z (m), (3, len(z)), m."""
+        """Displacement over x, y and z at positions z [m], (3, len(z)) [m]."""
         return self._read(z, (0, 2, 4), forces=False)[:3]
 
     def slopes(self, z: npt.ArrayLike) -> FloatArray:
-        """Slopes of the section in x and in y at positions z (m), (2, len(z)), rad."""
+        """Slopes of the section in x and in y at positions z [m], (2, len(z)) [rad]."""
         about = self._read(z, (1, 3), forces=False)[3:]
         return np.stack([about[1], -about[0]])
 
     def bending_moments(self, z: npt.ArrayLike) -> FloatArray:
-        """EI β' in the planes of x and of y, right of positions z (m), (2, len(z)), N·m."""
+        """Bending moments EI β' in the planes of x and of y, right of positions z [m], (2, len(z)) [N·m]."""
         about = self._read(z, (1, 3), forces=True)[3:]
         return np.stack([about[1], -about[0]])
 
     def shear_forces(self, z: npt.ArrayLike) -> FloatArray:
-        """Transverse forces over x and y, right of positions z (m), (2, len(z)), N."""
+        """Transverse forces over x and y, right of positions z [m], (2, len(z)) [N]."""
         return self._read(z, (0, 2), forces=True)[:2]
 
     def _read(self, z: npt.ArrayLike, wanted: tuple[int, ...], *, forces: bool) -> FloatArray:
@@ -130,14 +130,14 @@ def static_deflection(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at ``speed``.
-    forces
+    forces : sequence of StaticForce
         Constant forces on the shaft.
-    gravity
-        Acceleration over x, y, z, m/s². With a part along z, a bearing must hold the shaft along z.
-    speed
-        Ω, rad/s.
+    gravity : sequence of float
+        Acceleration over x, y, z [m/s²]. With a part along z, a bearing must hold the shaft along z.
+    speed : float
+        Speed of rotation Ω [rad/s].
 
     Raises
     ------
@@ -146,8 +146,8 @@ def static_deflection(
     """
     pull = np.array(gravity, dtype=np.float64)
     require(pull.shape == (3,) and bool(np.isfinite(pull).all()), "gravity", list(gravity), "three finite numbers")
-    for what, at in [(f"bearing {b.name!r}", b.at) for b in bearings] + [("force", f.at) for f in forces]:
-        rotor.require_on_shaft(what, at)
+    for label, at in [(f"bearing {b.name!r}", b.at) for b in bearings] + [("force", f.at) for f in forces]:
+        rotor.require_on_shaft(label, at)
     constant = [bearing.at_speed(speed) for bearing in bearings]
     sets = coupled_motions(constant)
     if (pull[2] != 0.0 or any(force.z for force in forces)) and not any(0 in blocks for blocks in sets):
@@ -167,7 +167,7 @@ def static_deflection(
 
 
 def acceleration(gravity: FloatArray, block: int) -> complex:
-    """Gravity's part in r+, r− or z."""
+    """Component of gravity in r+, r− or z."""
     circular = CIRCULAR @ np.concatenate([gravity, np.zeros(2)])
     return complex(circular[BLOCK_COORDINATES[block][0]])
 
@@ -205,13 +205,13 @@ def _solve(
     first = 0
     for block in equations.blocks:
         width = len(BLOCK_COORDINATES[block])
-        own = slice(first, first + width)
+        columns = slice(first, first + width)
         planar = equations.bending if block else equations.axial
         pull = acceleration(gravity, block) / units[first]
         particular = pull * planar.transfer_matrices(np.array([TINY * 1j]))[:, 0].imag[:, :, 0] / TINY
         particular[:, width:] /= scale[0]
-        sides[0, layout.continuity[:, own]] += particular[:, :width]
-        sides[0, layout.balances[1:, own]] += particular[:, width:]
+        sides[0, layout.continuity[:, columns]] += particular[:, :width]
+        sides[0, layout.balances[1:, columns]] += particular[:, width:]
         sides[0, layout.balances[:, first]] -= pull * planar.node_inertia[:, 0] / scale[0]
         first += width
     for force in forces:

@@ -28,7 +28,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Torque:
-    """A torque Re[T e^{iωt}] about the axis at a place (m); ``amplitude`` is complex, N·m."""
+    """A torque Re[T e^{iωt}] about the axis at a place [m]; ``amplitude`` is complex [N·m]."""
 
     at: float
     amplitude: complex
@@ -41,7 +41,7 @@ class Torque:
 
 @dataclass(frozen=True)
 class TorsionalDashpot:
-    """A dashpot between the shaft at a place (m) and ground; ``coefficient`` in N·m·s/rad."""
+    """A dashpot between the shaft at a place [m] and ground; ``coefficient`` in N·m·s/rad."""
 
     at: float
     coefficient: float
@@ -58,12 +58,12 @@ class TorsionalResponse:
 
     Attributes
     ----------
-    frequencies
-        (b,): ω, rad/s.
-    damping_ratio
-        ζ of the shaft.
-    softness
-        (p, b): factor on the twist of each shaft element under a torque, from the dashpot of a coupling.
+    frequencies : ndarray, shape (b,)
+        Frequencies ω [rad/s].
+    damping_ratio : float
+        Damping ratio ζ of the shaft.
+    softness : ndarray of complex, shape (p, b)
+        Factor on the twist of each shaft element under a torque, from the dashpot of a coupling.
     """
 
     frequencies: FloatArray
@@ -73,11 +73,11 @@ class TorsionalResponse:
     softness: ComplexArray = field(repr=False)
 
     def angle(self, z: npt.ArrayLike) -> ComplexArray:
-        """Complex angle at positions z (m), (b, len(z)), rad."""
+        """Complex angle at positions z [m], (b, len(z)) [rad]."""
         return np.asarray(self._at(z)[:, :, 0] * self.shaft.displacement_unit[0])
 
     def torque(self, z: npt.ArrayLike) -> ComplexArray:
-        """Complex torque that the shaft carries, right of positions z (m), (b, len(z)), N·m."""
+        """Complex torque that the shaft carries, right of positions z [m], (b, len(z)) [N·m]."""
         return np.asarray(self._at(z)[:, :, 1] / self.shaft.displacement_unit[0])
 
     def _at(self, z: npt.ArrayLike) -> ComplexArray:
@@ -102,16 +102,16 @@ def torsional_response(
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft and its discs.
-    torques
-        Their places and complex amplitudes.
-    frequencies
-        (b,): ω, rad/s; positive, as a free shaft has no steady answer to a constant torque.
-    springs, dashpots
-        To ground.
-    damping_ratio
-        ζ of the shaft's material and of the springs.
+    torques : sequence of Torque
+        Torques with their places and complex amplitudes.
+    frequencies : array_like, shape (b,)
+        Frequencies ω [rad/s]; positive, as a free shaft has no steady response to a constant torque.
+    springs, dashpots : sequence of AxisSpring, sequence of TorsionalDashpot
+        Springs and dashpots to ground.
+    damping_ratio : float
+        Damping ratio ζ of the shaft's material and of the springs.
 
     Raises
     ------
@@ -147,14 +147,14 @@ def torsional_response(
 
 def _softness(rotor: Rotor, shaft: DiscretisedShaft, omega: FloatArray, modulus: complex) -> ComplexArray:
     """Twist of every shaft element under a torque, relative to that without the dashpots of couplings, (p, b)."""
-    found = np.ones((shaft.lengths.size, omega.size), dtype=np.complex128)
+    factor = np.ones((shaft.lengths.size, omega.size), dtype=np.complex128)
     middles = 0.5 * (shaft.nodes[1:] + shaft.nodes[:-1])
     for left, part in zip(rotor.joints[:-1].tolist(), rotor.segments, strict=True):
         if isinstance(part, Coupling) and part.torsional_damping > 0.0:
             inside = (middles > left) & (middles < left + part.length)
             spring = modulus * part.torsional_stiffness
-            found[inside] = spring / (spring + 1j * omega * part.torsional_damping)
-    return found
+            factor[inside] = spring / (spring + 1j * omega * part.torsional_damping)
+    return factor
 
 
 def in_units_of(transfer_matrices: ComplexArray, unit: complex) -> ComplexArray:
@@ -176,13 +176,13 @@ def _pattern(nodes: int) -> BandPattern:
 
 def _values(shaft: DiscretisedShaft, terms: ComplexArray, transfer_matrices: ComplexArray) -> ComplexArray:
     """Entries for `_pattern`; the equation of a constrained node is that its displacement is zero."""
-    held, batch = shaft.constrained[:, 0], terms.shape[0]
+    is_held, batch = shaft.constrained[:, 0], terms.shape[0]
     moved = np.moveaxis(transfer_matrices, 1, 0)
-    free = np.where(held[1:], 0.0, 1.0)
+    free = np.where(is_held[1:], 0.0, 1.0)
     parts = [
-        np.where(held, 1.0, -terms),
-        np.broadcast_to(np.where(held, 0.0, 1.0), terms.shape),
-        np.ones((batch, held.size - 1)),
+        np.where(is_held, 1.0, -terms),
+        np.broadcast_to(np.where(is_held, 0.0, 1.0), terms.shape),
+        np.ones((batch, is_held.size - 1)),
         -moved[:, :, 0, 0],
         -moved[:, :, 0, 1],
         -moved[:, :, 1, 0] * free,

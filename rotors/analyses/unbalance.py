@@ -35,9 +35,9 @@ class SynchronousResponse(HarmonicResponse):
 
     Attributes
     ----------
-    slow_roll
-        The response at slow roll, whose motion the bow at the probe replaces; None without a bow.
-    bow
+    slow_roll : HarmonicResponse or None
+        Response at slow roll, whose motion is replaced by the bow at the probe; None without a bow.
+    bow : BowShape or None
         The shaft's stress-free shape; None without one.
     """
 
@@ -45,7 +45,7 @@ class SynchronousResponse(HarmonicResponse):
     bow: "BowShape | None" = None
 
     def reading(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex x and y that probes at positions z (m) read, run-out included, both (b, len(z)), m."""
+        """Complex x and y that probes at positions z [m] read, run-out included, both (b, len(z)) [m]."""
         x, y = self.motion.evaluate(z)
         if self.bow is None or self.slow_roll is None:
             return x, y
@@ -61,12 +61,12 @@ class BowShape:
 
     Attributes
     ----------
-    bow
-        The points it goes through.
-    reactions
-        (k,) complex: forces at the points whose static response is the curve, N; zero of a rigid run-out.
-    strain_energy
-        Of the straightened shaft, J.
+    bow : Bow
+        Points that the shape goes through.
+    reactions : ndarray of complex, shape (k,)
+        Forces at the points whose static response is the curve [N]; zero for a rigid run-out.
+    strain_energy : float
+        Strain energy of the straightened shaft [J].
     """
 
     bow: Bow
@@ -75,7 +75,7 @@ class BowShape:
     held: HarmonicResponse | None = field(repr=False)
 
     def evaluate(self, z: npt.ArrayLike) -> ComplexArray:
-        """Offset times e^{i phase} at positions z (m), (k,), m."""
+        """Offset times e^{i phase} at positions z [m], (k,) [m]."""
         positions = np.atleast_1d(np.asarray(z, dtype=np.float64))
         if self.held is None:
             return np.full(positions.size, self.bow.vectors[0])
@@ -102,7 +102,7 @@ def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
         return BowShape(bow, np.zeros(1, dtype=np.complex128), 0.0, None)
     # The static axial force acts on the whole displacement, not on what the shaft is bent by.
     free = replace(rotor, segments=[_unloaded(part) for part in rotor.segments])
-    # About EI / L³.
+    # The stiffness of the springs is about EI / L³.
     stiffness = float(bending_shaft(rotor).displacement_unit[0]) ** -2
     springs = [Bearing.isotropic(f"point {k}", at, stiffness) for k, at in enumerate(bow.at.tolist())]
     places = bow.at.tolist()
@@ -118,8 +118,8 @@ def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
         reactions = np.zeros(2, dtype=np.complex128)
     whole = np.zeros((1, len(places), 5), dtype=np.complex128)
     whole[0, :, 0] = np.sqrt(2.0) * stiffness * weights
-    held = solve_harmonic(free, springs, places, whole, np.zeros(1), np.zeros(1))
-    return BowShape(bow, reactions, float(0.5 * (reactions.conj() @ vectors).real), held)
+    response = solve_harmonic(free, springs, places, whole, np.zeros(1), np.zeros(1))
+    return BowShape(bow, reactions, float(0.5 * (reactions.conj() @ vectors).real), response)
 
 
 def unbalance_response(
@@ -134,13 +134,13 @@ def unbalance_response(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at each speed.
-    unbalances
-        Any number.
-    speeds
-        (b,): Ω, rad/s; negative is clockwise, and the angles on the rotor stay counter-clockwise.
-    bow
+    unbalances : sequence of Unbalance
+        Unbalances, any number.
+    speeds : array_like, shape (b,)
+        Speeds of rotation Ω [rad/s]; negative is clockwise, and the angles on the rotor stay counter-clockwise.
+    bow : Bow, optional
         The shaft's stress-free shape.
 
     Raises
@@ -156,9 +156,9 @@ def unbalance_response(
     shape, slow = None, None
     if bow is not None:
         shape = bow_shape(rotor, bow)
-        own = np.broadcast_to(np.sqrt(2.0) * shape.reactions, (turning.size, bow.at.size))
+        reactions = np.broadcast_to(np.sqrt(2.0) * shape.reactions, (turning.size, bow.at.size))
         straightening = np.zeros((turning.size, bow.at.size, 5), dtype=np.complex128)
-        straightening[:, :, 0] = own
+        straightening[:, :, 0] = reactions
         places = [*places, *bow.at.tolist()]
         loads = np.concatenate([loads, straightening], axis=1)
         rolling = [bearing.at_speed(slowest(bearing)) for bearing in bearings]

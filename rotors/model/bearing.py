@@ -23,10 +23,10 @@ class AxisSpring:
 
     Parameters
     ----------
-    at
-        Position from the rotor's left end, m.
-    stiffness
-        N/m, or N·m/rad in torsion; zero is allowed, and ``math.inf`` holds the shaft there exactly.
+    at : float
+        Position from the rotor's left end [m].
+    stiffness : float
+        Stiffness [N/m], in torsion [N·m/rad]; zero is allowed, and ``math.inf`` holds the shaft there exactly.
     """
 
     at: float
@@ -44,12 +44,12 @@ class RadialSupport:
 
     Parameters
     ----------
-    at
-        Position from the rotor's left end, m.
-    stiffness
-        N/m; zero is allowed, and ``math.inf`` pins the shaft there exactly.
-    tilt_stiffness
-        Against the slope of the section, N·m/rad; ``math.inf`` with an infinite stiffness is a clamp.
+    at : float
+        Position from the rotor's left end [m].
+    stiffness : float
+        Stiffness [N/m]; zero is allowed, and ``math.inf`` pins the shaft there exactly.
+    tilt_stiffness : float
+        Stiffness against the slope of the section [N·m/rad]; ``math.inf`` with an infinite stiffness is a clamp.
     """
 
     at: float
@@ -59,8 +59,8 @@ class RadialSupport:
     def __post_init__(self) -> None:
         """Check the position, and that no stiffness is negative; they may be infinite."""
         require_finite("support position", self.at, minimum=0.0)
-        for what, value in (("stiffness", self.stiffness), ("tilt_stiffness", self.tilt_stiffness)):
-            require(value >= 0.0, f"support {what}", value, "zero, a positive number or infinity")
+        for attribute, value in (("stiffness", self.stiffness), ("tilt_stiffness", self.tilt_stiffness)):
+            require(value >= 0.0, f"support {attribute}", value, "zero, a positive number or infinity")
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +69,10 @@ class Pedestal:
 
     Parameters
     ----------
-    stiffness, damping
-        (2, 2) over x, y: to the ground, N/m and N·s/m.
-    mass
-        Moving mass, kg.
+    stiffness, damping : ndarray, shape (2, 2)
+        Stiffness [N/m] and damping [N·s/m] to the ground, over x, y.
+    mass : float
+        Moving mass [kg].
     """
 
     stiffness: FloatArray
@@ -82,12 +82,14 @@ class Pedestal:
     def __post_init__(self) -> None:
         """Check the mass, and that 2×2 stiffness holds the pedestal in x and y; freeze the matrices."""
         require_finite("pedestal mass", self.mass, minimum=0.0)
-        for what in ("stiffness", "damping"):
-            matrix = _frozen(f"pedestal {what}", getattr(self, what))
-            require(matrix.shape == (2, 2), f"pedestal {what} shape", matrix.shape, "(2, 2), rows and columns x, y")
-            object.__setattr__(self, what, matrix)
-        held = bool(np.linalg.det(self.stiffness) != 0.0)
-        require(held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
+        for attribute in ("stiffness", "damping"):
+            matrix = _frozen(f"pedestal {attribute}", getattr(self, attribute))
+            require(
+                matrix.shape == (2, 2), f"pedestal {attribute} shape", matrix.shape, "(2, 2), rows and columns x, y"
+            )
+            object.__setattr__(self, attribute, matrix)
+        is_held = bool(np.linalg.det(self.stiffness) != 0.0)
+        require(is_held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,18 +98,18 @@ class Bearing:
 
     Parameters
     ----------
-    name
+    name : str
         Name in messages.
-    at
-        Position from the rotor's left end, m.
-    stiffness, damping
-        Force on the carrier per displacement or velocity of the shaft, which need not be symmetric: (2, 2) over x, y
-        in N/m and N·s/m; or (5, 5) over x, y, z and the rotations about x and about y, also in N/rad, N·m/rad
-        and their like; or (s, 2, 2) or (s, 5, 5), one for each of some speeds. Both need not be of one form.
-    speeds
-        (s,): ascending speeds of rotation of the tables, rad/s; between them the coefficients follow a monotone
-        cubic (Fritsch and Carlson 1980).
-    pedestal
+    at : float
+        Position from the rotor's left end [m].
+    stiffness, damping : ndarray
+        Force on the carrier per displacement or velocity of the shaft, which need not be symmetric: (2, 2) over x, y in
+        N/m and N·s/m; or (5, 5) over x, y, z and the rotations about x and about y, also in N/rad, N·m/rad and their
+        like; or (s, 2, 2) or (s, 5, 5), tabulated over ``speeds``. Both need not be of one form.
+    speeds : ndarray, shape (s,) or None
+        Ascending speeds of rotation of the tables [rad/s]; between them the coefficients follow a monotone cubic
+        (Fritsch and Carlson 1980).
+    pedestal : Pedestal or None
         The pedestal, if it is not rigid.
 
     Raises
@@ -133,13 +135,13 @@ class Bearing:
             fits = speeds.ndim == 1 and speeds.size >= 2 and bool((np.diff(speeds) > 0.0).all())
             require(fits, f"{label} speeds", speeds.tolist(), "two or more speeds in rad/s, ascending")
             object.__setattr__(self, "speeds", speeds)
-        for what in ("stiffness", "damping"):
-            matrix = _frozen(f"{label} {what}", getattr(self, what))
+        for attribute in ("stiffness", "damping"):
+            matrix = _frozen(f"{label} {attribute}", getattr(self, attribute))
             shapes: list[tuple[int, ...]] = [(2, 2), (5, 5)]
             if self.speeds is not None:
                 shapes += [(self.speeds.size, 2, 2), (self.speeds.size, 5, 5)]
-            require(matrix.shape in shapes, f"{label} {what} shape", matrix.shape, f"one of {shapes}")
-            object.__setattr__(self, what, matrix)
+            require(matrix.shape in shapes, f"{label} {attribute} shape", matrix.shape, f"one of {shapes}")
+            object.__setattr__(self, attribute, matrix)
         tabled = self.stiffness.ndim == 3 or self.damping.ndim == 3
         require(
             tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"
@@ -157,11 +159,11 @@ class Bearing:
 
     @classmethod
     def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":
-        """Bearing alike in every direction: one stiffness (N/m) and one damping (N·s/m)."""
+        """Bearing alike in every direction: one stiffness [N/m] and one damping [N·s/m]."""
         return cls(name, at, stiffness * np.eye(2), damping * np.eye(2))
 
     def at_speed(self, speed: float) -> "Bearing":
-        """Interpolate the tables: the bearing with constant coefficients at a speed (rad/s) of either sense.
+        """Interpolate the tables: the bearing with constant coefficients at a speed [rad/s] of either sense.
 
         Raises
         ------
@@ -183,32 +185,32 @@ class Bearing:
 
     @property
     def radial_stiffness(self) -> FloatArray:
-        """(2, 2) over x, y, N/m."""
+        """Stiffness matrix (2, 2) over x, y [N/m]."""
         return self._constant(self.stiffness)[:2, :2]
 
     @property
     def radial_damping(self) -> FloatArray:
-        """(2, 2) over x, y, N·s/m."""
+        """Damping matrix (2, 2) over x, y [N·s/m]."""
         return self._constant(self.damping)[:2, :2]
 
     @property
     def spatial_stiffness(self) -> FloatArray:
-        """(5, 5) over x, y, z and the rotations about x and y."""
+        """Stiffness matrix (5, 5) over x, y, z and the rotations about x and y."""
         return _spatial(self._constant(self.stiffness))
 
     @property
     def spatial_damping(self) -> FloatArray:
-        """(5, 5) over x, y, z and the rotations about x and y."""
+        """Damping matrix (5, 5) over x, y, z and the rotations about x and y."""
         return _spatial(self._constant(self.damping))
 
     @property
     def mean_stiffness(self) -> float:
-        """(k_xx + k_yy) / 2, the stiffness of the planar modal basis (TM-101442 Eq. 7), N/m."""
+        """Mean stiffness (k_xx + k_yy) / 2 of the planar modal basis (TM-101442 Eq. 7) [N/m]."""
         return 0.5 * float(np.trace(self.radial_stiffness))
 
     @property
     def mean_tilt_stiffness(self) -> float:
-        """The same of the rotations about x and y, N·m/rad."""
+        """Mean stiffness of the rotations about x and y [N·m/rad]."""
         return 0.5 * float(np.trace(self.spatial_stiffness[3:, 3:]))
 
     @property
@@ -249,10 +251,10 @@ def undamped(bearing: Bearing) -> Bearing:
     return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
 
 
-def _frozen(what: str, value: npt.ArrayLike) -> FloatArray:
+def _frozen(label: str, value: npt.ArrayLike) -> FloatArray:
     """Return a read-only copy of an array, after a check that it is finite."""
     array = np.array(value, dtype=np.float64)
-    require(bool(np.isfinite(array).all()), what, array.tolist(), "finite numbers")
+    require(bool(np.isfinite(array).all()), label, array.tolist(), "finite numbers")
     array.setflags(write=False)
     return array
 

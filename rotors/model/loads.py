@@ -16,12 +16,12 @@ class Unbalance:
 
     Parameters
     ----------
-    at
-        Position from the rotor's left end, m.
-    moment
-        Mass times eccentricity, kg·m.
-    phase
-        Its angle on the rotor from x, counter-clockwise seen from +z, rad.
+    at : float
+        Position from the rotor's left end [m].
+    moment : float
+        Mass times eccentricity [kg·m].
+    phase : float
+        Angle of the unbalance on the rotor from x, counter-clockwise seen from +z [rad].
     """
 
     at: float
@@ -46,13 +46,12 @@ class HarmonicForce:
 
     Parameters
     ----------
-    at
-        Position from the rotor's left end, m.
-    x, y
-        Complex amplitudes of the force, N.
-    slope_x, slope_y
-        Complex amplitudes of the moments that turn the section in the plane of x and of y, N·m: about y, and
-        about −x.
+    at : float
+        Position from the rotor's left end [m].
+    x, y : complex
+        Complex amplitudes of the force [N].
+    slope_x, slope_y : complex
+        Complex amplitudes of the moments that turn the section in the plane of x and of y [N·m]: about y, and about −x.
     """
 
     at: float
@@ -64,13 +63,13 @@ class HarmonicForce:
     def __post_init__(self) -> None:
         """Check that position, forces and moments are finite."""
         require_finite("force position", self.at, minimum=0.0)
-        for what in ("x", "y", "slope_x", "slope_y"):
-            value = complex(getattr(self, what))
-            require(bool(np.isfinite(value)), f"force {what}", value, "a finite complex number")
+        for attribute in ("x", "y", "slope_x", "slope_y"):
+            value = complex(getattr(self, attribute))
+            require(bool(np.isfinite(value)), f"force {attribute}", value, "a finite complex number")
 
     @property
     def circular(self) -> tuple[complex, complex, complex, complex, complex]:
-        """Over r+, β+, r−, β− and z."""
+        """Loads over r+, β+, r−, β− and z."""
         root = np.sqrt(0.5)
         x, y, bx, by = self.x, self.y, self.slope_x, self.slope_y
         return (
@@ -88,12 +87,12 @@ class Bow:
 
     Parameters
     ----------
-    at
-        (k,): positions from the rotor's left end, m.
-    offset
-        (k,): distances of the centre line from the axis of rotation, m.
-    phase
-        (k,): their angles on the rotor from x, counter-clockwise seen from +z, rad; zero if not given.
+    at : ndarray, shape (k,)
+        Positions from the rotor's left end [m].
+    offset : ndarray, shape (k,)
+        Distances of the centre line from the axis of rotation [m].
+    phase : ndarray, shape (k,) or None
+        Angles of the offsets on the rotor from x, counter-clockwise seen from +z [rad]; zero if not given.
     """
 
     at: FloatArray
@@ -110,9 +109,9 @@ class Bow:
         require(finite, "bow", (at.tolist(), offset.tolist(), phase.tolist()), "finite numbers")
         apart = np.unique(at).size == at.size
         require(apart, "bow positions", at.tolist(), "each place once")
-        for what, value in (("at", at), ("offset", offset), ("phase", phase)):
+        for attribute, value in (("at", at), ("offset", offset), ("phase", phase)):
             value.setflags(write=False)
-            object.__setattr__(self, what, value)
+            object.__setattr__(self, attribute, value)
 
     @property
     def vectors(self) -> npt.NDArray[np.complex128]:

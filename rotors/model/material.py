@@ -21,30 +21,30 @@ class ElasticMaterial(Protocol):
 
     @property
     def youngs_modulus(self) -> float:
-        """E in Pa."""
+        """Young's modulus E [Pa]."""
 
     @property
     def shear_modulus(self) -> float:
-        """G in Pa."""
+        """Shear modulus G [Pa]."""
 
     @property
     def poisson_ratio(self) -> float:
-        """ν."""
+        """Poisson's ratio ν."""
 
     @property
     def density(self) -> float:
-        """Mass per volume in kg/m³."""
+        """Mass per volume [kg/m³]."""
 
 
 @dataclass(frozen=True)
 class ShaftMaterial:
-    """A linear elastic shaft material whose shear modulus is a number of its own, as of shafts drawn or wound.
+    """A linear elastic shaft material with an independent shear modulus, as of shafts drawn or wound.
 
     Parameters
     ----------
-    youngs_modulus, shear_modulus
-        E and G in Pa.
-    density
+    youngs_modulus, shear_modulus : float
+        Young's modulus E and shear modulus G [Pa].
+    density : float
         Mass per volume in kg/m³; zero makes a segment a pure spring.
 
     Raises
@@ -65,13 +65,13 @@ class ShaftMaterial:
 
     @classmethod
     def from_poisson_ratio(cls, youngs_modulus: float, poisson_ratio: float, density: float) -> "ShaftMaterial":
-        """Material of modulus E (Pa), Poisson ratio ν and density (kg/m³); G = E / 2(1 + ν)."""
+        """Material of modulus E [Pa], Poisson ratio ν and density [kg/m³]; G = E / 2(1 + ν)."""
         require(-1.0 < poisson_ratio <= 0.5, "poisson_ratio", poisson_ratio, "a number in (-1, 0.5]")
         return cls(youngs_modulus, youngs_modulus / (2.0 * (1.0 + poisson_ratio)), density)
 
     @property
     def poisson_ratio(self) -> float:
-        """ν = E / 2G − 1."""
+        """Poisson's ratio ν = E / 2G − 1."""
         return self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0
 
 
@@ -129,40 +129,40 @@ class Section:
 
     @property
     def area(self) -> float:
-        """Area in m²."""
+        """Area [m²]."""
         return math.pi / 4.0 * (self.outer_diameter**2 - self.inner_diameter**2)
 
     @property
     def second_moment(self) -> float:
-        """Second moment of area about a diameter, m⁴; twice this is the polar one."""
+        """Second moment of area about a diameter [m⁴]; twice this is the polar one."""
         return math.pi / 64.0 * (self.outer_diameter**4 - self.inner_diameter**4)
 
     @property
     def bending_stiffness(self) -> float:
-        """E I in N·m²."""
+        """Bending stiffness E I [N·m²]."""
         return self.material.youngs_modulus * self.second_moment
 
     @property
     def shear_stiffness(self) -> float:
-        """κ G A in N."""
+        """Shear stiffness κ G A [N]."""
         return self.shear_factor * self.material.shear_modulus * self.area
 
     @property
     def torsional_stiffness(self) -> float:
-        """G J in N·m²."""
+        """Torsional stiffness G J [N·m²]."""
         return 2.0 * self.material.shear_modulus * self.second_moment
 
     @property
     def axial_stiffness(self) -> float:
-        """E A in N."""
+        """Axial stiffness E A [N]."""
         return self.material.youngs_modulus * self.area
 
     @property
     def mass_per_length(self) -> float:
-        """ρ A in kg/m."""
+        """Mass per length ρ A [kg/m]."""
         return self.material.density * self.area
 
     @property
     def polar_inertia_per_length(self) -> float:
-        """2 ρ I in kg·m."""
+        """Polar inertia per length 2 ρ I [kg·m]."""
         return 2.0 * self.material.density * self.second_moment

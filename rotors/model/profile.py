@@ -24,14 +24,14 @@ from rotors.model.segment import Coupling, Segment
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-_DEGREE = 16  # of the interpolants along a cone
+_DEGREE = 16  # degree of the interpolants along a cone
 _TAIL = 2e-15  # last coefficients of an interpolant that is exact, relative to the largest
-_ROUNDING = 2e-15  # the same for a wall as thick as the largest diameter, and more for a thinner one
-_MOST_HALVINGS = 40  # of a cone
+_ROUNDING = 2e-15  # the same bound for a wall as thick as the largest diameter; a thinner wall has a larger one
+_MOST_HALVINGS = 40  # largest number of halvings of a cone
 
 _ANGLES = np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
 _FRACTIONS = 0.5 * (1.0 + np.cos(_ANGLES))
-# Values at the Chebyshev points to coefficients of T_0, T_1, ...; and from these to those of 1, s, s², ...
+# Matrices from values at the Chebyshev points to coefficients of T_0, T_1, ..., and from these to those of 1, s, ...
 _TO_CHEBYSHEV = 2.0 / (_DEGREE + 1) * np.cos(np.outer(np.arange(_DEGREE + 1), _ANGLES))
 _TO_CHEBYSHEV[0] *= 0.5
 _TO_POWERS = np.zeros((_DEGREE + 1, _DEGREE + 1))
@@ -44,7 +44,7 @@ STATION_TOLERANCE = 1e-9
 
 # Rows of a table of coefficients: six of bending, two of torsion, two of the axial rod.
 BENDING, TORSION, AXIAL = slice(0, 6), slice(6, 8), slice(8, 10)
-# Of these, the inertias: ρA and ρI of bending, ρJ, ρA of the rod.
+# Rows of the inertias: ρA and ρI of bending, ρJ, ρA of the rod.
 INERTIAS = [2, 3, 7, 9]
 
 
@@ -57,10 +57,10 @@ class StiffnessDiameter:
 
     Parameters
     ----------
-    left, right
-        Ends, m from the rotor's left end.
-    bending, torsion
-        Outer diameter in bending, shear and tension, and in torsion, m; 0 leaves the shaft as it is.
+    left, right : float
+        Distances of the ends from the rotor's left end [m].
+    bending, torsion : float
+        Outer diameter in bending, shear and tension, and in torsion [m]; 0 leaves the shaft as it is.
     """
 
     left: float
@@ -81,19 +81,19 @@ class Profile:
 
     Attributes
     ----------
-    edges
-        (s + 1,): ends of the spans, m from the left end; all joints are among them.
-    lengths
-        (s,): m, of whole segments exactly as given, so that equal segments are equal here.
-    section_of_span
-        (s,): index of each span's section.
-    coefficients
-        (k, 10, j): of every section, SI, the coefficients of 1, s, s², ... with s from −1 to 1 along the span: in
-        bending 1/(κGA + P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
-    bounds
-        (k, 5): least κGA and EI, largest ρA and ρI, axial force P.
-    uniform
-        (k,): whether the section does not taper.
+    edges : ndarray, shape (s + 1,)
+        Ends of the spans from the left end [m]; all joints are among them.
+    lengths : ndarray, shape (s,)
+        Lengths [m], of whole segments exactly as given, so that equal segments are equal here.
+    section_of_span : ndarray of int, shape (s,)
+        Index of each span's section.
+    coefficients : ndarray, shape (k, 10, j)
+        Coefficients of 1, s, s², ... of every section, SI, with s from −1 to 1 along the span: in bending 1/(κGA +
+        P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
+    bounds : ndarray, shape (k, 5)
+        Least κGA and EI, largest ρA and ρI, axial force P.
+    uniform : ndarray of bool, shape (k,)
+        Whether the section does not taper.
     """
 
     edges: FloatArray
@@ -125,33 +125,36 @@ def shaft_profile(
     parts: Sequence[Segment | Coupling], joints: FloatArray, stiff: Sequence[StiffnessDiameter] = ()
 ) -> Profile:
     """Profile of segments and couplings between joints (parts + 1,), m, with stiffness diameters."""
-    own = _profile_of(parts, joints)
+    unstiffened = _profile_of(parts, joints)
     if not stiff:
-        return own
+        return unstiffened
     bent = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.bending) for one in stiff]))
     twisted = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.torsion) for one in stiff]))
 
-    edges = merged_positions(own.edges, [*bent.edges.tolist(), *twisted.edges.tolist()])
-    spans = np.column_stack([profile.spans(edges) for profile in (own, bent, twisted)])
+    edges = merged_positions(unstiffened.edges, [*bent.edges.tolist(), *twisted.edges.tolist()])
+    spans = np.column_stack([profile.spans(edges) for profile in (unstiffened, bent, twisted)])
     sections = np.column_stack(
-        [profile.section_of_span[span] for profile, span in zip((own, bent, twisted), spans.T, strict=True)]
+        [profile.section_of_span[span] for profile, span in zip((unstiffened, bent, twisted), spans.T, strict=True)]
     )
-    uniform = own.uniform[sections[:, 0]] & bent.uniform[sections[:, 1]] & twisted.uniform[sections[:, 2]]
-    # A tapering interval is a section of its own.
+    uniform = unstiffened.uniform[sections[:, 0]] & bent.uniform[sections[:, 1]] & twisted.uniform[sections[:, 2]]
+    # Every tapering interval is a separate section.
     keys = np.column_stack([sections, np.where(uniform, -1, np.arange(uniform.size))])
     _, first, section_of_span = np.unique(keys, axis=0, return_index=True, return_inverse=True)
 
-    coefficients = np.zeros((edges.size - 1, 10, max(one.coefficients.shape[2] for one in (own, bent, twisted))))
-    # Inertias are rows of bending, torsion and rod too: last, those of the shaft itself replace those of thicker ones.
-    for profile, rows in ((bent, BENDING), (bent, AXIAL), (twisted, TORSION), (own, INERTIAS)):
-        given = profile.between(edges)[:, rows]
-        coefficients[:, rows, : given.shape[2]] = given
-        coefficients[:, rows, given.shape[2] :] = 0.0
-    bounds = np.column_stack([bent.bounds[sections[:, 1], :2], own.bounds[sections[:, 0], 2:]])
-    whole = (edges[:-1] == own.edges[spans[:, 0]]) & (edges[1:] == own.edges[spans[:, 0] + 1])
+    coefficients = np.zeros(
+        (edges.size - 1, 10, max(one.coefficients.shape[2] for one in (unstiffened, bent, twisted)))
+    )
+    # Inertias are rows of bending, torsion and rod too: at last, those of the unstiffened shaft replace those of
+    # thicker ones.
+    for profile, rows in ((bent, BENDING), (bent, AXIAL), (twisted, TORSION), (unstiffened, INERTIAS)):
+        restricted_coefficients = profile.between(edges)[:, rows]
+        coefficients[:, rows, : restricted_coefficients.shape[2]] = restricted_coefficients
+        coefficients[:, rows, restricted_coefficients.shape[2] :] = 0.0
+    bounds = np.column_stack([bent.bounds[sections[:, 1], :2], unstiffened.bounds[sections[:, 0], 2:]])
+    whole = (edges[:-1] == unstiffened.edges[spans[:, 0]]) & (edges[1:] == unstiffened.edges[spans[:, 0] + 1])
     return Profile(
         edges=edges,
-        lengths=np.where(whole, own.lengths[spans[:, 0]], np.diff(edges)),
+        lengths=np.where(whole, unstiffened.lengths[spans[:, 0]], np.diff(edges)),
         section_of_span=section_of_span.reshape(-1).astype(np.intp),
         coefficients=coefficients[first],
         bounds=bounds[first],
@@ -209,21 +212,21 @@ def _profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Prof
             section_of_span.append(section)
             edges.append(left + end * (right - left) if end < 1.0 else right)
             lengths.append((end - start) * part.length)
-    coefficients = np.zeros((len(powers), 10, max(one.shape[1] for one in powers)))
-    for row, one in enumerate(powers):
-        coefficients[row, :, : one.shape[1]] = one
+    coefficients = np.zeros((len(powers), 10, max(power.shape[1] for power in powers)))
+    for row, power in enumerate(powers):
+        coefficients[row, :, : power.shape[1]] = power
     return Profile(
         edges=np.array(edges),
         lengths=np.array(lengths),
         section_of_span=np.array(section_of_span, dtype=np.intp),
         coefficients=coefficients,
         bounds=np.array(bounds),
-        uniform=np.array([one.shape[1] == 1 for one in powers]),
+        uniform=np.array([power.shape[1] == 1 for power in powers]),
     )
 
 
 def _spans(part: Segment | Coupling) -> Iterator[tuple[float, float, FloatArray, FloatArray]]:
-    """Start and end (fractions of the part), coefficients and bounds of a part's spans: of a cone one or several."""
+    """Start and end (fractions of the part), coefficients and bounds of a part's spans; a cone has one or several."""
     if isinstance(part, Segment) and part.is_conical:
         yield from _taper(part, 0.0, 1.0, 0)
         return
@@ -299,21 +302,21 @@ def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple
 
 
 def merged_positions(joints: FloatArray, others: Sequence[float]) -> FloatArray:
-    """Joints and other positions, ascending; one that lies on a joint or another position is that one.
+    """Joints and other positions, ascending; positions that coincide are merged, onto a joint where there is one.
 
     Parameters
     ----------
-    joints
-        Ascending positions that stay exactly as they are, (n,), m.
-    others
-        Further positions on the shaft, m.
+    joints : ndarray, shape (n,)
+        Ascending positions that stay exactly as they are [m].
+    others : sequence of float
+        Further positions on the shaft [m].
     """
-    known = joints.tolist()
-    slack = STATION_TOLERANCE * known[-1]
-    kept: list[float] = []
+    joint_list = joints.tolist()
+    slack = STATION_TOLERANCE * joint_list[-1]
+    added: list[float] = []
     for place in sorted(float(other) for other in others):
-        right = min(max(bisect_left(known, place), 1), len(known) - 1)
-        near = min(abs(place - known[right - 1]), abs(place - known[right])) <= slack
-        if not near and (not kept or place - kept[-1] > slack):
-            kept.append(place)
-    return np.sort(np.concatenate([joints, kept])) if kept else joints
+        right = min(max(bisect_left(joint_list, place), 1), len(joint_list) - 1)
+        near = min(abs(place - joint_list[right - 1]), abs(place - joint_list[right])) <= slack
+        if not near and (not added or place - added[-1] > slack):
+            added.append(place)
+    return np.sort(np.concatenate([joints, added])) if added else joints

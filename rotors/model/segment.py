@@ -33,16 +33,16 @@ class Coupling:
 
     Parameters
     ----------
-    length
-        From hub to hub, m.
-    lateral_stiffness, axial_stiffness
-        k and k_z, N/m.
-    tilt_stiffness, torsional_stiffness
-        k_t against an angle between the axes and k_θ about them, N·m/rad.
-    mass, polar_inertia, diametral_inertia
-        Of the whole coupling, kg and kg·m².
-    lateral_damping, axial_damping, tilt_damping, torsional_damping
-        Dashpots beside the stiffnesses, N·s/m and N·m·s/rad: c of the coupled system, which turn with the shaft.
+    length : float
+        Length from hub to hub [m].
+    lateral_stiffness, axial_stiffness : float
+        Stiffnesses k and k_z [N/m].
+    tilt_stiffness, torsional_stiffness : float
+        Stiffnesses k_t against an angle between the axes and k_θ about them [N·m/rad].
+    mass, polar_inertia, diametral_inertia : float
+        Mass [kg] and moments of inertia [kg·m²] of the whole coupling.
+    lateral_damping, axial_damping, tilt_damping, torsional_damping : float
+        Dashpots parallel to the stiffnesses [N·s/m, N·m·s/rad]: c of the coupled system, which turn with the shaft.
 
     Raises
     ------
@@ -65,10 +65,10 @@ class Coupling:
 
     def __post_init__(self) -> None:
         """Check that length and stiffness are positive and that inertia and damping are not negative."""
-        for what in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
-            require_finite(f"coupling {what}", getattr(self, what), positive=True)
-        for what in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
-            require_finite(f"coupling {what}", getattr(self, what), minimum=0.0)
+        for attribute in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
+            require_finite(f"coupling {attribute}", getattr(self, attribute), positive=True)
+        for attribute in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
+            require_finite(f"coupling {attribute}", getattr(self, attribute), minimum=0.0)
 
     @property
     def is_damped(self) -> bool:
@@ -77,12 +77,12 @@ class Coupling:
 
     @property
     def mass_centre(self) -> float:
-        """Distance of the centre of mass from the left end, m."""
+        """Distance of the centre of mass from the left end [m]."""
         return 0.5 * self.length
 
     @property
     def polar_centre(self) -> float:
-        """Distance of the centre of the polar inertia from the left end, m."""
+        """Distance of the centre of the polar inertia from the left end [m]."""
         return 0.5 * self.length
 
 
@@ -95,16 +95,16 @@ class Segment:
 
     Parameters
     ----------
-    length, outer_diameter, inner_diameter
-        In m; the bore (inner diameter) may be zero. For a cone, the diameters at its left end.
-    material
-        Its material.
-    shear_coefficient
+    length, outer_diameter, inner_diameter : float
+        Length and diameters [m]; the bore (inner diameter) may be zero. For a cone, diameters at its left end.
+    material : ElasticMaterial
+        Material of the segment.
+    shear_coefficient : ShearFormula or float
         ``"cowper"``, ``"hutchinson"``, or the number κ itself.
-    right_outer_diameter, right_inner_diameter
-        Diameters at the right end, m; the diameters change linearly. None for a cylinder.
-    axial_force
-        Static force in N that the segment carries, tension positive.
+    right_outer_diameter, right_inner_diameter : float or None
+        Diameters at the right end [m]; the diameters change linearly. None for a cylinder.
+    axial_force : float
+        Static force that the segment carries, tension positive [N].
 
     Raises
     ------
@@ -138,7 +138,7 @@ class Segment:
 
     @property
     def end_diameters(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Outer and inner diameter at the left end, and at the right end, m."""
+        """Outer and inner diameter at the left end, and at the right end [m]."""
         right_outer = self.outer_diameter if self.right_outer_diameter is None else self.right_outer_diameter
         right_inner = self.inner_diameter if self.right_inner_diameter is None else self.right_inner_diameter
         return (self.outer_diameter, self.inner_diameter), (right_outer, right_inner)
@@ -161,28 +161,28 @@ class Segment:
 
     @property
     def mass(self) -> float:
-        """Mass in kg."""
+        """Mass [kg]."""
         return self._integral(lambda section, _: section.mass_per_length)
 
     @property
     def mass_centre(self) -> float:
-        """Distance of the centre of mass from the left end, m."""
+        """Distance of the centre of mass from the left end [m]."""
         return self._integral(lambda section, z: section.mass_per_length * z) / self.mass if self.mass else 0.0
 
     @property
     def polar_inertia(self) -> float:
-        """Moment of inertia about the axis, kg·m²."""
+        """Moment of inertia about the axis [kg·m²]."""
         return self._integral(lambda section, _: section.polar_inertia_per_length)
 
     @property
     def polar_centre(self) -> float:
-        """Distance of the centre of the polar inertia from the left end, m."""
+        """Distance of the centre of the polar inertia from the left end [m]."""
         about_left = self._integral(lambda section, z: section.polar_inertia_per_length * z)
         return about_left / self.polar_inertia if self.polar_inertia else 0.0
 
     @property
     def diametral_inertia(self) -> float:
-        """Moment of inertia about a diameter through its own centre of mass, kg·m²."""
+        """Moment of inertia about a diameter through its own centre of mass [kg·m²]."""
         about_left = self._integral(lambda section, z: section.mass_per_length * z**2)
         return 0.5 * self.polar_inertia + about_left - self.mass * self.mass_centre**2
 

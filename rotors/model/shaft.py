@@ -26,12 +26,12 @@ class Disc:
 
     Parameters
     ----------
-    at
-        Position from the rotor's left end, m.
-    mass
-        kg.
-    polar_inertia, diametral_inertia
-        About the axis and about a diameter, kg·m².
+    at : float
+        Position from the rotor's left end [m].
+    mass : float
+        Mass [kg].
+    polar_inertia, diametral_inertia : float
+        Moments of inertia about the axis and about a diameter [kg·m²].
     """
 
     at: float
@@ -50,7 +50,7 @@ class Disc:
     def from_dimensions(
         cls, at: float, width: float, outer_diameter: float, inner_diameter: float, density: float
     ) -> "Disc":
-        """Disc of a round ring of the given width and diameters (m) and density (kg/m³)."""
+        """Disc of a round ring of the given width and diameters [m] and density [kg/m³]."""
         ring = Segment(width, outer_diameter, inner_diameter, ShaftMaterial(1.0, 0.5, density))
         return cls(at, ring.mass, ring.polar_inertia, ring.diametral_inertia)
 
@@ -61,16 +61,16 @@ class Rotor:
 
     Parameters
     ----------
-    name
+    name : str
         Name in messages.
-    segments
+    segments : sequence of Segment or Coupling
         At least one `Segment`, from the left end; a `Coupling` may stand between them.
-    discs
+    discs : sequence of Disc
         Any number of `Disc`; several may share a place.
-    mass_model
-        ``"distributed"``: every segment is an exact Timoshenko beam and rod with its own mass.
-        ``"lumped"``: every segment is massless and its inertias go to its two ends (`station_inertias`).
-    stiffness_diameters
+    mass_model : MassModel
+        ``"distributed"``: every segment is an exact Timoshenko beam and rod with its own mass. ``"lumped"``: every
+        segment is massless and its inertias go to its two ends (`station_inertias`).
+    stiffness_diameters : sequence of StiffnessDiameter
         Lengths over which other bodies stiffen the shaft.
 
     Raises
@@ -93,24 +93,24 @@ class Rotor:
         where = f"rotor {self.name!r}"
         if not self.segments:
             raise RotorError(f"{where} has no segments; expected at least one")
-        known = self.mass_model in ("distributed", "lumped")
-        require(known, f"{where} mass_model", self.mass_model, "'distributed' or 'lumped'")
+        is_known = self.mass_model in ("distributed", "lumped")
+        require(is_known, f"{where} mass_model", self.mass_model, "'distributed' or 'lumped'")
         for disc in self.discs:
             self.require_on_shaft(f"{where} disc", disc.at)
-        for one in self.stiffness_diameters:
-            for end in (one.left, one.right):
+        for stiffness in self.stiffness_diameters:
+            for end in (stiffness.left, stiffness.right):
                 self.require_on_shaft(f"{where} stiffness diameter", end)
         require(self.mass > 0.0, f"{where} mass", self.mass, "a positive mass, of segments or of discs")
 
-    def require_on_shaft(self, what: str, at: float) -> None:
+    def require_on_shaft(self, label: str, at: float) -> None:
         """Raise `RotorError` unless ``at`` (m from the left end) is a finite place on the shaft."""
         slack = STATION_TOLERANCE * self.length
         inside = math.isfinite(at) and -slack <= at <= self.length + slack
-        require(inside, f"{what} position", at, f"a place on the shaft, 0 to {self.length:g} m")
+        require(inside, f"{label} position", at, f"a place on the shaft, 0 to {self.length:g} m")
 
     @cached_property
     def joints(self) -> FloatArray:
-        """Positions of the segments' ends, (segments + 1,), m."""
+        """Positions of the segments' ends, (segments + 1,) [m]."""
         # Extended precision, because 400 rounded additions would move the right end.
         lengths = np.array([0.0, *(segment.length for segment in self.segments)], dtype=np.longdouble)
         return np.cumsum(lengths).astype(np.float64)
@@ -127,11 +127,11 @@ class Rotor:
 
     @property
     def length(self) -> float:
-        """Length of the shaft, m."""
+        """Length of the shaft [m]."""
         return float(self.joints[-1])
 
     def outer_diameter(self, at: float, towards: float) -> float:
-        """Outer diameter of the segment that begins at a place and lies towards another one, m; 0 of a coupling."""
+        """Outer diameter of the segment that begins at a place and lies towards another one [m]; 0 for a coupling."""
         inward = math.copysign(STATION_TOLERANCE * self.length, towards - at)
         number = int(np.clip(np.searchsorted(self.joints, at + inward) - 1, 0, len(self.segments) - 1))
         part = self.segments[number]
@@ -142,12 +142,12 @@ class Rotor:
 
     @property
     def stations(self) -> FloatArray:
-        """Segment ends and disc positions, ascending, each place once, (stations,), m."""
+        """Segment ends and disc positions, ascending, each place once, (stations,) [m]."""
         return merged_positions(self.joints, [disc.at for disc in self.discs])
 
     @cached_property
     def mass(self) -> float:
-        """Total mass, kg."""
+        """Total mass [kg]."""
         return math.fsum([part.mass for part in self.segments] + [disc.mass for disc in self.discs])
 
     @cached_property
@@ -157,12 +157,12 @@ class Rotor:
 
     @property
     def polar_inertia(self) -> float:
-        """Total moment of inertia about the axis, kg·m²."""
+        """Total moment of inertia about the axis [kg·m²]."""
         return math.fsum([part.polar_inertia for part in self.segments] + [d.polar_inertia for d in self.discs])
 
     @property
     def centre_of_mass(self) -> float:
-        """Distance of the centre of mass from the left end, m."""
+        """Distance of the centre of mass from the left end [m]."""
         lefts = self.joints[:-1].tolist()
         moments = [part.mass * (left + part.mass_centre) for part, left in zip(self.segments, lefts, strict=True)]
         return math.fsum([*moments, *(disc.mass * disc.at for disc in self.discs)]) / self.mass
@@ -174,12 +174,13 @@ class ShaftSpans:
 
     Attributes
     ----------
-    nodes
-        (s + 1,): ends of the spans, m.
-    kind, start, end, lengths
-        (s,): as in `rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of the rotor's profile.
-    inertias
-        (s + 1, 3): mass (kg), diametral and polar moment of inertia (kg·m²) at the nodes.
+    nodes : ndarray, shape (s + 1,)
+        Ends of the spans [m].
+    kind, start, end, lengths : ndarray, shape (s,)
+        Kinds and lengths as in `rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of the
+        rotor's profile.
+    inertias : ndarray, shape (s + 1, 3)
+        Mass [kg], diametral and polar moment of inertia [kg·m²] at the nodes.
     """
 
     nodes: FloatArray
@@ -191,12 +192,12 @@ class ShaftSpans:
 
 
 def station_index(stations: FloatArray, at: float) -> int:
-    """Index of the station at the position ``at`` (m), which must be one of them."""
+    """Index of the station at the position ``at`` [m], which must be one of them."""
     return int(np.abs(stations - at).argmin())
 
 
 def shaft_spans(rotor: Rotor) -> ShaftSpans:
-    """Spans of a rotor; neighbours of one uniform kind with nothing between them are one.
+    """Spans of a rotor; neighbours of one uniform kind without an inertia between them are merged.
 
     So a plain shaft given in sixty elements costs no more than one given whole. The transfer matrix of a uniform span
     is exact at any length, and the field inside it is exact too.
@@ -214,22 +215,22 @@ def shaft_spans(rotor: Rotor) -> ShaftSpans:
     if first.all():
         return ShaftSpans(nodes, kind, start, end, lengths, inertias)
     index = np.flatnonzero(first)
-    kept = np.append(index, nodes.size - 1)
+    node_index = np.append(index, nodes.size - 1)
     tapers = ~profile.uniform[kind[index]]
     return ShaftSpans(
-        nodes=nodes[kept],
+        nodes=nodes[node_index],
         kind=kind[index],
         start=np.where(tapers, start[index], 0.0),
         end=np.where(tapers, end[index], 1.0),
         lengths=np.add.reduceat(lengths, index),
-        inertias=inertias[kept],
+        inertias=inertias[node_index],
     )
 
 
 def station_inertias(rotor: Rotor, stations: FloatArray) -> FloatArray:
     """Lumped inertias at the stations (Myklestad–Prohl).
 
-    They are those of the discs, and half of a coupling at each of its ends. In the lumped model each segment also gives
+    They sum the discs, and half of a coupling at each of its ends. In the lumped model each segment also gives
     its own inertia to its two ends: mass in the shares that keep its centre of mass where it is, polar inertia in
     those that keep its centre, and the diametral inertia about its own centre of mass,
     I_p/2 + m l²/12 of a cylinder, as the mass. A cylinder is thus halved; in the seven-station table of the
@@ -237,15 +238,15 @@ def station_inertias(rotor: Rotor, stations: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The rotor.
-    stations
-        Positions that hold at least its segment ends and discs, (s,), m.
+    stations : ndarray, shape (s,)
+        Positions that include at least the rotor's segment ends and discs [m].
 
     Returns
     -------
-    (s, 3)
-        Mass (kg), diametral and polar moment of inertia (kg·m²).
+    ndarray, shape (s, 3)
+        Mass [kg], diametral and polar moment of inertia [kg·m²].
     """
     inertias = np.zeros((stations.size, 3))
     for disc in rotor.discs:
@@ -254,9 +255,9 @@ def station_inertias(rotor: Rotor, stations: FloatArray) -> FloatArray:
     ends = np.searchsorted(stations, rotor.joints).tolist()
     for part, left, right in zip(rotor.segments, ends[:-1], ends[1:], strict=True):
         if rotor.mass_model == "lumped" or isinstance(part, Coupling):
-            own = np.array([part.mass, part.diametral_inertia, part.polar_inertia])
+            segment_inertias = np.array([part.mass, part.diametral_inertia, part.polar_inertia])
             centres = np.array([part.mass_centre, part.mass_centre, part.polar_centre])
-            to_right = own * (centres / part.length)
-            inertias[left] += own - to_right
+            to_right = segment_inertias * (centres / part.length)
+            inertias[left] += segment_inertias - to_right
             inertias[right] += to_right
     return inertias

@@ -19,11 +19,12 @@ from rotors.transfer_matrix.mode_shapes import ShaftFields, find_modes, require_
 from rotors.transfer_matrix.rotor_shafts import bending_shaft
 from rotors.transfer_matrix.wittrick_williams import wittrick_williams_count
 
-# Part of the frequency scale √(stiffness / mass) that stands for standstill: a free shaft's rigid motion is at zero.
+# Part of the frequency scale √(stiffness / mass) that replaces zero at standstill: a free shaft's rigid motion is at
+# zero.
 STANDSTILL = 1e-9
 RELATIVE_WIDTH = 1e-13
 MOST_DOUBLINGS = 100
-# A shaft that is free to tilt buckles under any compression: a factor below this is zero.
+# Factor below which it is zero: a shaft that is free to tilt buckles under any compression.
 LEAST_FACTOR = 1e-9
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,15 +37,15 @@ def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> flo
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft, with the axial forces of its segments.
-    supports
+    supports : sequence of RadialSupport
         Springs to ground in this plane.
 
     Returns
     -------
     float
-        To 1e-13 of itself; infinite without compression, zero for a shaft that is free to tilt.
+        Buckling factor, accurate to 1e-13; infinite without compression, zero for a shaft that is free to tilt.
 
     Raises
     ------
@@ -101,17 +102,17 @@ class LateralModes:
 
     Attributes
     ----------
-    frequencies
-        (m,): ascending, rad/s; rigid motions of a free shaft are zeros.
-    stations
-        (s,): segment ends, discs and supports, m from the left end.
-    displacement, slope
-        (m, s): x and the rotation of the section at the stations, in m and rad per unit modal coordinate.
-    polar_inertia_matrix
-        (m, m): ∫ ρI_p βᵢβⱼ dz plus Σ I_p βᵢβⱼ of the discs: the gyroscopic matrix per rad/s.
-    supports
+    frequencies : ndarray, shape (m,)
+        Natural frequencies, ascending [rad/s]; rigid motions of a free shaft are zeros.
+    stations : ndarray, shape (s,)
+        Segment ends, discs and supports from the left end [m].
+    displacement, slope : ndarray, shape (m, s)
+        Displacement x [m] and rotation [rad] of the section at the stations, per unit modal coordinate.
+    polar_inertia_matrix : ndarray, shape (m, m)
+        Integral ∫ ρI_p βᵢβⱼ dz plus Σ I_p βᵢβⱼ of the discs: the gyroscopic matrix per rad/s.
+    supports : tuple of RadialSupport
         The springs in K, which a coupled model removes again.
-    certificate
+    certificate : ModeCertificate
         Proof of completeness. It does not cover the attachment modes of
         `rotors.modes.residual_modes.add_attachment_modes`.
     """
@@ -132,7 +133,7 @@ class LateralModes:
         return int(self.frequencies.size)
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Displacement and slope of every mode at positions z (m), both (m, len(z)), by the exact field.
+        """Displacement and slope of every mode at positions z [m], both (m, len(z)), by the exact field.
 
         Raises
         ------
@@ -145,7 +146,7 @@ class LateralModes:
         return states[:, :, 0] * unit[0], states[:, :, 1] * unit[1]
 
     def section_loads(self, z: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Shear force and bending moment of every mode at positions z (m), both (m, len(z)).
+        """Shear force and bending moment of every mode at positions z [m], both (m, len(z)).
 
         f = κGA (x' − β) + P x' in N and EI β' in N·m, per unit modal coordinate, just right of a position; at the
         shaft's right end just left of it.
@@ -167,13 +168,13 @@ class LateralModes:
 
         Parameters
         ----------
-        edges
-            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
+        edges : array_like, shape (e + 1,)
+            Ascending positions that divide the shaft [m]: `Rotor.joints` for its segments.
 
         Returns
         -------
-        lengths, supports
-            (m, e) and (m, supports); a support that is infinitely stiff stores nothing.
+        lengths, supports : ndarray, shapes (m, e) and (m, supports)
+            Shares in lengths and supports; a support that is infinitely stiff stores nothing.
 
         Raises
         ------
@@ -198,12 +199,12 @@ class LateralModes:
 
     @property
     def free_stiffness(self) -> FloatArray:
-        """diag(ω²) less the supports: stiffness of the shaft alone, (m, m), 1/s²."""
+        """Stiffness of the shaft alone, diag(ω²) less the supports, (m, m) [1/s²]."""
         return np.diag(self.frequencies**2) - self.support_matrix
 
     @property
     def support_matrix(self) -> FloatArray:
-        """Φᵀ k Φ of the finite supports, (m, m), N/m per unit modal mass."""
+        """Stiffness Φᵀ k Φ of the finite supports, (m, m) [N/m per unit modal mass]."""
         total = np.zeros((self.count, self.count))
         if not self.supports:
             return total
@@ -225,13 +226,13 @@ def solve_lateral_modes(
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft and its discs.
-    supports
+    supports : sequence of RadialSupport
         Springs to ground in this plane; none leaves the shaft free, with two rigid motions at zero.
-    frequency_limit
-        rad/s: all modes strictly below.
-    count
+    frequency_limit : float, optional
+        Limit strictly below which all modes are found [rad/s].
+    count : int, optional
         Number of modes, instead of a limit; with neither, 10 (or all that a lumped rotor has). A multiple root at the
         end is kept whole, so that the result may hold a mode or two more.
 
@@ -243,10 +244,10 @@ def solve_lateral_modes(
     IncompleteModesError
         The modes fail their own proof.
     """
-    held = tuple(supports)
-    require_unbuckled(rotor, held)
-    found = find_modes(bending_shaft(rotor, held), frequency_limit, count)
-    return lateral_modes(found.frequencies, found.fields, found.mixture, held, found.certificate)
+    springs = tuple(supports)
+    require_unbuckled(rotor, springs)
+    solved = find_modes(bending_shaft(rotor, springs), frequency_limit, count)
+    return lateral_modes(solved.frequencies, solved.fields, solved.mixture, springs, solved.certificate)
 
 
 def lateral_modes(
@@ -259,7 +260,7 @@ def lateral_modes(
     """Assemble the result from fields in the shaft's scaled units and the mixture that makes modes of them."""
     shaft = fields.shaft
     at_stations = fields.at(shaft.stations)[:, :, :2]
-    # By sums over fields, of which there are none below a limit under the first mode.
+    # Sums over fields also hold without any field, as below a limit under the first mode.
     nodal = np.tensordot(mixture, at_stations, axes=1)
     # The largest displacement is positive, so that a shape does not depend on the solver's start.
     shapes = nodal[:, :, 0]

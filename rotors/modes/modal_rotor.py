@@ -39,7 +39,7 @@ from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
 
 FloatArray = npt.NDArray[np.float64]
 
-_FRACTIONS, _WEIGHTS = gauss_rule(10)  # on intervals no longer than the shaft is thick
+_FRACTIONS, _WEIGHTS = gauss_rule(10)  # for intervals no longer than the shaft is thick
 
 
 @dataclass(frozen=True)
@@ -49,13 +49,13 @@ class Participation:
     Attributes
     ----------
     displacement : ndarray, shape (m,)
-        ∫ φ dm [√kg].
+        Integral ∫ φ dm [√kg].
     tilt : ndarray, shape (m,)
-        ∫ (z φ dm + β dI_d), z from the left end [√kg m].
+        Integral ∫ (z φ dm + β dI_d), z from the left end [√kg m].
     spin : ndarray, shape (m,)
-        ∫ β dI_p [√kg m].
+        Integral ∫ β dI_p [√kg m].
     axial : ndarray, shape (a,)
-        ∫ ψ dm [√kg].
+        Integral ∫ ψ dm [√kg].
     """
 
     displacement: FloatArray
@@ -94,9 +94,9 @@ def _spread(rotor: Rotor) -> tuple[FloatArray, FloatArray]:
     return np.concatenate(places), np.concatenate(inertias)
 
 
-# More modes of a kind than this are a mistake in a unit: every one is a coordinate of a dense system.
+# Number of modes of a kind above which a wrong unit is assumed: every mode is a coordinate of a dense system.
 MOST_MODES = 300
-_FEWEST = 4  # modes, below which a frequency limit is too low to be meant
+_FEWEST = 4  # number of modes below which a frequency limit is taken as a mistake
 
 
 @dataclass(frozen=True)
@@ -106,17 +106,17 @@ class ModalRotor:
     Attributes
     ----------
     lateral : LateralModes
-        b bending modes and vectors, for the x and for the y plane.
+        The b bending modes and vectors, used in the x and in the y plane.
     torsional : TorsionalModes
-        Free to turn; the rigid rotation first.
+        Torsional modes of the free shaft, the rigid rotation first.
     axial : AxialModes or None
-        Free along the axis; the rigid motion first. Where no bearing resists motion along it, there are none.
+        Axial modes of the free shaft, the rigid motion first; None where no bearing resists axial motion.
     bearings : tuple of Bearing
         The bearings whose averaged stiffness is in the bending modes.
     ports : tuple of float
-        Places of bearings, gears and other forces, m from the left end.
+        Places of bearings, gears and other forces from the left end [m].
     participation : Participation or None
-        Of the modes and vectors in the rigid motions of the ground.
+        Participation of modes and vectors in the rigid motions of the ground.
     """
 
     lateral: LateralModes
@@ -128,22 +128,22 @@ class ModalRotor:
 
     @property
     def gyroscopic(self) -> FloatArray:
-        """J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed of rotation [rad/s] it joins the damping."""
+        """Gyroscopic matrix J ⊗ G over (q_x, q_y), (2 b, 2 b): times the speed [rad/s] it adds to the damping."""
         return gyroscopic_matrix(self.lateral.polar_inertia_matrix)
 
     @property
     def compensation(self) -> FloatArray:
-        """K_s over (q_x, q_y), (2 b, 2 b) [1/s²]."""
+        """Compensation K_s over (q_x, q_y), (2 b, 2 b) [1/s²]."""
         return self._bearing_sum("stiffness", np.eye(2)) - np.kron(np.eye(2), self.lateral.support_matrix)
 
     @property
     def cross_coupling(self) -> FloatArray:
-        """K_c over (q_x, q_y), (2 b, 2 b) [1/s²]; not symmetric where the bearings' is not."""
+        """Cross-coupling K_c over (q_x, q_y), (2 b, 2 b) [1/s²]; unsymmetric where that of the bearings is."""
         return self._bearing_sum("stiffness", 1.0 - np.eye(2))
 
     @property
     def bearing_damping(self) -> FloatArray:
-        """C_b over (q_x, q_y), (2 b, 2 b) [1/s]."""
+        """Damping C_b of the bearings over (q_x, q_y), (2 b, 2 b) [1/s]."""
         return self._bearing_sum("damping", np.ones((2, 2)))
 
     @property
@@ -164,7 +164,7 @@ class ModalRotor:
         return 2 * self.lateral.count + self.torsional.count + (0 if self.axial is None else self.axial.count)
 
     def motions(self, at: float) -> FloatArray:
-        """Motion of the section at a place (m): x, y, z, rotations about x and y, by all coordinates, (5, n)."""
+        """Motion of the section at a place [m]: x, y, z, rotations about x and y, by all coordinates, (5, n)."""
         bending = 2 * self.lateral.count
         along = np.zeros((0, 1)) if self.axial is None else self.axial.evaluate([at])
         (section,) = section_motions(*self.lateral.evaluate([at]), along)
@@ -174,26 +174,26 @@ class ModalRotor:
         return rows
 
     def rotation(self, at: float) -> FloatArray:
-        """Rotation about the axis of the section at a place (m), by all coordinates, (n,)."""
+        """Rotation about the axis of the section at a place [m], by all coordinates, (n,)."""
         row, first = np.zeros(self.size), 2 * self.lateral.count
         row[first : first + self.torsional.count] = self.torsional.evaluate([at])[:, 0]
         return row
 
-    def _bearing_sum(self, what: str, chosen: FloatArray) -> FloatArray:
-        """Σ of the chosen entries, (2, 2), of the bearings' matrices, on displacements and on slopes."""
+    def _bearing_sum(self, matrix_name: str, chosen: FloatArray) -> FloatArray:
+        """Sum over the bearings of the ``chosen`` entries (2, 2) of their matrices, on displacements and on slopes."""
         size = 2 * self.lateral.count
         total = np.zeros((size, size))
         # The plane that x, y and the rotations about x and y belong to; z moves no bending coordinate.
         plane = np.array([0, 1, 0, 1, 0])
         for bearing in self.bearings:
-            matrix = bearing.spatial_stiffness if what == "stiffness" else bearing.spatial_damping
+            matrix = bearing.spatial_stiffness if matrix_name == "stiffness" else bearing.spatial_damping
             motions = self.motions(bearing.at)[:, :size]
             total += motions.T @ (matrix * chosen[np.ix_(plane, plane)]) @ motions
         return total
 
 
 def gyroscopic_matrix(polar_inertia: FloatArray) -> FloatArray:
-    """J ⊗ G over the coordinates (q_x, q_y) of both planes, (2 b, 2 b), of G (b, b): per rad/s of the speed."""
+    """Gyroscopic matrix J ⊗ G over (q_x, q_y) of both planes, (2 b, 2 b), from G (b, b): per rad/s of the speed."""
     return np.kron(np.array([[0.0, 1.0], [-1.0, 0.0]]), polar_inertia)
 
 
@@ -205,10 +205,10 @@ def section_motions(displacement: FloatArray, slope: FloatArray, along: FloatArr
 
     Parameters
     ----------
-    displacement, slope
-        (b, p): of the planar motions at p places.
-    along
-        (a, p): displacements of the axial motions.
+    displacement, slope : ndarray, shape (b, p)
+        Displacement and slope of the planar motions at p places.
+    along : ndarray, shape (a, p)
+        Displacements of the axial motions.
     """
     b, places = displacement.shape
     rows = np.zeros((places, 5, 2 * b + along.shape[0]))
@@ -234,21 +234,21 @@ def modal_rotor(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; those with tables over speed at their speed (`Bearing.at_speed`).
     frequency_limit : float
         rad/s: every bending and torsional mode below it is kept, and at least four bending modes.
     count : int
         Number of bending modes in each plane and of torsional modes, the rigid rotation included, instead.
     gears_at : sequence of float
-        Where forces and torques of gears act, m from the left end.
+        Places of the forces and torques of gears, from the left end [m].
     forces_at : sequence of float
-        Where other lateral forces act, such as those of a bow.
+        Places of other lateral forces, such as those of a bow, from the left end [m].
     moments_at : sequence of float
-        Where moments that bend the shaft act, beside those of bearings that resist tilting: at helical gears, and at
+        Places of bending moments in addition to those of bearings that resist tilting: helical gears, and
         bearings whose resistance is not in their matrices.
     thrusts_at : sequence of float
-        Where forces along the axis act, beside those of bearings that resist them; without effect where none does.
+        Places of axial forces in addition to those of bearings that resist them; without effect where none does.
 
     Raises
     ------
@@ -257,8 +257,8 @@ def modal_rotor(
     IncompleteModesError
         The modes fail their proof.
     """
-    one = (frequency_limit is None) != (count is None)
-    require(one, "frequency_limit and count", (frequency_limit, count), "one of the two")
+    exactly_one = (frequency_limit is None) != (count is None)
+    require(exactly_one, "frequency_limit and count", (frequency_limit, count), "one of the two")
     supports = tuple(bearing.mean_support for bearing in bearings)
     _require_few(rotor, supports, frequency_limit, count)
     lateral = solve_lateral_modes(rotor, supports, frequency_limit=frequency_limit, count=count)
@@ -272,7 +272,11 @@ def modal_rotor(
         torsional = solve_torsional_modes(rotor, count=int(least))
     # A lumped rotor has no more motions than its modes.
     if rotor.mass_model == "distributed":
-        tilted = [one.at for one in bearings if one.spatial_stiffness[3:].any() or one.spatial_damping[3:].any()]
+        tilted = [
+            bearing.at
+            for bearing in bearings
+            if bearing.spatial_stiffness[3:].any() or bearing.spatial_damping[3:].any()
+        ]
         lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
         torsional = add_rod_attachment_modes(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)

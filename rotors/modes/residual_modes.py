@@ -11,7 +11,7 @@ from rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, require
 
 FloatArray = npt.NDArray[np.float64]
 
-# A residual smaller than this part of the static response is rounding.
+# Part of the static response below which a residual is rounding.
 NOTHING_LEFT = 1e-7
 # A free shaft has no static response: it is taken at ω² = −(this part of the first elastic ω)². All but a thousandth of
 # that response is rigid; the direction of the rest errs by the same part at most, so the compliance errs by its square.
@@ -31,10 +31,10 @@ def add_attachment_modes(
 
     Parameters
     ----------
-    modes
+    modes : LateralModes
         A certified set from `rotors.solve_lateral_modes`, with one mode or more.
-    forces_at, moments_at
-        Places of forces and of moments in the plane, m from the left end.
+    forces_at, moments_at : sequence of float
+        Places of forces and of moments in the plane from the left end [m].
 
     Raises
     ------
@@ -44,24 +44,24 @@ def add_attachment_modes(
     forces = require_positions(modes.stations, list(forces_at))
     moments = require_positions(modes.stations, list(moments_at))
     loads = [(place, 0) for place in forces.tolist()] + [(place, 1) for place in moments.tolist()]
-    found = _attached(modes, loads)
-    if found is None:
+    solved = _attached(modes, loads)
+    if solved is None:
         return modes
-    return lateral_modes(found.frequencies, found.fields, found.mixture, modes.supports, modes.certificate)
+    return lateral_modes(solved.frequencies, solved.fields, solved.mixture, modes.supports, modes.certificate)
 
 
 def add_rod_attachment_modes(modes: Modes, at: Sequence[float]) -> Modes:
     """Torsional or axial modes followed by residual attachment modes, exact in static response to point loads.
 
-    As `add_attachment_modes`, for torques or forces along the axis. On a free shaft they carry the elastic part of the
-    response, without the rigid motion.
+    They correspond to `add_attachment_modes`, for torques or axial forces. On a free shaft they carry the elastic part
+    of the response, without the rigid motion.
 
     Parameters
     ----------
-    modes
+    modes : Modes
         A certified set from `rotors.solve_torsional_modes` or `rotors.solve_axial_modes`.
-    at
-        Places of the loads, m from the left end.
+    at : sequence of float
+        Places of the loads from the left end [m].
 
     Raises
     ------
@@ -69,14 +69,14 @@ def add_rod_attachment_modes(modes: Modes, at: Sequence[float]) -> Modes:
         A place that is not on the shaft.
     """
     places = require_positions(modes.stations, list(at))
-    found = _attached(modes, [(place, 0) for place in places.tolist()])
-    return modes if found is None else rod_modes(type(modes), found)
+    solved = _attached(modes, [(place, 0) for place in places.tolist()])
+    return modes if solved is None else rod_modes(type(modes), solved)
 
 
 def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]]) -> SolvedModes | None:
     """Modes followed by the attachment modes of some loads; None where these add nothing.
 
-    Each load is a place (m) and the component of displacement along which it acts.
+    Each load is a place [m] and the component of displacement along which it acts.
     """
     shaft = modes.fields.shaft.with_nodes(np.array([place for place, _ in loads_at]))
     loads = [(shaft.node_at(place), component) for place, component in loads_at]
@@ -105,12 +105,12 @@ def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -
     The first ``zeros`` modes are rigid. They are removed first: the response of a nearly free shaft is almost all
     rigid, and the residual is a part of the small remainder.
     """
-    kept = np.hstack([modes, np.zeros((modes.shape[0], count))])
+    carried = np.hstack([modes, np.zeros((modes.shape[0], count))])
     rows = np.hstack([np.zeros((count, modes.shape[1])), np.eye(count)])
     rows = rows / fields.mass_norms(rows)[:, None]
-    rows = _without(fields, rows, kept[:zeros])
+    rows = _without(fields, rows, carried[:zeros])
     rows = rows / fields.mass_norms(rows)[:, None]
-    rows = _without(fields, rows, kept)
+    rows = _without(fields, rows, carried)
     left = fields.mass_norms(rows)
     rows, left = rows[left > NOTHING_LEFT], left[left > NOTHING_LEFT]
     if rows.shape[0] == 0:

@@ -27,13 +27,13 @@ class RodModes:
 
     Attributes
     ----------
-    frequencies
-        (m,): ascending, rad/s; the rigid motion of a free shaft is a zero.
-    stations
-        (s,): segment ends, discs and springs, m from the left end; of inertias and springs, 0, 1, 2, ...
-    amplitude
-        (m, s): angle or displacement at the stations, rad or m per unit modal coordinate.
-    certificate
+    frequencies : ndarray, shape (m,)
+        Natural frequencies, ascending [rad/s]; the rigid motion of a free shaft is a zero.
+    stations : ndarray, shape (s,)
+        Segment ends, discs and springs from the left end [m]; for a chain of inertias 0, 1, 2, ...
+    amplitude : ndarray, shape (m, s)
+        Angle [rad] or displacement [m] at the stations, per unit modal coordinate.
+    certificate : ModeCertificate
         Proof of completeness.
     """
 
@@ -50,7 +50,7 @@ class RodModes:
         return int(self.frequencies.size)
 
     def evaluate(self, z: npt.ArrayLike) -> FloatArray:
-        """Amplitude of every mode at positions z (m), (m, len(z)), by the exact field.
+        """Amplitude of every mode at positions z [m], (m, len(z)), by the exact field.
 
         Raises
         ------
@@ -64,19 +64,19 @@ class RodModes:
 Modes = TypeVar("Modes", bound=RodModes)
 
 
-def rod_modes(kind: type[Modes], found: SolvedModes) -> Modes:
-    """Modes of a kind from what the search found; the largest amplitude of each is positive."""
-    shaft = found.fields.shaft
-    nodal = found.mixture @ found.fields.at(shaft.stations)[:, :, 0]
+def rod_modes(kind: type[Modes], solved: SolvedModes) -> Modes:
+    """Modes of a kind from the solved modes; the largest amplitude of each is positive."""
+    shaft = solved.fields.shaft
+    nodal = solved.mixture @ solved.fields.at(shaft.stations)[:, :, 0]
     largest = np.take_along_axis(nodal, np.abs(nodal).argmax(axis=1)[:, None], axis=1)
     sign = np.where(largest < 0.0, -1.0, 1.0)
     return kind(
-        frequencies=found.frequencies,
+        frequencies=solved.frequencies,
         stations=shaft.stations,
         amplitude=sign * nodal * shaft.displacement_unit[0],
-        certificate=found.certificate,
-        fields=found.fields,
-        mixture=sign * found.mixture,
+        certificate=solved.certificate,
+        fields=solved.fields,
+        mixture=sign * solved.mixture,
     )
 
 
@@ -86,7 +86,7 @@ class TorsionalModes(RodModes):
 
     @property
     def angle(self) -> FloatArray:
-        """θ at the stations, rad per unit modal coordinate, (m, s)."""
+        """Angle θ at the stations, (m, s) [rad per unit modal coordinate]."""
         return self.amplitude
 
 
@@ -101,13 +101,13 @@ def solve_torsional_modes(
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft and its discs; couplings are springs between its parts.
-    springs
-        To ground, N·m/rad; without them the shaft is free, and its rigid rotation is the first mode.
-    frequency_limit
-        rad/s: all modes strictly below.
-    count
+    springs : sequence of AxisSpring
+        Springs to ground [N·m/rad]; without them the shaft is free, and its rigid rotation is the first mode.
+    frequency_limit : float, optional
+        All modes strictly below [rad/s].
+    count : int, optional
         Number of modes, a rigid rotation included; with neither, 10 or all there are.
 
     Raises
@@ -129,13 +129,12 @@ def solve_torsional_chain(
 
     Parameters
     ----------
-    inertias
-        (s,): polar moments of inertia, kg·m²; zero is allowed, not everywhere.
-    stiffnesses
-        (s − 1,): of the springs between neighbours, N·m/rad.
-    ground
-        (s,): of springs from each inertia to ground, N·m/rad, zero for none and infinite for held; none at
-        all without it.
+    inertias : sequence of float, shape (s,)
+        Polar moments of inertia [kg·m²]; zero is allowed, not everywhere.
+    stiffnesses : sequence of float, shape (s − 1,)
+        Stiffnesses of the springs between neighbours [N·m/rad].
+    ground : sequence of float, shape (s,), optional
+        Stiffness of the spring from each inertia to ground, zero for none, infinite for a fixed one [N·m/rad].
 
     Raises
     ------
@@ -150,9 +149,11 @@ def solve_torsional_chain(
     require(positive, "torsional chain inertias", list(inertias), "not negative, and not all zero")
     stiff = bool(np.isfinite(springs).all() and (springs > 0.0).all())
     require(stiff, "torsional chain stiffnesses", list(stiffnesses), "positive numbers")
-    held = np.zeros(masses.size) if ground is None else np.array(ground, dtype=np.float64)
-    fitting = held.shape == masses.shape and bool((held >= 0.0).all())
-    require(fitting, "torsional chain ground", held.tolist(), "one stiffness for each inertia, none negative")
+    ground_stiffness = np.zeros(masses.size) if ground is None else np.array(ground, dtype=np.float64)
+    fitting = ground_stiffness.shape == masses.shape and bool((ground_stiffness >= 0.0).all())
+    require(
+        fitting, "torsional chain ground", ground_stiffness.tolist(), "one stiffness for each inertia, none negative"
+    )
 
     moment = float(np.exp(np.log(springs).mean()))
     continuous_shaft = ContinuousShaft(
@@ -169,7 +170,7 @@ def solve_torsional_chain(
         inertia=np.zeros((springs.size, 1)),
         force=np.zeros(springs.size),
         node_inertia=masses[:, None] / moment,
-        node_stiffness=held[:, None] / moment,
+        node_stiffness=ground_stiffness[:, None] / moment,
         node_polar=np.zeros(masses.size),
         length_unit=1.0,
         displacement_unit=np.array([1.0 / np.sqrt(moment)]),
@@ -183,7 +184,7 @@ class AxialModes(RodModes):
 
     @property
     def displacement(self) -> FloatArray:
-        """Displacement along the shaft at the stations, m per unit modal coordinate, (m, s)."""
+        """Displacement along the shaft at the stations, (m, s) [m per unit modal coordinate]."""
         return self.amplitude
 
 
@@ -201,13 +202,13 @@ def solve_axial_modes(
 
     Parameters
     ----------
-    rotor
+    rotor : Rotor
         The shaft and its discs.
-    springs
-        To ground, N/m: a thrust bearing's stiffness; without them the shaft is free.
-    frequency_limit
-        rad/s: all modes strictly below.
-    count
+    springs : sequence of AxisSpring
+        Springs to ground [N/m], such as a thrust bearing's stiffness; without them the shaft is free.
+    frequency_limit : float, optional
+        All modes strictly below [rad/s].
+    count : int, optional
         Number of modes, a rigid motion included; with neither, 10 or all there are.
 
     Raises

@@ -23,11 +23,11 @@ class BandPattern:
 
     Attributes
     ----------
-    rows, columns
-        (nnz,).
-    order
-        Of the matrices.
-    lower, upper
+    rows, columns : ndarray of int, shape (nnz,)
+        Row and column of each entry.
+    order : int
+        Order of the matrices.
+    lower, upper : int
         Number of diagonals below and above the main one.
     """
 
@@ -51,7 +51,7 @@ class BandPattern:
 
     @cached_property
     def envelope(self) -> IntArray:
-        """For every k the last row with an entry in column k or before, and the last column of row k, (order, 2)."""
+        """Last row with an entry in the columns up to k, and last column of row k, for every k, (order, 2)."""
         first, last = np.arange(self.order), np.arange(self.order)
         np.minimum.at(first, self.rows, self.columns)
         np.maximum.at(last, self.rows, self.columns)

@@ -14,9 +14,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# A vanishing pivot, at a root hit to the last digit, is replaced by this part of the matrix's largest entry.
+# Part of the matrix's largest entry that replaces a vanishing pivot, at a root hit to the last digit.
 TINY = 1e-18
-# Pivots are multiplied while the square of their product is between these, before its logarithm is taken.
+# Bounds of the squared product of pivots, beyond which its logarithm is taken.
 SMALL, LARGE = 1e-100, 1e100
 
 
@@ -65,9 +65,9 @@ def factor(
             product = -product
             ends[chosen], ends[k] = ends[k], last
             for j in range(k, max(last, ends[chosen]) + 1):
-                kept = matrix[k, j - k + lower]
+                entry = matrix[k, j - k + lower]
                 matrix[k, j - k + lower] = matrix[chosen, j - chosen + lower]
-                matrix[chosen, j - chosen + lower] = kept
+                matrix[chosen, j - chosen + lower] = entry
         if best <= least * least:
             matrix[k, lower] = least
             best = least * least
@@ -89,9 +89,9 @@ def factor(
             multiplier = head * inverse
             matrix[i, place] = multiplier
             ends[i] = max(ends[i], last)
-            own = matrix[i, place + 1 : place + 1 + above.size]
+            row = matrix[i, place + 1 : place + 1 + above.size]
             for j in range(above.size):
-                own[j] -= multiplier * above[j]
+                row[j] -= multiplier * above[j]
     return complex(logarithm + math.log(abs(product)), math.atan2(product.imag, product.real))
 
 
@@ -104,9 +104,9 @@ def forward_back(
     for k in range(order):
         chosen = pivots[k]
         if chosen != k:
-            kept = side[k]
+            entry = side[k]
             side[k] = side[chosen]
-            side[chosen] = kept
+            side[chosen] = entry
         for i in range(k + 1, envelope[k, 0] + 1):
             side[i] -= matrix[i, k - i + lower] * side[k]
     for k in range(order - 1, -1, -1):
@@ -138,10 +138,10 @@ def adjoint(
 
 
 @inner(error_model="python")
-def put(given: ComplexArray, out: ComplexArray) -> None:
-    """Copy a vector; as a loop, since ``out[:] = given`` brings numba's message for lengths that differ with it."""
+def put(vector: ComplexArray, out: ComplexArray) -> None:
+    """Copy a vector; as a loop, since ``out[:] = vector`` brings numba's message for lengths that differ with it."""
     for i in range(out.size):
-        out[i] = given[i]
+        out[i] = vector[i]
 
 
 @inner(error_model="python")
@@ -225,7 +225,7 @@ def null_vectors(
 def forms(
     rows: IntArray, columns: IntArray, values: ComplexArray, left: ComplexArray, right: ComplexArray
 ) -> ComplexArray:
-    """Lᴴ A R of every matrix, (b, k, k)."""
+    """Compute Lᴴ A R of every matrix, (b, k, k)."""
     batch, count = right.shape[0], right.shape[1]
     small = np.zeros((batch, count, count), dtype=np.complex128)
     for b in range(batch):

@@ -32,20 +32,20 @@ def paired_modes(
 
     Parameters
     ----------
-    jump
-        (m, n): distance of each eigenvalue at the next speed from the one expected there, as a part of it.
-    likeness
-        (m, n): likeness of the shapes, 0 to 1, such as the modal assurance criterion.
-    jump_scale
-        Jump that weighs as much as shapes without any likeness.
-    most_jumps
-        Multiple of ``jump_scale`` beyond which the length of a jump makes no further difference.
-    longest_jump
-        A pair further apart is no pair, unless its likeness exceeds ``sure_likeness``.
+    jump : ndarray, shape (m, n)
+        Distance of each eigenvalue at the next speed from the expected one, relative.
+    likeness : ndarray, shape (m, n)
+        Likeness of the shapes, 0 to 1, such as the modal assurance criterion.
+    jump_scale : float
+        Jump that costs as much as zero likeness of the shapes.
+    most_jumps : float
+        Largest cost of a jump, in multiples of ``jump_scale``.
+    longest_jump : float
+        Largest jump within a pair, unless its likeness exceeds ``sure_likeness``.
 
     Returns
     -------
-    (m,)
+    ndarray of int, shape (m,)
         Index of the same mode at the next speed, −1 where there is none.
     """
     rows, columns = linear_sum_assignment((1.0 - likeness) + np.minimum(jump / jump_scale, most_jumps))
@@ -60,16 +60,16 @@ def extended_branches(table: IntArray, partner: IntArray, count: int) -> IntArra
 
     Parameters
     ----------
-    table
-        (s, b): index of each branch's mode at every speed so far, −1 where the branch is not.
-    partner
-        (m,): index at the new speed of each of the last speed's m modes, −1 where there is none.
-    count
-        Number of modes at the new speed; those that are nobody's partner begin branches.
+    table : ndarray of int, shape (s, b)
+        Index of each branch's mode at every speed so far, −1 where the branch does not exist.
+    partner : ndarray of int, shape (m,)
+        Index at the new speed of each of the last speed's m modes, −1 where there is none.
+    count : int
+        Number of modes at the new speed; modes that are no partner begin branches.
 
     Returns
     -------
-    (s + 1, b')
+    ndarray of int, shape (s + 1, b')
     """
     speeds, branches = table.shape
     row = np.full(branches, -1, dtype=np.intp)
@@ -90,17 +90,17 @@ def along_branches(table: IntArray, values: Sequence[npt.NDArray[Any]], missing:
 
     Parameters
     ----------
-    table
-        (s, b): index of each branch's mode at every speed, −1 where the branch is not.
-    values
-        For each speed an array over its modes, (m, ...).
-    missing
-        Stands where a branch is not.
+    table : ndarray of int, shape (s, b)
+        Index of each branch's mode at every speed, −1 where the branch does not exist.
+    values : sequence of ndarray
+        Array (m, ...) over the modes of each speed.
+    missing : Any
+        Value where a branch does not exist.
     """
     rows = []
     for row, of in zip(table, values, strict=True):
-        taken = of[np.maximum(row, 0)] if of.size else np.full((row.size, *of.shape[1:]), missing)
-        rows.append(np.where((row >= 0).reshape(-1, *(1,) * (of.ndim - 1)), taken, missing))
+        selected = of[np.maximum(row, 0)] if of.size else np.full((row.size, *of.shape[1:]), missing)
+        rows.append(np.where((row >= 0).reshape(-1, *(1,) * (of.ndim - 1)), selected, missing))
     return np.stack(rows)
 
 
@@ -109,12 +109,12 @@ def order_intervals(damped_frequencies: FloatArray, order: float, speeds: FloatA
 
     Parameters
     ----------
-    damped_frequencies
-        (s, b): of the branches, rad/s; NaN where a branch is not.
-    order
+    damped_frequencies : ndarray, shape (s, b)
+        Damped frequencies of the branches [rad/s]; NaN where a branch does not exist.
+    order : float
         Multiple of the speed.
-    speeds
-        (s,): rad/s.
+    speeds : ndarray, shape (s,)
+        Speeds [rad/s].
     """
     gap = damped_frequencies - order * np.abs(speeds)[:, None]
     crosses = ((gap[:-1] > 0.0) != (gap[1:] > 0.0)) & np.isfinite(gap[:-1]) & np.isfinite(gap[1:])
@@ -123,9 +123,9 @@ def order_intervals(damped_frequencies: FloatArray, order: float, speeds: FloatA
 
 @dataclass(frozen=True)
 class BranchPoint(Generic[Shape]):
-    """A mode on a branch: its speed of rotation (rad/s), eigenvalue (rad/s) and shape.
+    """A mode on a branch: its speed of rotation [rad/s], eigenvalue [rad/s] and shape.
 
-    ``gap`` is the damped frequency less that of the order, rad/s.
+    ``gap`` is the damped frequency less that of the order [rad/s].
     """
 
     speed: float
@@ -146,14 +146,14 @@ def refined_crossing(
 
     Parameters
     ----------
-    low, high
-        Neighbours on the branch whose gaps differ in sign.
-    solve
-        The branch's point at a fraction of the way from one point to another; None where it is not found.
-    tolerance
-        Part of the eigenvalue that the gap may be.
-    steps
-        Most evaluations.
+    low, high : BranchPoint[Shape]
+        Neighbouring points on the branch whose gaps differ in sign.
+    solve : callable
+        Gives the branch's point at a fraction of the way from one point to another; None where it is not found.
+    tolerance : float
+        Largest gap over the eigenvalue.
+    steps : int
+        Largest number of evaluations.
 
     Returns
     -------

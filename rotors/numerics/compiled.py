@@ -39,7 +39,7 @@ from numba.core import event
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 # A product and the sum it goes into may be rounded once.
 FUSED = {"contract"}
-# The same without infinities and NaN, so that products with the zero imaginary part of a real factor vanish.
+# Also without infinities and NaN, so that products with the zero imaginary part of a real factor vanish.
 FINITE = {"contract", "nnan", "ninf", "nsz"}
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
@@ -71,11 +71,11 @@ def counted(**options: Any) -> Callable[[Kernel], Kernel]:
     def compiled(function: Kernel) -> Kernel:
         # numba reads the cache folder when it decorates; functions of other packages keep theirs.
         config: Any = numba.config
-        given, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
+        previous, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
         try:
             return cast(Kernel, njit(**(_ALL | options))(function))
         finally:
-            config.CACHE_DIR = given
+            config.CACHE_DIR = previous
 
     return compiled
 
@@ -101,15 +101,15 @@ def kernel_sources(root: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        Ascending.
+        Paths, ascending.
     """
-    found: set[Path] = set()
+    sources: set[Path] = set()
     for path in _python_files(root):
         text = path.read_bytes()
         if _KERNELS.search(text):
-            found.add(path)
-            found.update(_imported(root, path, text))
-    return sorted(found)
+            sources.add(path)
+            sources.update(_imported(root, path, text))
+    return sorted(sources)
 
 
 def _python_files(root: Path) -> Iterable[Path]:
@@ -144,9 +144,9 @@ def cache_folder() -> str:
     """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
     root = next(folder for folder in Path(__file__).resolve().parents if folder.name == "rotors").parent
     name = f"kernels-{sources_digest(root)}"
-    given = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # set by numba from its environment variables
+    configured = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # numba takes it from the environment
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"
-    for base in [Path(given)] if given else [root / "rotors" / "__pycache__", user]:
+    for base in [Path(configured)] if configured else [root / "rotors" / "__pycache__", user]:
         folder = base / name
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
@@ -154,7 +154,7 @@ def cache_folder() -> str:
                 os.utime(folder)
                 _remove_unused(base)
                 return str(folder)
-    return given
+    return configured
 
 
 def _remove_unused(base: Path) -> None:

@@ -10,9 +10,9 @@ from scipy import linalg
 FloatArray = npt.NDArray[np.float64]
 
 MOST_ITERATIONS = 500
-# Eigenvalues below this part of the largest are directions in which the function is flat.
+# Part of the largest eigenvalue below which an eigenvalue's direction is flat.
 _FLAT = 1e-14
-# A function that still falls so many first radii away is taken to have no minimum.
+# Distance, in first radii, beyond which a function that still falls is taken to have no minimum.
 _FARTHEST = 1e12
 _EPSILON = float(np.finfo(np.float64).eps)
 
@@ -23,13 +23,15 @@ class Local:
 
     Attributes
     ----------
-    value
-        The function.
-    gradient, hessian
-        (n,) and (n, n), symmetric and positive semidefinite.
-    noise
+    value : float
+        Value of the function.
+    gradient : ndarray, shape (n,)
+        Gradient.
+    hessian : ndarray, shape (n, n)
+        Hessian, symmetric and positive semidefinite.
+    noise : float
         Size of the terms whose difference is ``value``: the scale of its rounding.
-    force
+    force : float
         Size of the terms whose sum is ``gradient``.
     """
 
@@ -58,37 +60,37 @@ def minimise(function: Callable[[FloatArray], Local], start: FloatArray, radius:
 
     Parameters
     ----------
-    function
+    function : callable
         Value, gradient and Hessian at a point, (n,).
-    start
-        (n,).
-    radius
-        Length of the first step at most; it adapts.
-    tolerance
-        Of the gradient over the size of its terms; rounding, or a function without a minimum, may stop the iteration
-        above it.
+    start : ndarray, shape (n,)
+        Start of the iteration.
+    radius : float
+        Largest length of the first step; it adapts.
+    tolerance : float
+        Tolerance of the gradient over the size of its terms; rounding, or a function without a minimum, may stop the
+        iteration above it.
     """
-    here, place, stalled, farthest = function(start), start, 0, _FARTHEST * radius
-    best = Minimum(place, _residual(here), 0)
+    local, place, stalled, farthest = function(start), start, 0, _FARTHEST * radius
+    best = Minimum(place, _residual(local), 0)
     for iteration in range(1, MOST_ITERATIONS + 1):
         if best.residual <= tolerance or stalled == 3 or radius > farthest:
             break
-        step, predicted = _step(here, radius)
+        step, predicted = _step(local, radius)
         if not step.any():
             break
-        there = function(place + step)
+        trial = function(place + step)
         # Within rounding the decrease is meaningless, and the ratio tends to one.
-        noise = 10.0 * _EPSILON * max(here.noise, there.noise)
-        ratio = (here.value - there.value + noise) / (predicted + noise)
+        noise = 10.0 * _EPSILON * max(local.noise, trial.noise)
+        ratio = (local.value - trial.value + noise) / (predicted + noise)
         length = float(np.linalg.norm(step))
         if ratio < 0.25:
             radius = 0.25 * length
         elif ratio > 0.75:
             radius = max(radius, 2.5 * length)
         if ratio > 1e-4:
-            place, here = place + step, there
-            if _residual(here) < best.residual:
-                best, stalled = Minimum(place, _residual(here), iteration), 0
+            place, local = place + step, trial
+            if _residual(local) < best.residual:
+                best, stalled = Minimum(place, _residual(local), iteration), 0
             elif predicted <= noise:
                 stalled += 1
     return best
@@ -124,8 +126,8 @@ def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
             shift += (length - radius) / radius * length**2 / curve
             if not low < shift < high:
                 shift = 0.5 * (low + high)
-    own = -slope / (values + shift)
-    return np.asarray(vectors @ own), -float(slope @ own + 0.5 * (values * own**2).sum())
+    step = -slope / (values + shift)
+    return np.asarray(vectors @ step), -float(slope @ step + 0.5 * (values * step**2).sum())
 
 
 def _length(slope: FloatArray, values: FloatArray, shift: float) -> float:

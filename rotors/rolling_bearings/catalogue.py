@@ -66,9 +66,9 @@ _INSIDES: dict[str, _Inside] = {
     "spherical-roller": _Inside(0.25, 1.1, 0.33, rows=2, angle=10.5),
 }
 _CONRAD = math.radians(186.0)
-# A roller's contact is no longer than this part of the width, two rows together.
+# Largest length of a roller's contact over the width, two rows together.
 _LONGEST = 0.95
-# Logarithm of the dynamic rating's ratio to the printed one within which the usual count stands.
+# Largest logarithm of the dynamic rating over the printed one with which the usual count is kept.
 _NEAR = 0.1
 
 
@@ -87,17 +87,17 @@ def catalogue_row(
 
     Parameters
     ----------
-    kind
+    kind : CatalogueType
         One of `CatalogueType`; `catalogue_bearing` has all rows of it.
-    bore, outer_diameter, width
-        m; of tapered rollers the whole width T.
-    contact_angle
-        Of types that have one, rad; a usual one where none is given. Of tapered and spherical rollers and self-aligning
-        balls tan α = e/1.5, and of tapered rollers cot α = Y/0.4, with the catalogue's e and Y.
-    clearance
-        Diametral clearance in operation, m; catalogues print the larger value before mounting.
-    dynamic, static
-        Ratings C and C₀ of the whole bearing as printed, N.
+    bore, outer_diameter, width : float
+        Main dimensions [m]; for tapered rollers the whole width T.
+    contact_angle : float, optional
+        Contact angle of types that have one [rad]; a usual one where none is given. For tapered and spherical rollers
+        and self-aligning balls tan α = e/1.5, and of tapered rollers cot α = Y/0.4, with the catalogue's e and Y.
+    clearance : float
+        Diametral clearance in operation [m]; catalogues print the larger value before mounting.
+    dynamic, static : float, optional
+        Ratings C and C₀ of the whole bearing as printed [N].
 
     Raises
     ------
@@ -112,9 +112,9 @@ def catalogue_row(
     require_finite("outer diameter", outer_diameter)
     height = outer_diameter - bore
     require(height > 0.0, "outer diameter", outer_diameter, f"more than the bore, {bore:g} m")
-    for what, rating in (("dynamic rating", dynamic), ("static rating", static)):
+    for label, rating in (("dynamic rating", dynamic), ("static rating", static)):
         if rating is not None:
-            require_finite(what, rating, positive=True)
+            require_finite(label, rating, positive=True)
     angled = contact_angle is None or contact_angle == 0.0 or inside.angle is not None
     require(angled, f"contact angle of a {kind} bearing", contact_angle, "none: its contacts are radial")
     angle = math.radians(inside.angle or 0.0) if contact_angle is None else contact_angle
@@ -135,27 +135,27 @@ def catalogue_row(
     else:
         assert dynamic is not None
         wanted, rated = dynamic, lambda row: dynamic_rating(row, inside.rows)
-    found = []
+    rows = []
     choosable = static is not None and dynamic is not None and not inside.length
     for count in range(max(usual - 2, 3), usual + 3) if choosable else (usual,):
         row = _fitted(make, count, diameter, inside.length * width, pitch, wanted, rated)
         if row is not None and (not isinstance(row, _ROLLERS) or row.length * inside.rows <= _LONGEST * width):
-            found.append(row)
-    if not found:
+            rows.append(row)
+    if not rows:
         name = "static" if static is not None else "dynamic"
         typical = rated(make(usual, diameter, inside.length * width))
         raise RotorError(
             f"{name} rating of a {kind} bearing of {1e3 * bore:g} × {1e3 * outer_diameter:g} × {1e3 * width:g} mm is "
             f"{wanted:g} N; expected about {typical:.3g} N, as elements that fit between its rings have"
         )
-    if dynamic is None or len(found) == 1:
-        return found[0]
+    if dynamic is None or len(rows) == 1:
+        return rows[0]
 
     def missed(row: Row) -> float:
         return abs(math.log(dynamic_rating(row, inside.rows) / dynamic))
 
-    near = [row for row in found if missed(row) <= _NEAR]
-    return min(near, key=lambda row: abs(row.count - usual)) if near else min(found, key=missed)
+    near = [row for row in rows if missed(row) <= _NEAR]
+    return min(near, key=lambda row: abs(row.count - usual)) if near else min(rows, key=missed)
 
 
 def catalogue_bearing(
@@ -185,7 +185,7 @@ def catalogue_bearing(
 
 
 def standing_rows(kind: CatalogueType, row: Row, width: float) -> tuple[Row, ...]:
-    """All rows of a bearing of this type that is ``width`` (m) wide, from one of them."""
+    """All rows of a bearing of this type that is ``width`` [m] wide, from one of them."""
     if kind == "spherical-roller":
         return row.facing(1), row.facing(-1)
     if kind == "self-aligning-ball":

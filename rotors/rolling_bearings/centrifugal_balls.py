@@ -36,7 +36,7 @@ from rotors.rolling_bearings.rows import BallRow
 FloatArray = npt.NDArray[np.float64]
 
 # Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
-# The latter also limits the force error, relative to the larger of the static and the centrifugal force.
+# The largest accepted error also limits the force error, relative to the larger of static and centrifugal force.
 _CLOSED = 1e-15
 _OPEN = 1e-12
 # Newton's method on all balls at once: a ball with an error below this has converged.
@@ -46,7 +46,7 @@ _NEWTON_STEPS, _HALVINGS = 12, 6
 
 @dataclass(frozen=True)
 class CentrifugalBalls:
-    """Contacts of a row of balls under a centrifugal force each, ``thrown`` (N)."""
+    """Contacts of a row of balls under a centrifugal force each, ``thrown`` [N]."""
 
     row: BallRow
     azimuths: FloatArray
@@ -103,7 +103,7 @@ class CentrifugalBalls:
         return force
 
     def _first_forces(self, v: FloatArray) -> FloatArray:
-        """First estimate of the inner contacts' forces, (n, 2), N; zero of a ball that the outer groove alone holds.
+        """First estimate of the inner contacts' forces, (n, 2) [N]; zero of a ball that the outer groove alone holds.
 
         Balls pressed by more than F_c have the static force. Others lean on the outer groove's A_o/F_c across and on
         the slope of its approach along the radius.
@@ -138,7 +138,7 @@ class CentrifugalBalls:
         return np.array(stiffness)[:, None], np.array([self._inner_arm, self._outer_arm])[:, None]
 
     def _inner_force(self, v: FloatArray) -> FloatArray:
-        """Force of the inner contact on one ball's groove, (2,), N."""
+        """Force of the inner contact on one ball's groove, (2,) [N]."""
         row, radial = self.row, np.array([1.0, 0.0])
         alone = self._outer_arm + (self.thrown / row.outer_contact.stiffness) ** (2.0 / 3.0)
         gap = v - alone * radial
@@ -164,15 +164,15 @@ class CentrifugalBalls:
                 force=row.groove_distance,
             )
 
-        found = minimise(local, start, 0.5, _CLOSED)
+        minimum = minimise(local, start, 0.5, _CLOSED)
         # The force of a ball that barely touches has no certain direction: then its possible error decides.
-        there = local(found.place)
-        if found.residual > _OPEN and np.linalg.norm(np.linalg.solve(there.hessian, there.gradient)) > _OPEN:
+        closure = local(minimum.place)
+        if minimum.residual > _OPEN and np.linalg.norm(np.linalg.solve(closure.hessian, closure.gradient)) > _OPEN:
             raise EquilibriumError(
-                f"a ball's contacts miss their grooves by {found.residual:.3g} of the distance of their centres after "
-                f"{found.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
+                f"a ball's contacts miss their grooves by {minimum.residual:.3g} of their centres' distance after "
+                f"{minimum.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
             )
-        return np.asarray(scale * found.place)
+        return np.asarray(scale * minimum.place)
 
     def _outer_rise(self, force: FloatArray) -> float:
         """Complementary energy of the outer contact under f + F_c r less that under F_c r, with a small f's digits."""

@@ -31,17 +31,17 @@ class RingFit:
 
     Parameters
     ----------
-    interference
-        Diametral, of the cold parts, m; negative is a gap.
-    free_diameter
-        Of the partner's other surface, m: the bore of a hollow shaft, 0 if it is solid; the outer diameter of the
-        housing, infinite if it is thick.
-    smoothing
-        Part of the interference that the asperities take, m.
-    modulus, poisson_ratio, expansion
-        Of the partner: Pa, 1, and 1/K; steel unless given.
-    temperature_rise
-        Of the partner over the temperature at which the sizes hold, K.
+    interference : float
+        Diametral interference of the cold parts [m]; negative is a gap.
+    free_diameter : float
+        Diameter of the partner's other surface [m]: the bore of a hollow shaft, 0 if it is solid; the outer diameter of
+        the housing, infinite if it is thick.
+    smoothing : float
+        Part of the interference that the asperities take [m].
+    modulus, poisson_ratio, expansion : float
+        Young's modulus [Pa], Poisson's ratio and thermal expansion [1/K] of the partner; steel unless given.
+    temperature_rise : float
+        Temperature of the partner over the one at which the sizes hold [K].
 
     Raises
     ------
@@ -59,8 +59,8 @@ class RingFit:
 
     def __post_init__(self) -> None:
         """Check that numbers are finite and admissible."""
-        for what in ("interference", "expansion", "temperature_rise"):
-            require_finite(f"{what.replace('_', ' ')} of a fit", getattr(self, what))
+        for attribute in ("interference", "expansion", "temperature_rise"):
+            require_finite(f"{attribute.replace('_', ' ')} of a fit", getattr(self, attribute))
         require_finite("smoothing of a fit", self.smoothing, minimum=0.0)
         require_finite("modulus of a fit's partner", self.modulus, positive=True)
         within = -1.0 < self.poisson_ratio <= 0.5
@@ -70,16 +70,16 @@ class RingFit:
 
 @dataclass(frozen=True)
 class OperatingClearance:
-    """Diametral clearance in operation and what changes it, m.
+    """Diametral clearance in operation and what changes it [m].
 
     Attributes
     ----------
-    clearance
-        In operation; negative is an interference.
-    by_inner_fit, by_outer_fit, by_heat
-        Its changes by the fits on shaft and in housing, and by the expansion of rings and elements.
-    inner_pressure, outer_pressure
-        In the fits, Pa.
+    clearance : float
+        Clearance in operation; negative is an interference.
+    by_inner_fit, by_outer_fit, by_heat : float
+        Changes of the clearance by the fits on shaft and in housing, and by the expansion of rings and elements.
+    inner_pressure, outer_pressure : float
+        Pressures in the fits [Pa].
     """
 
     clearance: float
@@ -109,17 +109,17 @@ def operating_clearance(
 
     Parameters
     ----------
-    clearance
-        Before mounting, m.
-    bore, inner_raceway, outer_raceway, outer_diameter
-        Diameters of the rings' surfaces, ascending, m.
-    shaft, housing
-        Fits; none where the ring is loose. A housing's ``free_diameter`` of 0 is read as infinite.
-    inner_rise, outer_rise, element_rise
-        Temperatures of the rings and of the elements over the one at which the sizes hold, K; the elements have the
+    clearance : float
+        Diametral clearance before mounting [m].
+    bore, inner_raceway, outer_raceway, outer_diameter : float
+        Diameters of the rings' surfaces, ascending [m].
+    shaft, housing : RingFit, optional
+        Fits; None where the ring is loose. A housing's ``free_diameter`` of 0 is read as infinite.
+    inner_rise, outer_rise, element_rise : float, float, float, optional
+        Temperatures of the rings and of the elements over the one at which the sizes hold [K]; the elements have the
         mean of the rings where none is given.
-    expansion, elasticity
-        Of rings and elements, 1/K; steel unless given.
+    expansion, elasticity : float, ContactElasticity
+        Thermal expansion [1/K] and elasticity of rings and elements; steel unless given.
 
     Raises
     ------
@@ -135,8 +135,8 @@ def operating_clearance(
         sizes,
         "bore, inner raceway, outer raceway and outer diameter, ascending, m",
     )
-    for what, rise in (("inner ring", inner_rise), ("outer ring", outer_rise)):
-        require_finite(f"temperature rise of the {what}", rise)
+    for label, rise in (("inner ring", inner_rise), ("outer ring", outer_rise)):
+        require_finite(f"temperature rise of the {label}", rise)
     modulus, ratio = elasticity.ring_modulus, elasticity.ring_poisson_ratio
 
     inner_pressure = outer_pressure = 0.0
@@ -173,31 +173,31 @@ def thermal_offset(
     shaft_expansion: float = _STEEL_EXPANSION,
     housing_expansion: float = _STEEL_EXPANSION,
 ) -> float:
-    """Growth of a shaft over its housing between two bearings, L (α_s ΔT_s − α_h ΔT_h), m.
+    """Growth of a shaft over its housing between two bearings, L (α_s ΔT_s − α_h ΔT_h) [m].
 
     Of two opposed rows the ``axial_offset`` together grows by it where the shaft presses them apart, face to face, and
     falls by it back to back.
 
     Parameters
     ----------
-    distance
-        L between the bearings, m.
-    shaft_rise, housing_rise
-        Temperatures over the one at which the offsets hold, K.
-    shaft_expansion, housing_expansion
-        1/K; steel unless given.
+    distance : float
+        Distance L between the bearings [m].
+    shaft_rise, housing_rise : float
+        Temperatures over the one at which the offsets hold [K].
+    shaft_expansion, housing_expansion : float
+        Thermal expansion [1/K]; steel unless given.
 
     Raises
     ------
     RotorError
         A number that is not finite.
     """
-    for what, value in (
+    for label, value in (
         ("distance", distance),
         ("rise of the shaft", shaft_rise),
         ("rise of the housing", housing_rise),
     ):
-        require_finite(f"{what} between bearings", value)
+        require_finite(f"{label} between bearings", value)
     return distance * (shaft_expansion * shaft_rise - housing_expansion * housing_rise)
 
 

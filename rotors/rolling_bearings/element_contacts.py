@@ -34,9 +34,9 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RowEnergy:
-    """Energy (J), its gradient (5,) and Hessian (5, 5) over the inner ring's displacement q.
+    """Energy [J], its gradient (5,) and Hessian (5, 5) over the inner ring's displacement q.
 
-    ``force`` is the sum of the elements' loads, N: the scale of the gradient's rounding.
+    ``force`` is the sum of the elements' loads [N]: the scale of the gradient's rounding.
     """
 
     value: float
@@ -51,26 +51,26 @@ class ElementLoads:
 
     Attributes
     ----------
-    azimuths
-        (n,): from x towards y, rad.
-    inner_load, outer_load
-        (n,): of the contacts with either ring, N; they differ only with centrifugal forces.
-    inner_angle, outer_angle
-        (n,): contact angles, in the row's direction, rad.
-    inner_pressure, outer_pressure
-        (n,): Hertz's greatest, Pa; of a roller that of its worst slice.
-    inner_semi_axes, outer_semi_axes
-        (n, 2): of a ball's contact ellipses, across the groove and along it, m; of a roller's worst slice, half the
+    azimuths : ndarray, shape (n,)
+        Azimuths from x towards y [rad].
+    inner_load, outer_load : ndarray, shape (n,)
+        Loads of the contacts with either ring [N]; they differ only with centrifugal forces.
+    inner_angle, outer_angle : ndarray, shape (n,)
+        Contact angles, in the row's direction [rad].
+    inner_pressure, outer_pressure : ndarray, shape (n,)
+        Greatest Hertzian pressure [Pa]; for a roller that of its worst slice.
+    inner_semi_axes, outer_semi_axes : ndarray, shape (n, 2)
+        Semi-axes of a ball's contact ellipses, across the groove and along it [m]; for a roller's worst slice half the
         slice's length and half the contact's width.
-    approach
-        (n,): of the rings through the element, m; of a roller at its worst slice.
-    slice_loads
-        (n, slices), N, of rollers at the inner ring.
-    rib_load
-        (n,), N, of tapered rollers on the rib, and of cylindrical ones on flanges.
+    approach : ndarray, shape (n,)
+        Approach of the rings through the element [m]; for a roller at its worst slice.
+    slice_loads : ndarray, shape (n, slices) or None
+        Loads of the slices of rollers at the inner ring [N].
+    rib_load : ndarray, shape (n,) or None
+        Loads of tapered rollers on the rib, and of cylindrical rollers on flanges [N].
 
-    Of balls in four-point contact n is twice their number: first the diagonal that a push along the row loads, then the
-    other one, with negative contact angles.
+    For balls in four-point contact n is twice their number: first the diagonal that a push along the row loads, then
+    the other one, with negative contact angles.
     """
 
     azimuths: FloatArray
@@ -93,7 +93,7 @@ class ElementLoads:
 
     @property
     def peak_pressure(self) -> float:
-        """Greatest pressure in the row, Pa."""
+        """Greatest pressure in the row [Pa]."""
         return float(max(self.inner_pressure.max(), self.outer_pressure.max()))
 
 
@@ -108,7 +108,7 @@ class RowContacts(Protocol):
 
 
 def ball_kinematics(row: BallRow, azimuths: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """v₀, (2,), and B, (balls, 2, 5)."""
+    """Vector v₀, (2,), and matrices B, (balls, 2, 5)."""
     radius, place = row.inner_groove_centre
     cosine, sine, zero = np.cos(azimuths), np.sin(azimuths), np.zeros_like(azimuths)
     motion = np.array(
@@ -154,7 +154,7 @@ class StaticBalls:
 def _spring(
     stiffness: float, vectors: FloatArray, approach: FloatArray, length: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """⅖ K δ^{5/2} of every contact, (n,), and its first and second derivatives by the vector, (n, 2) and (n, 2, 2)."""
+    """Energy ⅖ K δ^{5/2} of every contact, (n,), and its first two derivatives by the vector, (n, 2), (n, 2, 2)."""
     safe = np.where(approach > 0.0, length, 1.0)
     normal, deep = vectors / safe[:, None], np.maximum(approach, 0.0)
     load = stiffness * deep**1.5

@@ -46,9 +46,9 @@ FloatArray = npt.NDArray[np.float64]
 COORDINATES = ("x", "y", "z", "rx", "ry")
 """The inner ring's displacement against the outer: along x, y, z, and rotations about x and y."""
 
-# Stiffness below this part of the largest, rotations scaled by the pitch circle, counts as zero.
+# Part of the largest stiffness below which a stiffness counts as zero, rotations scaled by the pitch circle.
 _NO_STIFFNESS = 1e-9
-# Share of a coordinate in such a motion above which it counts as free.
+# Share of a coordinate in a motion without stiffness above which it counts as free.
 _TAKES_PART = 1e-6
 
 
@@ -58,26 +58,26 @@ class RollingState:
 
     Attributes
     ----------
-    bearing
+    bearing : RollingBearing
         The bearing.
-    displacement
-        (5,): of the inner ring against the outer; of a floating bearing z follows from the other four.
-    load
-        (5,): external load on the inner ring, constraint forces included, the preload spring excluded.
-    reaction
-        (5,): force of the elements on the outer ring: ``load`` plus the spring's force, up to the residual.
-    stiffness
-        (5, 5): tangent, symmetric and positive semidefinite; ∂reaction/∂displacement.
-    rows
+    displacement : ndarray, shape (5,)
+        Displacement of the inner ring against the outer; for a floating bearing z follows from the other four.
+    load : ndarray, shape (5,)
+        External load on the inner ring, constraint forces included, the preload spring excluded.
+    reaction : ndarray, shape (5,)
+        Force of the elements on the outer ring: ``load`` plus the spring's force, up to the residual.
+    stiffness : ndarray, shape (5, 5)
+        Tangent stiffness ∂reaction/∂displacement, symmetric and positive semidefinite.
+    rows : tuple of ElementLoads
         Element loads of each row.
-    row_thrusts
-        Axial force of each row's elements on the outer ring along the row's direction, N.
-    speed
-        Of the inner ring, rad/s.
-    residual
-        Largest force out of balance over the sum of the loads at work.
-    iterations
-        Newton steps taken.
+    row_thrusts : tuple of float
+        Axial force of each row's elements on the outer ring along the row's direction [N].
+    speed : float
+        Speed of the inner ring [rad/s].
+    residual : float
+        Largest force out of balance over the sum of the acting loads.
+    iterations : int
+        Number of Newton steps.
     """
 
     bearing: RollingBearing
@@ -98,12 +98,12 @@ class RollingState:
 
     @property
     def peak_pressure(self) -> float:
-        """Greatest contact pressure, Pa."""
+        """Greatest contact pressure [Pa]."""
         return max(row.peak_pressure for row in self.rows)
 
     @property
     def even_stiffness(self) -> FloatArray:
-        """Stiffness with rotations as displacements of the pitch circle and moments as forces there, (5, 5), N/m."""
+        """Stiffness with rotations as displacements of the pitch circle and moments as forces there, (5, 5) [N/m]."""
         size = np.array([1.0, 1.0, 1.0, self.bearing.reach, self.bearing.reach])
         return np.asarray(self.stiffness / np.outer(size, size))
 
@@ -124,7 +124,7 @@ LARGEST_APPROACH = 0.02
 _TOLERANCE = 1e-14
 _ACCEPTED = 1e-10
 _LEAST_FORCE = 1e-9
-# Last step of a floating ring over the element's diameter, whose effect on the forces is of second order; most steps.
+# Step of a floating ring over the element's diameter at which its iteration ends, and the largest number of steps.
 _SEATED = 1e-12
 _SEATING_STEPS = 100
 
@@ -137,12 +137,12 @@ class RollingElements:
 
     Parameters
     ----------
-    bearing
-        By its geometry.
-    speed
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
-    cage_angle
-        Azimuth of the first element of every row, rad.
+    bearing : RollingBearing
+        The bearing, by its geometry.
+    speed : float
+        Speed of the inner ring [rad/s], the outer at rest: adds centrifugal forces on the elements.
+    cage_angle : float
+        Azimuth of the first element of every row [rad].
 
     Raises
     ------
@@ -164,14 +164,14 @@ class RollingElements:
 
         Parameters
         ----------
-        displacement
-            (5,): over `COORDINATES`, m and rad.
+        displacement : ndarray, shape (5,)
+            Displacement over `COORDINATES` [m, rad].
 
         Returns
         -------
         Local
-            Energy φ(q) − P z (J) with the spring's force P; its gradient, the force (5,) of the shaft on the inner ring
-            (N and N·m); its Hessian, the tangent stiffness (5, 5); ``noise`` (J) and ``force`` (N), the scales of the
+            Energy φ(q) − P z [J] with the spring's force P; its gradient, the force (5,) of the shaft on the inner ring
+            (N and N·m); its Hessian, the tangent stiffness (5, 5); ``noise`` [J] and ``force`` [N], the scales of the
             rounding of energy and forces.
         """
         q = self.seated(displacement)
@@ -229,22 +229,22 @@ def rolling_equilibrium(
     speed: float = 0.0,
     cage_angle: float = 0.0,
 ) -> RollingState:
-    """Equilibrium of the inner ring under a load, some of its coordinates held where asked.
+    """Equilibrium of the inner ring under a load, with the coordinates ``held`` prescribed.
 
     Parameters
     ----------
-    bearing
-        By its geometry.
-    load
-        (5,): force x, y, z (N) and moment about x and y (N·m) on the inner ring at the bearing's centre. The constraint
+    bearing : RollingBearing
+        The bearing, by its geometry.
+    load : sequence of float or ndarray, shape (5,)
+        Force x, y, z [N] and moment about x and y [N·m] on the inner ring at the bearing's centre. The constraint
         carries the load on a held coordinate.
-    held
+    held : mapping of str to float, optional
         Displacement of constrained coordinates, by their names in `COORDINATES`, m and rad. Rotations held at zero
         represent a stiff, aligned shaft.
-    speed
-        Of the inner ring, rad/s, the outer at rest: adds centrifugal forces on the elements.
-    cage_angle
-        Azimuth of the first element of every row, rad.
+    speed : float
+        Speed of the inner ring [rad/s], the outer at rest: adds centrifugal forces on the elements.
+    cage_angle : float
+        Azimuth of the first element of every row [rad].
 
     Returns
     -------
@@ -297,9 +297,9 @@ def rolling_equilibrium(
             force=local.force + float(np.abs(applied / size).sum()),
         )
 
-    found = minimise(potential, np.zeros(int(free.sum())), 1e-3 * bearing.largest_element, _TOLERANCE)
-    q = displaced(found.place)
-    return _state(elements, q, np.where(free, applied, elements.at(q).gradient), found.residual, found.iterations)
+    minimum = minimise(potential, np.zeros(int(free.sum())), 1e-3 * bearing.largest_element, _TOLERANCE)
+    q = displaced(minimum.place)
+    return _state(elements, q, np.where(free, applied, elements.at(q).gradient), minimum.residual, minimum.iterations)
 
 
 def rolling_state(
@@ -313,28 +313,28 @@ def rolling_state(
 
     Parameters
     ----------
-    bearing
-        By its geometry.
-    displacement
-        (5,): over `COORDINATES`, m and rad.
-    speed, cage_angle
-        As of `rolling_equilibrium`.
+    bearing : RollingBearing
+        The bearing, by its geometry.
+    displacement : sequence of float or ndarray, shape (5,)
+        Displacement over `COORDINATES` [m, rad].
+    speed, cage_angle : float
+        See `rolling_equilibrium`.
 
     Returns
     -------
     RollingState
-        Its load is the one that holds the ring there; its residual is zero.
+        State whose load holds the ring at the displacement; its residual is zero.
 
     Raises
     ------
     RotorError, EquilibriumError
         As `rolling_equilibrium`.
     """
-    given = np.array(displacement, dtype=np.float64)
-    finite = given.shape == (5,) and bool(np.isfinite(given).all())
-    require(finite, f"displacement of {bearing.name}", given.tolist(), "five finite numbers: x, y, z, rx, ry")
+    q = np.array(displacement, dtype=np.float64)
+    finite = q.shape == (5,) and bool(np.isfinite(q).all())
+    require(finite, f"displacement of {bearing.name}", q.tolist(), "five finite numbers: x, y, z, rx, ry")
     elements = RollingElements(bearing, speed, cage_angle)
-    return _state(elements, given, elements.at(given).gradient, residual=0.0, iterations=0)
+    return _state(elements, q, elements.at(q).gradient, residual=0.0, iterations=0)
 
 
 def _state(
@@ -361,7 +361,7 @@ def _state(
 
 
 def _released(local: Local) -> Local:
-    """Energy with z left to itself, near its least: the quadratic's minimum over z, and no force along it."""
+    """Energy minimised over z near its minimum, by the quadratic; no force remains along z."""
     gradient, hessian = local.gradient.copy(), local.hessian.copy()
     push, column, stiffness = float(gradient[2]), hessian[:, 2].copy(), float(hessian[2, 2])
     value = local.value
@@ -431,12 +431,12 @@ def linearised_bearing(state: RollingState, name: str, at: float, *, damping: np
 
     Parameters
     ----------
-    state
-        From `rolling_equilibrium`.
-    name, at
-        Name of the bearing in messages, and place of its centre, m from the rotor's left end.
-    damping
-        (2, 2) or (5, 5), N·s/m and its like; zero if not given, as contact mechanics gives none.
+    state : RollingState
+        State from `rolling_equilibrium`.
+    name, at : str, float
+        Name of the bearing in messages, and place of its centre from the rotor's left end [m].
+    damping : array_like, shape (2, 2) or (5, 5), optional
+        Damping [N·s/m and its like]; zero if not given, as contact mechanics gives none.
 
     Raises
     ------
@@ -456,7 +456,7 @@ def linearised_bearing(state: RollingState, name: str, at: float, *, damping: np
 
 
 def kramer_ball_stiffness(count: int, ball_diameter: float, load: float, contact_angle: float = 0.0) -> float:
-    """Radial stiffness (N/m) in the direction of a radial load (N) by Krämer's formula, for a first estimate.
+    """Radial stiffness [N/m] in the direction of a radial load [N] by Krämer's formula, for a first estimate.
 
     k = 13e6 Z^{2/3} d^{1/3} F^{1/3} cos^{5/3} α in N and m (Krämer 1993, after Friswell et al. 2010, chapter 5): no
     clearance, grooves as usual.
@@ -471,7 +471,7 @@ def kramer_roller_stiffness(count: int, length: float, load: float, contact_angl
     return float(1.0e9 * count**0.9 * length**0.8 * load**0.1 * math.cos(contact_angle) ** 1.9)
 
 
-def _require_formula(what: str, count: int, size: float, load: float) -> None:
-    require_count(f"count of {what}", count)
-    require_finite(f"size of {what}", size, positive=True)
-    require_finite(f"load on {what}", load, minimum=0.0)
+def _require_formula(label: str, count: int, size: float, load: float) -> None:
+    require_count(f"count of {label}", count)
+    require_finite(f"size of {label}", size, positive=True)
+    require_finite(f"load on {label}", load, minimum=0.0)

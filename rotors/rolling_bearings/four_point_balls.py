@@ -33,15 +33,15 @@ FloatArray = npt.NDArray[np.float64]
 # largest accepted.
 _ROUNDED, _OPEN = 1e-13, 1e-10
 _NEWTON_STEPS, _HALVINGS = 10, 6
-# Part of E* D² that counts as a load of an unloaded ball, as it does of a bearing's equilibrium.
+# Part of E* D² that counts as the load of an unloaded ball, as in a bearing's equilibrium.
 _LEAST_FORCE = 1e-9
-# Part of that force by which a ball may be out of balance whatever its loads: 1e-8 N for a ball of 10 mm.
+# Part of that force that a ball may be out of balance whatever its loads: 1e-8 N for a ball of 10 mm.
 _NOTHING = 1e-6
 
 
 @dataclass(frozen=True)
 class FourPointBalls:
-    """Contacts of a row of balls with up to four arcs each, under a centrifugal force ``thrown`` (N) each."""
+    """Contacts of a row of balls with up to four arcs each, under a centrifugal force ``thrown`` [N] each."""
 
     row: FourPointRow
     azimuths: FloatArray
@@ -54,9 +54,9 @@ class FourPointBalls:
         value, force, slope = self._contacts(centres, place)
         inner_force, inner_slope = force[:2], slope[:2]
         total = slope.sum(axis=0)
-        # A ball that no contact holds has no stiffness in any.
-        held = np.abs(np.linalg.det(total)) > 0.0
-        total[~held] = np.eye(2)
+        # A ball without contact has no stiffness.
+        is_held = np.abs(np.linalg.det(total)) > 0.0
+        total[~is_held] = np.eye(2)
         motion = self._motion
         mixed = np.einsum("mbij,mbjk->bik", inner_slope, motion)
         hessian = np.einsum("mbij,mbik,mbkl->jl", motion, inner_slope, motion)
@@ -119,7 +119,7 @@ class FourPointBalls:
 
     @cached_property
     def _arms(self) -> FloatArray:
-        """Groove radius less the ball's of every arc, (4, 1), m."""
+        """Groove radius less the ball's of every arc, (4, 1) [m]."""
         row = self.row
         arms = (row.inner_groove - 0.5) * row.ball_diameter, (row.outer_groove - 0.5) * row.ball_diameter
         return np.repeat(arms, 2)[:, None]
@@ -148,7 +148,7 @@ class FourPointBalls:
         return 0.4 * load * deep, load[..., None] * normal, slope
 
     def _places(self, centres: FloatArray) -> FloatArray:
-        """Place of every ball's centre where its forces balance, (n, 2), m."""
+        """Place of every ball's centre where its forces balance, (n, 2) [m]."""
         place = self._first_places(centres)
         error, out, slope = self._balance(centres, place)
         for _ in range(_NEWTON_STEPS):
@@ -218,14 +218,14 @@ class FourPointBalls:
                 force=length * size,
             )
 
-        found = minimise(local, start / length, 1e-3, _ROUNDED)
-        place = length * found.place
+        minimum = minimise(local, start / length, 1e-3, _ROUNDED)
+        place = length * minimum.place
         _, out, _ = self._balance(centres, place[None])
         # Of a ball under a force near rounding, such as that of a slow turn, the last digits are none of the bearing's.
         nothing = _NOTHING * _LEAST_FORCE * self.row.elasticity.contact_modulus * length**2
-        if found.residual > _OPEN and float(np.linalg.norm(out)) > nothing:
+        if minimum.residual > _OPEN and float(np.linalg.norm(out)) > nothing:
             raise EquilibriumError(
-                f"a ball in four-point contact is {found.residual:.3g} of its loads out of balance after "
-                f"{found.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
+                f"a ball in four-point contact is {minimum.residual:.3g} of its loads out of balance after "
+                f"{minimum.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
             )
         return np.asarray(place)

@@ -22,16 +22,16 @@ from rotors.rolling_bearings.rows import BallRow
 
 @dataclass(frozen=True)
 class CharacteristicFrequencies:
-    """Angular frequencies of a row, rad/s.
+    """Angular frequencies of a row [rad/s].
 
     Attributes
     ----------
-    cage
-        FTF, with the sign of the rotation.
-    outer_pass, inner_pass
-        BPFO and BPFI: of the elements over a point of the raceway.
-    spin
-        BSF: of an element about its own axis.
+    cage : float
+        Cage frequency FTF, with the sign of the rotation.
+    outer_pass, inner_pass : float
+        Frequencies BPFO and BPFI at which elements pass a point of the raceway.
+    spin : float
+        Spin BSF of an element about its own axis.
     """
 
     cage: float
@@ -40,7 +40,7 @@ class CharacteristicFrequencies:
     spin: float
 
     def named(self) -> dict[str, float]:
-        """Return positive frequencies by their usual names, with the strikes of a damaged element, rad/s."""
+        """Return positive frequencies by their usual names, with the strikes of a damaged element [rad/s]."""
         return {
             "cage": abs(self.cage),
             "outer raceway": self.outer_pass,
@@ -56,12 +56,12 @@ def characteristic_frequencies(
 
     Parameters
     ----------
-    row
-        By its geometry.
-    speed, outer_speed
-        Of the inner and of the outer ring, signed, rad/s.
-    contact_angle
-        Of balls under load, rad; the nominal one where none is given.
+    row : Row
+        Row, described by its geometry.
+    speed, outer_speed : float
+        Signed speeds of the inner and of the outer ring [rad/s].
+    contact_angle : float, optional
+        Contact angle of balls under load [rad]; by default the nominal one.
 
     Raises
     ------

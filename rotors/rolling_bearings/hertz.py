@@ -24,7 +24,7 @@ from rotors.errors import require, require_finite
 
 @dataclass(frozen=True)
 class ContactElasticity:
-    """Young's moduli (Pa), Poisson's ratios and the elements' density (kg/m³); bearing steel where not given.
+    """Young's moduli [Pa], Poisson's ratios and the elements' density [kg/m³]; bearing steel where not given.
 
     Raises
     ------
@@ -40,15 +40,15 @@ class ContactElasticity:
 
     def __post_init__(self) -> None:
         """Check that moduli and density are positive and that Poisson's ratios are admissible."""
-        for what in ("ring_modulus", "element_modulus", "element_density"):
-            require_finite(f"contact {what}", getattr(self, what), positive=True)
-        for what in ("ring_poisson_ratio", "element_poisson_ratio"):
-            ratio = getattr(self, what)
-            require(-1.0 < ratio <= 0.5, f"contact {what}", ratio, "a number above -1 and at most 0.5")
+        for attribute in ("ring_modulus", "element_modulus", "element_density"):
+            require_finite(f"contact {attribute}", getattr(self, attribute), positive=True)
+        for attribute in ("ring_poisson_ratio", "element_poisson_ratio"):
+            ratio = getattr(self, attribute)
+            require(-1.0 < ratio <= 0.5, f"contact {attribute}", ratio, "a number above -1 and at most 0.5")
 
     @property
     def contact_modulus(self) -> float:
-        """E* of 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂, Pa."""
+        """Contact modulus E* by 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ [Pa]."""
         ring = (1.0 - self.ring_poisson_ratio**2) / self.ring_modulus
         element = (1.0 - self.element_poisson_ratio**2) / self.element_modulus
         return 1.0 / (ring + element)
@@ -56,7 +56,7 @@ class ContactElasticity:
 
 STEEL = ContactElasticity()
 
-# log κ of the longest ellipse considered: far beyond any groove, and R_D still has all its digits.
+# Value log κ of the longest ellipse considered: far beyond any groove, and R_D still has all its digits.
 _LONGEST = 30.0
 
 
@@ -66,12 +66,12 @@ class PointContact:
 
     Attributes
     ----------
-    stiffness
-        N/m^{3/2}.
-    ellipticity
-        κ = a/b, 1 or more.
-    unit_semi_major, unit_semi_minor
-        a and b under a load of 1 N, m; they grow as Q^{1/3}.
+    stiffness : float
+        Stiffness [N/m^{3/2}].
+    ellipticity : float
+        Ellipticity κ = a/b, 1 or more.
+    unit_semi_major, unit_semi_minor : float
+        Semi-axes a and b under a load of 1 N [m]; they grow as Q^{1/3}.
     """
 
     stiffness: float
@@ -81,11 +81,11 @@ class PointContact:
 
     @property
     def unit_pressure(self) -> float:
-        """Greatest pressure under a load of 1 N, Pa; it grows as Q^{1/3}."""
+        """Greatest pressure under a load of 1 N [Pa]; it grows as Q^{1/3}."""
         return 1.5 / (math.pi * self.unit_semi_major * self.unit_semi_minor)
 
     def load_at_pressure(self, pressure: float) -> float:
-        """Load under which the greatest pressure is ``pressure`` (Pa), N."""
+        """Load under which the greatest pressure is ``pressure`` (in Pa) [N]."""
         return (pressure / self.unit_pressure) ** 3
 
 
@@ -106,11 +106,11 @@ def point_contact(curvature_along_major: float, curvature_along_minor: float, co
 
     Parameters
     ----------
-    curvature_along_major, curvature_along_minor
-        Σρ_x and Σρ_y: sum of both bodies' curvatures in the plane of the longer and of the shorter semi-axis, 1/m; a
+    curvature_along_major, curvature_along_minor : float
+        Sums Σρ_x and Σρ_y of both bodies' curvatures in the plane of the longer and of the shorter semi-axis [1/m]; a
         hollow one counts negative, and the plane of the longer axis has the smaller sum.
-    contact_modulus
-        E*, Pa.
+    contact_modulus : float
+        Contact modulus E* [Pa].
 
     Raises
     ------
@@ -131,5 +131,5 @@ def point_contact(curvature_along_major: float, curvature_along_minor: float, co
 
 
 def in_series(first: PointContact, second: PointContact) -> float:
-    """Stiffness (N/m^{3/2}) of two contacts that carry one load: K^{−2/3} = K₁^{−2/3} + K₂^{−2/3}."""
+    """Stiffness [N/m^{3/2}] of two contacts that carry one load: K^{−2/3} = K₁^{−2/3} + K₂^{−2/3}."""
     return float((first.stiffness ** (-2.0 / 3.0) + second.stiffness ** (-2.0 / 3.0)) ** -1.5)

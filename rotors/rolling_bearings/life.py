@@ -116,10 +116,10 @@ def rated_revolutions(state: RollingState, dynamic: float) -> float | None:
 
     Parameters
     ----------
-    state
+    state : RollingState
         The bearing in equilibrium under its load.
-    dynamic
-        C of the whole bearing, as its maker prints it [N].
+    dynamic : float
+        Dynamic rating C of the whole bearing, as its maker prints it [N].
 
     Returns
     -------
@@ -144,10 +144,10 @@ def reference_revolutions(state: RollingState, dynamic: float | None = None) -> 
 
     Parameters
     ----------
-    state
+    state : RollingState
         The bearing in equilibrium.
-    dynamic
-        C of the whole bearing [N]; from the geometry by ISO 281 where none is given.
+    dynamic : float, optional
+        Dynamic rating C of the whole bearing [N]; by default from the geometry by ISO 281.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def reference_revolutions(state: RollingState, dynamic: float | None = None) -> 
 
 
 def _damage(loads: ElementLoads, ratings: tuple[float, float]) -> float:
-    """Σ (Q_c/Q_e)^{−10/3} over both rings, and over both diagonals of four-point balls."""
+    """Sum Σ (Q_c/Q_e)^{−10/3} over both rings, and over both diagonals of four-point balls."""
     diagonals = 1 if np.unique(loads.azimuths).size == loads.azimuths.size else 2
     total = 0.0
     for load, rating, power in zip((loads.inner_load, loads.outer_load), ratings, (3.0, 10.0 / 3.0), strict=True):
@@ -181,7 +181,7 @@ def _damage(loads: ElementLoads, ratings: tuple[float, float]) -> float:
 
 
 def _line_damage(row: LineContactRow, loads: ElementLoads, ratings: tuple[float, float]) -> float:
-    """Σ_k (q_c/q_e)^{−9/2} over both rings."""
+    """Sum Σ_k (q_c/q_e)^{−9/2} over both rings."""
     assert loads.slice_loads is not None
     inner, total = loads.slice_loads, 0.0
     outer = inner + ((loads.outer_load - loads.inner_load) / row.slices)[:, None]
@@ -192,7 +192,7 @@ def _line_damage(row: LineContactRow, loads: ElementLoads, ratings: tuple[float,
 
 
 def _end_stresses(slices: int) -> FloatArray:
-    """f_k, (slices,): one in the middle, 2.3 at the ends."""
+    """Stress factors f_k, (slices,): one in the middle, 2.3 at the ends."""
     if slices == 1:
         return np.ones(1)
     part = np.abs(2.0 * np.arange(1, slices + 1) - slices - 1.0) / (2.0 * slices - 2.0)

@@ -42,7 +42,7 @@ _RATING_PRESSURE, _SELF_ALIGNING_PRESSURE = 4.2e9, 4.6e9
 # ISO 281: groove radii over the ball's diameter up to which ratings hold, and the radius they are made with.
 _WIDEST_INNER, _WIDEST_OUTER, _RATED_GROOVE = 0.52, 0.53, 0.52
 _LARGE_BALL = 25.4
-_EDGE_LOSS = 0.83  # λν of rollers: of stresses at their ends
+_EDGE_LOSS = 0.83  # λν of rollers, for the stresses at their ends
 
 
 def static_rating(row: Row) -> float:
@@ -58,7 +58,7 @@ def static_rating(row: Row) -> float:
 
 
 def dynamic_rating(row: Row, rows: int = 1) -> float:
-    """Radial dynamic load rating C of ``rows`` equal rows in one bearing after ISO 281, N."""
+    """Radial dynamic load rating C of ``rows`` equal rows in one bearing after ISO 281 [N]."""
     gamma, count, rows = row.gamma, row.count, rows * _diagonals(row)
     cosine = math.cos(row.contact_angle)
     if isinstance(row, BallRow):

@@ -60,7 +60,7 @@ _PALMGREN_STEEL = 35948.0 * 1000.0 ** (8.0 / 9.0) * 1000.0 ** (10.0 / 9.0)
 
 @dataclass(frozen=True)
 class LineContactRow:
-    """What rows of rollers have in common: see `RollerRow`, `TaperedRollerRow` and `SphericalRollerRow`."""
+    """Common base of rows of rollers: see `RollerRow`, `TaperedRollerRow` and `SphericalRollerRow`."""
 
     count: int
     roller_diameter: float
@@ -80,30 +80,30 @@ class LineContactRow:
         require_space("roller", self.count, self.roller_diameter, self.pitch_diameter)
         require_finite("roller length", self.length, positive=True)
         require_count("count of slices", self.slices)
-        known = self.profile in ("straight", "logarithmic")
-        require(known, "roller profile", self.profile, "'straight' or 'logarithmic'")
-        for what in ("clearance", "position", "axial_offset"):
-            require_finite(what.replace("_", " "), getattr(self, what))
+        is_known = self.profile in ("straight", "logarithmic")
+        require(is_known, "roller profile", self.profile, "'straight' or 'logarithmic'")
+        for attribute in ("clearance", "position", "axial_offset"):
+            require_finite(attribute.replace("_", " "), getattr(self, attribute))
         require(self.direction in (1, -1), "direction of a row", self.direction, "1 or -1")
 
     @property
     def contact_angle(self) -> float:
-        """α, at the outer ring, rad."""
+        """α, at the outer ring [rad]."""
         return 0.0
 
     @property
     def roller_angle(self) -> float:
-        """β, half the angle of the roller's cone, rad."""
+        """β, half the angle of the roller's cone [rad]."""
         return 0.0
 
     @property
     def tilt_arms(self) -> FloatArray:
-        """l_k: arm of each slice's contact normal about the bearing's centre, (slices,), m."""
+        """l_k: arm of each slice's contact normal about the bearing's centre, (slices,) [m]."""
         return np.asarray(self.position + self.slice_places)
 
     @property
     def element_diameter(self) -> float:
-        """Of the rollers in their middle, m."""
+        """Diameter of the rollers in their middle [m]."""
         return self.roller_diameter
 
     @property
@@ -118,12 +118,12 @@ class LineContactRow:
 
     @property
     def free_approach(self) -> float:
-        """G = e sin α − ½ s cos α: approach of the rings before any displacement, m."""
+        """G = e sin α − ½ s cos α: approach of the rings before any displacement [m]."""
         return self.axial_offset * math.sin(self.contact_angle) - 0.5 * self.clearance * math.cos(self.contact_angle)
 
     @property
     def slack_offset(self) -> float:
-        """Axial offset beyond which the rollers of a centred row touch, m."""
+        """Axial offset beyond which the rollers of a centred row touch [m]."""
         return 0.5 * self.clearance / math.tan(self.contact_angle)
 
     @property
@@ -132,11 +132,11 @@ class LineContactRow:
         return self.roller_diameter * math.cos(self.contact_angle - self.roller_angle) / self.pitch_diameter
 
     def cage_speed(self, speed: float) -> float:
-        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω, rad/s."""
+        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω [rad/s]."""
         return 0.5 * (1.0 - self.gamma) * speed
 
     def centrifugal_force(self, speed: float) -> float:
-        """On one roller, a cylinder of D and L, with the inner ring turning at ``speed`` (rad/s), N."""
+        """Centrifugal force on a roller, a cylinder of D and L, with the inner ring turning at ``speed`` rad/s [N]."""
         mass = self.elasticity.element_density * math.pi / 4.0 * self.roller_diameter**2 * self.length
         return mass * 0.5 * self.pitch_diameter * self.cage_speed(speed) ** 2
 
@@ -145,7 +145,7 @@ class LineContactRow:
         return replace(self, direction=direction)
 
     def axial_force(self, axial_offset: float) -> float:
-        """Force (N) along the row's direction that moves a centred inner ring by ``axial_offset`` (m)."""
+        """Force [N] along the row's direction that moves a centred inner ring by ``axial_offset`` [m]."""
         free = replace(self, axial_offset=axial_offset).free_approach
         deep = np.maximum(free - 2.0 * self.slice_drops, 0.0)
         load = self.stiffness / self.slices * float((deep ** (10.0 / 9.0)).sum())
@@ -153,7 +153,7 @@ class LineContactRow:
 
     @property
     def stiffness(self) -> float:
-        """Contact constant c of one straight roller between both raceways, Q = c δ^{10/9}, N/m^{10/9}.
+        """Contact constant c of one straight roller between both raceways, Q = c δ^{10/9} [N/m^{10/9}].
 
         35 948 L^{8/9} in N and mm (Palmgren; ISO 16281), for the steel that `ContactElasticity` holds by default, and
         in proportion to E* for others: Palmgren's δ goes as (1/E*)^{0.9}.
@@ -163,12 +163,12 @@ class LineContactRow:
 
     @property
     def slice_places(self) -> FloatArray:
-        """Middles of the slices from the roller's middle, (slices,), m."""
+        """Middles of the slices from the roller's middle, (slices,) [m]."""
         return self.length * ((np.arange(self.slices) + 0.5) / self.slices - 0.5)
 
     @property
     def slice_drops(self) -> FloatArray:
-        """Profile drop P at each slice, (slices,), m.
+        """Profile drop P at each slice, (slices,) [m].
 
         ISO/TS 16281:2008, Eqs. 42–44: P = 0.00035 D ln[1 / (1 − (2x/L)²)] for L ≤ 2.5 D; the middle of longer rollers
         is straight, and P = 0.0005 D ln[1 / (1 − ((2|x| − L + 2.5 D) / 2.5 D)²)] at its ends.
@@ -191,32 +191,32 @@ class RollerRow(LineContactRow):
 
     Parameters
     ----------
-    count
-        Rollers, three or more.
-    roller_diameter, length, pitch_diameter
-        D, the effective length L of contact and the diameter of the rollers' centres, m.
-    clearance
-        Diametral, m; negative is an interference.
-    profile
+    count : int
+        Number of rollers, three or more.
+    roller_diameter, length, pitch_diameter : float
+        Diameter D, effective length L of contact, and diameter of the circle of the rollers' centres [m].
+    clearance : float
+        Diametral clearance [m]; negative is an interference.
+    profile : str
         ``"straight"``, or ``"logarithmic"`` as ISO 16281 takes it where nothing else is known.
-    slices
+    slices : int
         Number of laminae of a roller; ISO 16281 requires 30 or more.
-    position
-        Of the rollers' middles from the bearing's centre along z, m.
-    elasticity
-        Steel unless given.
-    axial_offset
-        Axial displacement of the inner ring at assembly along the row's direction, m.
-    direction
-        1 or −1: of the axial load that one flange carries.
-    estimated
+    position : float
+        Position of the rollers' middles from the bearing's centre along z [m].
+    elasticity : ContactElasticity
+        Elasticity of the contacts; steel unless given.
+    axial_offset : float
+        Axial displacement of the inner ring at assembly along the row's direction [m].
+    direction : int
+        Direction, 1 or −1, of the axial load that one flange carries.
+    estimated : bool
         Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
-    flanges
+    flanges : Flanges
         ``"none"`` (NU, N: no axial load), ``"one"`` (NJ: in the row's direction) or ``"both"`` (NUP).
-    flange_stiffness
-        Of one roller between the flanges of both rings, N/m. The energy is ½ k Σ δ² with the approach δ of the flanges
-        at the pitch circle; the couple that tilts a roller between its flanges is left out.
-    axial_clearance
+    flange_stiffness : float
+        Stiffness of one roller between the flanges of both rings [N/m]. The energy is ½ k Σ δ² with the approach δ of
+        the flanges at the pitch circle; the couple that tilts a roller between its flanges is left out.
+    axial_clearance : float
         Axial play of the inner ring, m, half of it to either side.
 
     Raises
@@ -251,11 +251,11 @@ class RollerRow(LineContactRow):
 
     @property
     def slack_offset(self) -> float:
-        """Axial offset beyond which the flange along the row's direction is touched, m."""
+        """Axial offset beyond which the flange along the row's direction is touched [m]."""
         return 0.5 * self.axial_clearance
 
     def axial_force(self, axial_offset: float) -> float:
-        """Force (N) along the row's direction that moves a centred inner ring by ``axial_offset`` (m)."""
+        """Force [N] along the row's direction that moves a centred inner ring by ``axial_offset`` [m]."""
         return self.count * self.flange_stiffness * max(axial_offset - 0.5 * self.axial_clearance, 0.0)
 
 
@@ -267,8 +267,8 @@ class TaperedRollerRow(LineContactRow):
 
     Parameters
     ----------
-    angle
-        Contact angle α: half the angle of the outer raceway's cone, rad.
+    angle : float
+        Contact angle α: half the angle of the outer raceway's cone [rad].
 
     Raises
     ------
@@ -286,7 +286,7 @@ class TaperedRollerRow(LineContactRow):
 
     @property
     def contact_angle(self) -> float:
-        """α, at the outer ring, rad."""
+        """α, at the outer ring [rad]."""
         return self.angle
 
     @cached_property
@@ -301,14 +301,14 @@ class TaperedRollerRow(LineContactRow):
 
     @property
     def tilt_arms(self) -> FloatArray:
-        """l_k = z_m cos α − σ (½ D_pw sin α + ½ D sin β + x_k), (slices,), m."""
+        """l_k = z_m cos α − σ (½ D_pw sin α + ½ D sin β + x_k), (slices,) [m]."""
         foot = 0.5 * self.pitch_diameter * math.sin(self.angle)
         foot += 0.5 * self.roller_diameter * math.sin(self.roller_angle)
         return np.asarray(self.position * math.cos(self.angle) - self.direction * (foot + self.slice_places))
 
     @property
     def slice_drops(self) -> FloatArray:
-        """Profile drop P at each slice, (slices,), m: 0.00045 D ln[1 / (1 − (2x/L)²)] if logarithmic.
+        """Profile drop P at each slice, (slices,) [m]: 0.00045 D ln[1 / (1 − (2x/L)²)] if logarithmic.
 
         ISO/TS 16281:2008, after Nguyen-Schäfer, Computational Tapered and Cylinder Roller Bearings, 2019, Eq. 1.8.
         """
@@ -325,9 +325,9 @@ class SphericalRollerRow(LineContactRow):
 
     Parameters
     ----------
-    angle
+    angle : float
         Contact angle α, rad, the angle of the rollers' middles seen from the bearing's centre.
-    osculation
+    osculation : float
         Contour radius of the rollers over that of the raceways, below 1.
 
     Raises
@@ -348,20 +348,20 @@ class SphericalRollerRow(LineContactRow):
 
     @property
     def contact_angle(self) -> float:
-        """α, rad."""
+        """α [rad]."""
         return self.angle
 
     @property
     def tilt_arms(self) -> FloatArray:
-        """l_k = z_m cos α, (slices,), m."""
+        """l_k = z_m cos α, (slices,) [m]."""
         return np.full(self.slices, self.position * math.cos(self.angle))
 
     @property
     def raceway_radius(self) -> float:
-        """R: of the outer sphere, and of the contour of both raceways, m."""
+        """Radius R of the outer sphere, and of the contour of both raceways [m]."""
         return 0.5 * self.pitch_diameter / math.cos(self.angle) + 0.5 * self.roller_diameter
 
     @property
     def slice_drops(self) -> FloatArray:
-        """Profile drop P = x²/2 (1/r − 1/R) at each slice, (slices,), m."""
+        """Profile drop P = x²/2 (1/r − 1/R) at each slice, (slices,) [m]."""
         return np.asarray(0.5 * self.slice_places**2 * (1.0 / self.osculation - 1.0) / self.raceway_radius)

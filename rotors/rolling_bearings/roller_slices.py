@@ -31,7 +31,7 @@ _STEPS = 7
 
 @dataclass(frozen=True)
 class RollerSlices:
-    """Contacts of a row of rollers cut into slices, with the centrifugal force ``thrown`` (N) on each roller."""
+    """Contacts of a row of rollers cut into slices, with the centrifugal force ``thrown`` [N] on each roller."""
 
     row: LineContactRow
     azimuths: FloatArray
@@ -98,23 +98,23 @@ class RollerSlices:
         """Energy, inner load and tangent of slices with the approaches ``deep``."""
         stiffness = self.row.stiffness / self.row.slices
         if self.thrown == 0.0:
-            touching = np.maximum(deep, 0.0)
+            in_contact = np.maximum(deep, 0.0)
             # The tangent is weakly singular at first touch; an untouched slice has none.
-            root = touching ** (_POWER - 1.0)
-            load = stiffness * root * touching
-            return load * touching / (1.0 + _POWER), load, _POWER * stiffness * root
+            root = in_contact ** (_POWER - 1.0)
+            load = stiffness * root * in_contact
+            return load * in_contact / (1.0 + _POWER), load, _POWER * stiffness * root
         raceway, thrown = 2.0**_POWER * stiffness, self._slice_force
         outwards = thrown / raceway
         alone = outwards ** (1.0 / _POWER)
-        held = deep > alone
-        inner = 0.5 * np.where(held, deep, 2.0 * alone)
+        on_both = deep > alone
+        inner = 0.5 * np.where(on_both, deep, 2.0 * alone)
         for _ in range(_STEPS):
             root = inner ** (_POWER - 1.0)
             both = root * inner + outwards
             outer = both ** (1.0 / _POWER)
             inner = np.maximum(inner - (inner + outer - deep) / (1.0 + root * outer / both), 0.0)
-        inner = np.where(held, inner, 0.0)
-        outer = np.where(held, deep - inner, alone)
+        inner = np.where(on_both, inner, 0.0)
+        outer = np.where(on_both, deep - inner, alone)
         root, outer_root = inner ** (_POWER - 1.0), outer ** (_POWER - 1.0)
         load = raceway * root * inner
         # The outer approach under the centrifugal force alone has no energy.
@@ -124,7 +124,7 @@ class RollerSlices:
 
     @property
     def _slice_force(self) -> float:
-        """f: part of the centrifugal force along the outer normal that a slice bears, N."""
+        """Part f of the centrifugal force along the outer normal that a slice bears [N]."""
         angle, half = self.row.contact_angle, self.row.roller_angle
         return self.thrown * math.cos(angle - half) / math.cos(half) / self.row.slices
 

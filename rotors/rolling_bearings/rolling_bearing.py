@@ -22,13 +22,13 @@ class RollingBearing:
 
     Parameters
     ----------
-    rows
-        At least one.
-    axial_preload
-        A constant force of a spring on the inner ring along z, N.
-    name
+    rows : sequence of Row
+        Rows, at least one.
+    axial_preload : float
+        A constant force of a spring on the inner ring along z [N].
+    name : str
         Name in messages.
-    floating
+    floating : bool
         Whether the outer ring slides freely in its seat along z; q is then the inner ring's displacement against the
         seat.
 
@@ -52,9 +52,9 @@ class RollingBearing:
         require_finite(f"axial preload of {self.name}", self.axial_preload)
         if self.floating:
             self._require_floats()
-        held = self.axial_preload == 0.0 or self.has_axial_stiffness
+        is_opposed = self.axial_preload == 0.0 or self.has_axial_stiffness
         require(
-            held,
+            is_opposed,
             f"axial preload of {self.name}",
             self.axial_preload,
             "none: cylindrical rollers carry no axial load without flanges",
@@ -81,12 +81,12 @@ class RollingBearing:
 
     @property
     def force_scale(self) -> float:
-        """E* D² of the smallest element, a force far above its capacity, N."""
+        """E* D² of the smallest element, a force far above its capacity [N]."""
         return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
 
     @property
     def largest_element(self) -> float:
-        """Largest diameter of an element, m."""
+        """Largest diameter of an element [m]."""
         return max(row.element_diameter for row in self.rows)
 
     @property
@@ -103,12 +103,12 @@ class RollingBearing:
 
     @property
     def is_preloaded(self) -> bool:
-        """Whether an offset at assembly, of one row or of two against each other, or a spring loads it along z."""
+        """Whether a spring, or an offset of one row or of two opposed rows at assembly, loads the bearing along z."""
         return self.axial_preload != 0.0 or any(row.axial_offset != 0.0 for row in self.rows)
 
     @property
     def reach(self) -> float:
-        """Half the largest pitch diameter, by which rotations are scaled to displacements of the contacts, m."""
+        """Half the largest pitch diameter, by which rotations are scaled to displacements of the contacts [m]."""
         return 0.5 * max(row.pitch_diameter for row in self.rows)
 
 
@@ -125,15 +125,15 @@ def paired(
 
     Parameters
     ----------
-    row
-        One of them; its own position and direction are replaced.
-    arrangement
+    row : Row
+        One of the two rows; its position and direction are replaced.
+    arrangement : Arrangement
         ``"back to back"`` (O: contact lines meet the axis outside the pair), ``"face to face"`` (X: inside) or
         ``"tandem"`` (both carry loads towards +z).
-    spacing
-        Between the centres of the rows' balls, m.
-    preload
-        Axial force with which the rows press each other when nothing else loads them, N.
+    spacing : float
+        Distance between the centres of the rows' balls [m].
+    preload : float
+        Axial force with which the rows press each other when nothing else loads them [N].
 
     Raises
     ------
@@ -141,8 +141,8 @@ def paired(
         A spacing that is not positive, a negative preload, or a preload in tandem, where no row opposes it, or of rows
         without axial stiffness.
     """
-    known = arrangement in _DIRECTIONS
-    require(known, "arrangement", arrangement, f"one of {', '.join(map(repr, _DIRECTIONS))}")
+    is_known = arrangement in _DIRECTIONS
+    require(is_known, "arrangement", arrangement, f"one of {', '.join(map(repr, _DIRECTIONS))}")
     require_finite("spacing of the rows", spacing, positive=True)
     require_finite("preload of the rows", preload, minimum=0.0)
     left, right = _DIRECTIONS[arrangement]
@@ -157,7 +157,7 @@ def paired(
 
 
 def preload_offset(row: Row, preload: float) -> float:
-    """Axial offset (m) at which a centred row presses with the axial force ``preload`` (N) along its direction.
+    """Axial offset [m] at which a centred row presses with the axial force ``preload`` [N] along its direction.
 
     The root e of the row's `axial_force`, which grows with e: of balls, with v = (A cos α − s/2, A sin α + e),
     Z K (|v| − A)^{3/2} sin α' = F, sin α' = v_z/|v|; of rollers Z c/n Σ_k δ_k^{10/9} sin α = F.

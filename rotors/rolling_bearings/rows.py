@@ -14,14 +14,16 @@ from rotors.errors import require, require_count, require_finite
 from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, in_series, point_contact
 
 
-def require_space(what: str, count: int, diameter: float, pitch_diameter: float) -> None:
+def require_space(label: str, count: int, diameter: float, pitch_diameter: float) -> None:
     """Raise `RotorError` unless three or more elements fit side by side on the pitch circle; diameters in m."""
-    require_count(f"count of {what}s", count)
-    require(count >= 3, f"count of {what}s", count, "three or more")
-    require_finite(f"{what} diameter", diameter, positive=True)
+    require_count(f"count of {label}s", count)
+    require(count >= 3, f"count of {label}s", count, "three or more")
+    require_finite(f"{label} diameter", diameter, positive=True)
     require_finite("pitch diameter", pitch_diameter, positive=True)
     room = pitch_diameter * math.sin(math.pi / count)
-    require(diameter < room, f"{what} diameter", diameter, f"less than {room:g} m, the room that {count} {what}s have")
+    require(
+        diameter < room, f"{label} diameter", diameter, f"less than {room:g} m, the room that {count} {label}s have"
+    )
 
 
 RIGHT_ANGLE = math.pi / 2.0
@@ -33,27 +35,27 @@ class BallRow:
 
     Parameters
     ----------
-    count
-        Balls, three or more.
-    ball_diameter, pitch_diameter
-        D and the diameter of the balls' centres, m.
-    contact_angle
-        Nominal, without clearance, rad; 0 for deep grooves.
-    inner_groove, outer_groove
+    count : int
+        Number of balls, three or more.
+    ball_diameter, pitch_diameter : float
+        Diameter D of the balls, and diameter of the circle of their centres [m].
+    contact_angle : float
+        Nominal contact angle, without clearance [rad]; 0 for deep grooves.
+    inner_groove, outer_groove : float
         Groove radius over ball diameter, above 0.5 and up to 1; of an outer ring up to `spherical_groove`.
-    clearance
-        Diametral, m; negative is an interference.
-    axial_offset
-        Axial displacement of the inner groove at assembly along the row's direction, m: a preload against another row.
-    position
-        Of the balls' centres from the bearing's centre along z, m.
-    direction
-        1 or −1.
-    groove_limits
-        Contact angles between which there is a groove, in the row's direction, rad: its shoulders.
-    elasticity
-        Steel unless given.
-    estimated
+    clearance : float
+        Diametral clearance [m]; negative is an interference.
+    axial_offset : float
+        Axial displacement of the inner groove at assembly along the row's direction [m]: a preload against another row.
+    position : float
+        Position of the balls' centres from the bearing's centre along z [m].
+    direction : int
+        Direction of the row, 1 or −1.
+    groove_limits : tuple of float
+        Contact angles between which there is a groove, in the row's direction [rad]: its shoulders.
+    elasticity : ContactElasticity
+        Elasticity of the contacts; steel unless given.
+    estimated : bool
         Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
 
     Raises
@@ -82,16 +84,16 @@ class BallRow:
         within = 0.0 <= self.contact_angle < RIGHT_ANGLE
         require(within, "contact angle", self.contact_angle, "an angle from 0 to below a right angle, rad")
         widest = max(1.0, 1.001 * spherical_groove(self.ball_diameter, self.pitch_diameter, self.contact_angle))
-        for what, most in (("inner_groove", 1.0), ("outer_groove", widest)):
-            ratio = getattr(self, what)
+        for attribute, most in (("inner_groove", 1.0), ("outer_groove", widest)):
+            ratio = getattr(self, attribute)
             require(
                 0.5 < ratio <= most,
-                what,
+                attribute,
                 ratio,
                 f"a groove radius over 0.5 and up to {most:.4g} of the ball's diameter",
             )
-        for what in ("clearance", "axial_offset", "position"):
-            require_finite(what.replace("_", " "), getattr(self, what))
+        for attribute in ("clearance", "axial_offset", "position"):
+            require_finite(attribute.replace("_", " "), getattr(self, attribute))
         room = 2.0 * self.groove_distance * math.cos(self.contact_angle)
         require(self.clearance < room, "clearance", self.clearance, f"less than {room:g} m, which its grooves leave")
         require(self.direction in (1, -1), "direction of a row", self.direction, "1 or -1")
@@ -103,31 +105,31 @@ class BallRow:
 
     @property
     def element_diameter(self) -> float:
-        """Of the balls, m."""
+        """Diameter of the balls [m]."""
         return self.ball_diameter
 
     @property
     def groove_distance(self) -> float:
-        """A: between the centres of the grooves' curvature with a ball that just touches both, m."""
+        """Distance A of the centres of the grooves' curvature with a ball that just touches both [m]."""
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter
 
     @property
     def groove_offset(self) -> tuple[float, float]:
-        """v₀ = (A cos α − s/2, σ (A sin α + e)): from the outer to the inner groove's centre, radial and axial, m."""
+        """v₀ = (A cos α − s/2, σ (A sin α + e)): from the outer to the inner groove's centre, radial and axial [m]."""
         radial = self.groove_distance * math.cos(self.contact_angle) - 0.5 * self.clearance
         axial = self.groove_distance * math.sin(self.contact_angle) + self.axial_offset
         return radial, self.direction * axial
 
     @property
     def groove_excess(self) -> float:
-        """|v₀|² − A² by its terms, m²: |v₀| − A itself would lose the digits that A has and the approach has not."""
+        """Difference |v₀|² − A² by its terms [m²]: |v₀| − A would lose digits."""
         distance, offset, angle = self.groove_distance, self.axial_offset, self.contact_angle
         radial = 0.25 * self.clearance**2 - distance * self.clearance * math.cos(angle)
         return radial + 2.0 * distance * offset * math.sin(angle) + offset**2
 
     @property
     def inner_groove_centre(self) -> tuple[float, float]:
-        """Radius of the inner groove's centres of curvature, and their place along z, m."""
+        """Radius of the inner groove's centres of curvature, and their place along z [m]."""
         arm = (self.inner_groove - 0.5) * self.ball_diameter
         radius = 0.5 * self.pitch_diameter + arm * math.cos(self.contact_angle)
         return radius, self.position + self.direction * arm * math.sin(self.contact_angle)
@@ -153,11 +155,11 @@ class BallRow:
 
     @property
     def slack_offset(self) -> float:
-        """Axial offset at which a centred row carries no axial force, m."""
+        """Axial offset at which a centred row carries no axial force [m]."""
         return -self.groove_distance * math.sin(self.contact_angle)
 
     def cage_speed(self, speed: float) -> float:
-        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω, rad/s.
+        """Speed of the cage with the inner ring turning at ``speed`` and the outer at rest, ½ (1 − γ) Ω [rad/s].
 
         γ = D cos α / D_pw, of pure rolling at the nominal contact angle (Harris and Kotzalas 2006).
         """
@@ -169,7 +171,7 @@ class BallRow:
 
     @property
     def free_contact_angle(self) -> float:
-        """Contact angle after the inner ring has taken up the clearance along the row's direction, rad."""
+        """Contact angle after the inner ring has taken up the clearance along the row's direction [rad]."""
         radial = math.cos(self.contact_angle) - 0.5 * self.clearance / self.groove_distance
         return math.acos(min(radial, 1.0))
 
@@ -185,11 +187,11 @@ class BallRow:
 
     @cached_property
     def stiffness(self) -> float:
-        """Of one ball between both grooves, Q = K δ^{3/2}, N/m^{3/2}."""
+        """Contact constant K of one ball between both grooves, Q = K δ^{3/2} [N/m^{3/2}]."""
         return in_series(self.inner_contact, self.outer_contact)
 
     def centrifugal_force(self, speed: float) -> float:
-        """On one ball with the inner ring turning at ``speed`` (rad/s) and the outer at rest, N.
+        """Centrifugal force on one ball with the inner ring turning at ``speed`` (in rad/s) and the outer at rest [N].
 
         m (D_pw / 2) ω² with the cage's speed ω (Harris and Kotzalas 2006).
         """
@@ -197,7 +199,7 @@ class BallRow:
         return mass * 0.5 * self.pitch_diameter * self.cage_speed(speed) ** 2
 
     def axial_force(self, axial_offset: float) -> float:
-        """Force (N) along the row's direction that moves a centred inner ring by ``axial_offset`` (m)."""
+        """Force [N] along the row's direction that moves a centred inner ring by ``axial_offset`` [m]."""
         angle = self.contact_angle
         radial = self.groove_distance * math.cos(angle) - 0.5 * self.clearance
         axial = self.groove_distance * math.sin(angle) + axial_offset
@@ -250,13 +252,15 @@ class FourPointRow(BallRow):
     @property
     def arcs(self) -> tuple[BallRow, BallRow]:
         """Rows that the ball makes with the arcs of one diagonal alone: loaded by +z along the row, and by −z."""
-        given = {one.name: getattr(self, one.name) for one in fields(BallRow)}
-        given["groove_limits"] = (-RIGHT_ANGLE, RIGHT_ANGLE)
-        return BallRow(**given), BallRow(**given | {"direction": -self.direction, "axial_offset": -self.axial_offset})
+        arguments = {one.name: getattr(self, one.name) for one in fields(BallRow)}
+        arguments["groove_limits"] = (-RIGHT_ANGLE, RIGHT_ANGLE)
+        return BallRow(**arguments), BallRow(
+            **arguments | {"direction": -self.direction, "axial_offset": -self.axial_offset}
+        )
 
     @property
     def shims(self) -> tuple[float, float]:
-        """Distance of the arcs' centres of the inner and of the outer ring, m."""
+        """Distance of the arcs' centres of the inner and of the outer ring [m]."""
         inner, outer = (
             (2.0 * groove - 1.0) * self.ball_diameter * math.sin(self.contact_angle)
             for groove in (self.inner_groove, self.outer_groove)

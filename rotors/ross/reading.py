@@ -29,7 +29,7 @@ def is_bearing(entry: Entry) -> bool:
 
 
 def read_bearing(entry: Entry, at: float, pedestal: Pedestal | None, remarks: Remarks) -> Bearing:
-    """Read a bearing at a position (m) from its saved coefficients.
+    """Read a bearing at a position [m] from its saved coefficients.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def read_pedestal(masses: Sequence[Entry], supports: Sequence[Entry], bearing: E
 
 
 def lateral_mass(entry: Entry) -> float:
-    """Mass of a `PointMass`, which must be the same in x and in y, kg."""
+    """Mass of a `PointMass`, which must be the same in x and in y [kg]."""
     if not {"mx", "my", "mz"} & entry.values.keys():
         return entry.number("m")
     mass = entry.number("mx")
@@ -135,12 +135,13 @@ class RossModel(NamedTuple):
 
     Attributes
     ----------
-    rotor
-        Named after the file; a segment for every element, a disc for every disk, gear and point mass on the shaft.
-    bearings
+    rotor : Rotor
+        Rotor named after the file; it has a segment for every element, and a disc for every disk, gear and point mass
+        on the shaft.
+    bearings : tuple of Bearing
         Every bearing and seal that holds the shaft.
-    warnings
-        Properties of the file that the rotor does not have or has otherwise, a sentence each.
+    warnings : tuple of str
+        Properties of the file that the rotor lacks or has in another form, a sentence each.
     """
 
     rotor: Rotor
@@ -158,7 +159,7 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
 
     Parameters
     ----------
-    path
+    path : str or os.PathLike[str]
         The file.
 
     Raises
@@ -176,14 +177,14 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
         raise RotorError(f"{file}: no {SHAFT}; expected a rotor with a shaft")
     shaft = read_shaft(chosen[SHAFT], remarks)
     on_shaft, on_links = _parted(chosen[POINT_MASS], shaft)
-    held, supports = _parted(chosen["bearing"], shaft)
+    bearings_on_shaft, supports = _parted(chosen["bearing"], shaft)
 
     discs = list(shaft.discs)
     discs += [_disc(entry, shaft, remarks) for entry in chosen[DISC]]
     discs += [Disc(shaft.position(entry.required_node()), lateral_mass(entry)) for entry in on_shaft]
     bearings = []
     linked: set[int] = set()
-    for entry in held:
+    for entry in bearings_on_shaft:
         pedestal = _pedestal_of(entry, on_links, supports, shaft, linked, remarks)
         bearings.append(read_bearing(entry, shaft.position(entry.required_node()), pedestal, remarks))
     for entry in [*on_links, *supports]:
@@ -197,7 +198,7 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
 
 
 def _sorted_by_kind(entries: Sequence[Entry]) -> dict[str, list[Entry]]:
-    """Elements sorted by their kind here; raises for an unknown kind."""
+    """Elements sorted by kind; raises for an unknown kind."""
     chosen: dict[str, list[Entry]] = {SHAFT: [], DISC: [], POINT_MASS: [], "bearing": []}
     tests: list[tuple[str, Callable[[Entry], bool]]] = [
         (SHAFT, lambda entry: entry.kind in (SHAFT, COUPLING)),

@@ -31,7 +31,7 @@ _SAME = 1e-9
 
 
 def ross_hutchinson(bore_ratio: float, poisson_ratio: float) -> float:
-    """κ of ROSS's ``hutchinson`` for a bore over outer diameter m and a Poisson ratio ν."""
+    """Shear coefficient κ of ROSS's ``hutchinson`` for a bore over outer diameter m and a Poisson ratio ν."""
     m2, nu = bore_ratio**2, poisson_ratio
     squared = (1.0 + m2) ** 2
     below = squared * (7.0 + 12.0 * nu + 4.0 * nu**2) + 4.0 * m2 * (5.0 + 6.0 * nu + 2.0 * nu**2)
@@ -43,11 +43,11 @@ def ross_formula(segment: Segment) -> tuple[str, bool, float]:
 
     Returns
     -------
-    name
+    name : str
         ``"cowper"`` or ``"hutchinson"``.
-    shear_effects
+    shear_effects : bool
         False where the segment is rigid in shear.
-    difference
+    difference : float
         Relative difference of its κ from that of the segment at the middle of its length.
     """
     middle = segment.section(0.5)
@@ -89,14 +89,14 @@ class ReadShaft:
 
     Attributes
     ----------
-    segments
-        From the left end.
-    discs
-        At the ends of couplings whose halves differ.
-    first_node
+    segments : tuple of Segment or Coupling
+        Segments from the left end.
+    discs : tuple of Disc
+        Discs at the ends of couplings whose halves differ.
+    first_node : int
         Number of the node at the left end.
-    positions
-        (segments + 1,): of the nodes, m.
+    positions : tuple of float, shape (segments + 1,)
+        Positions of the nodes [m].
     """
 
     segments: tuple[Segment | Coupling, ...]
@@ -110,7 +110,7 @@ class ReadShaft:
         return self.first_node + len(self.segments)
 
     def position(self, node: int) -> float:
-        """Distance of a node from the left end, m."""
+        """Distance of a node from the left end [m]."""
         return self.positions[node - self.first_node]
 
 
@@ -182,7 +182,7 @@ def _segment(entry: Entry, remarks: Remarks) -> Segment:
 
 
 def _material(entry: Entry) -> ShaftMaterial:
-    """Of E, G and Poisson's ratio two are enough, as in ROSS."""
+    """Read the material, for which two of E, G and Poisson's ratio are enough, as in ROSS."""
     density = entry.number("rho")
     if "E" not in entry.values:
         shear = entry.number("G_s")
@@ -196,12 +196,12 @@ def _shear(
     entry: Entry, material: ElasticMaterial, diameters: tuple[float, float, float, float], remarks: Remarks
 ) -> float | ShearFormula:
     """Shear coefficient as in ROSS, with remarks on properties that the exact segment cannot have."""
-    for flag, kept in (("rotary_inertia", "rotary inertia"), ("gyroscopic", "gyroscopic moment")):
+    for flag, property_name in (("rotary_inertia", "rotary inertia"), ("gyroscopic", "gyroscopic moment")):
         if not entry.flag(flag):
-            remarks.add(entry.place, f"{flag} is false; the segment keeps its {kept}")
-    for name, what in (("torque", "torque"), ("alpha", "mass-proportional damping"), ("beta", "internal damping")):
+            remarks.add(entry.place, f"{flag} is false; the segment keeps its {property_name}")
+    for name, term in (("torque", "torque"), ("alpha", "mass-proportional damping"), ("beta", "internal damping")):
         if (value := entry.number(name, 0.0)) != 0.0:
-            remarks.add(entry.place, f"{name} is {value:g}; the shaft's {what} is left out")
+            remarks.add(entry.place, f"{name} is {value:g}; the shaft's {term} is left out")
     if not entry.flag("shear_effects"):
         return RIGID_IN_SHEAR
     method = entry.values.get("shear_method_calc", "cowper")
@@ -261,8 +261,8 @@ def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[flo
     return coupling, () if alike else tuple(ends)
 
 
-def _note_unknown(entry: Entry, known: frozenset[str], remarks: Remarks) -> None:
+def _note_unknown(entry: Entry, known_names: frozenset[str], remarks: Remarks) -> None:
     """Remark on keys that are unknown for this class of element."""
     for name in entry.values:
-        if name not in known:
+        if name not in known_names:
             remarks.add(entry.place, f"{name} is not read")

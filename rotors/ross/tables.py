@@ -52,12 +52,12 @@ class Entry:
 
     Attributes
     ----------
-    file
+    file : str
         Name of the file, for messages.
-    key
-        Of its table, such as ``ShaftElement_Shaft Element 0``.
-    values
-        Its keys as they stand in the file.
+    key : str
+        Key of the element's table, such as ``ShaftElement_Shaft Element 0``.
+    values : mapping of str to Any
+        Keys and values of the table as they stand in the file.
     """
 
     file: str
@@ -77,8 +77,8 @@ class Entry:
     @property
     def tag(self) -> str:
         """Name of the element; without one, the rest of its key."""
-        given = self.values.get("tag")
-        return given if isinstance(given, str) and given else self.key.partition("_")[2] or self.key
+        tag = self.values.get("tag")
+        return tag if isinstance(tag, str) and tag else self.key.partition("_")[2] or self.key
 
     def error(self, name: str, expected: str) -> RotorError:
         """Error of a key, with file, key and value."""

@@ -24,10 +24,10 @@ FloatArray = npt.NDArray[np.float64]
 Table = dict[str, Any]
 
 ROSS_VERSION = "2.3.0"
-"""The release whose form the files have."""
+"""Release of ROSS whose format the files have."""
 
 DEFAULT_ELEMENTS = 20
-"""Elements along the rotor, at least, where no length is asked for."""
+"""Least number of elements along the rotor where no element length is given."""
 
 
 def write_ross(
@@ -45,19 +45,19 @@ def write_ross(
 
     Parameters
     ----------
-    path
+    path : str or os.PathLike[str]
         The file; its suffix should be ``.toml``.
-    rotor
-        Of distributed mass.
-    bearings
-        Its bearings.
-    element_length
-        Longest element, m; by default a twentieth of the rotor.
+    rotor : Rotor
+        Rotor of distributed mass.
+    bearings : sequence of Bearing
+        Bearings of the rotor.
+    element_length : float, optional
+        Longest element [m]; by default a twentieth of the rotor.
 
     Returns
     -------
     tuple of str
-        Properties that ROSS does not have or computes otherwise, a sentence each.
+        Properties that ROSS lacks or computes in another way, a sentence each.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def write_ross(
 
 
 def _nodes(rotor: Rotor, bearings: Sequence[Bearing], longest: float) -> tuple[FloatArray, list[int]]:
-    """Positions of the nodes (n,), m, and to which segment each element between them belongs, (n − 1,)."""
+    """Positions of the nodes (n,) [m], and the segment of each element between them, (n − 1,)."""
     places = [disc.at for disc in rotor.discs] + [bearing.at for bearing in bearings]
     stations = merged_positions(rotor.joints, places)
     nodes, owners = [0.0], []
@@ -218,7 +218,7 @@ def _bearing(bearing: Bearing, node: int, remarks: Remarks) -> Table:
     speeds = 1 if bearing.speeds is None else bearing.speeds.size
     if bearing.speeds is not None:
         table["frequency"] = bearing.speeds.tolist()
-    for letter, what, matrix in (("k", "stiffness", bearing.stiffness), ("c", "damping", bearing.damping)):
+    for letter, label, matrix in (("k", "stiffness", bearing.stiffness), ("c", "damping", bearing.damping)):
         rest = matrix.copy()
         for place, (row, column) in PLACES.items():
             if row < matrix.shape[-1]:
@@ -227,13 +227,13 @@ def _bearing(bearing: Bearing, node: int, remarks: Remarks) -> Table:
             else:
                 table[letter + place] = [0.0] * speeds
         if rest.any():
-            remarks.add(f"bearing {bearing.name!r}", f"ROSS has no tilting {what}, nor any that couples it; left out")
+            remarks.add(f"bearing {bearing.name!r}", f"ROSS has no tilting {label}, nor any that couples it; left out")
     return table
 
 
 def _pedestal(name: str, pedestal: Pedestal, node: int) -> list[Table]:
-    what = f"mass of the pedestal of bearing {name!r}"
-    require(pedestal.mass > 0.0, what, pedestal.mass, "a positive mass: ROSS inverts the mass matrix")
+    label = f"mass of the pedestal of bearing {name!r}"
+    require(pedestal.mass > 0.0, label, pedestal.mass, "a positive mass: ROSS inverts the mass matrix")
     support: Table = {"class": "BearingElement", "n": node, "tag": f"{name} support"}
     for letter, matrix in (("k", pedestal.stiffness), ("c", pedestal.damping)):
         for place, (row, column) in PLACES.items():

@@ -37,7 +37,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 # Products of two fields, on elements this short, are integrated to rounding.
 GAUSS_FRACTIONS, GAUSS_WEIGHTS = gauss_rule(10)
-# For the squares of forward and backward whirl.
+# Quadrature rule for the squares of forward and backward whirl.
 SQUARE_FRACTIONS, SQUARE_WEIGHTS = gauss_rule(6)
 
 
@@ -60,24 +60,24 @@ class DiscretisedShaft:
 
     Attributes
     ----------
-    nodes
-        (p + 1,): ascending positions, m (they and the stations are not in scaled units).
-    table
+    nodes : ndarray, shape (p + 1,)
+        Ascending positions [m] (they and the stations are not in scaled units).
+    table : ShaftElements
         The distinct elements, in scaled units.
-    element
-        (p,): place of each element in the table.
-    node_inertia, node_stiffness
-        (p + 1, n): at the nodes; an infinite stiffness is a constraint.
-    node_polar
-        (p + 1,): polar moment of inertia at the nodes, for the gyroscopic matrix of bending.
-    length_unit
-        m.
-    displacement_unit
-        (n,): SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
-    highest
-        rad/s up to which the elements are short enough.
-    stations
-        (s,): ascending positions of segment ends, discs and supports, m; nodes need not be among them.
+    element : ndarray of int, shape (p,)
+        Place of each element in the table.
+    node_inertia, node_stiffness : ndarray, shape (p + 1, n)
+        Inertia and stiffness at the nodes; an infinite stiffness is a constraint.
+    node_polar : ndarray, shape (p + 1,)
+        Polar moment of inertia at the nodes, for the gyroscopic matrix of bending.
+    length_unit : float
+        Length unit [m].
+    displacement_unit : ndarray, shape (n,)
+        SI value of a displacement and rotation of one, at unit modal mass in kg·m² or kg.
+    highest : float
+        Frequency up to which the elements are short enough [rad/s].
+    stations : ndarray, shape (s,)
+        Ascending positions of segment ends, discs and supports [m]; nodes need not be among them.
     """
 
     nodes: FloatArray
@@ -93,7 +93,7 @@ class DiscretisedShaft:
 
     @property
     def size(self) -> int:
-        """Displacements at a node: 2 in bending, 1 of a rod."""
+        """Number of displacements at a node: 2 in bending, 1 for a rod."""
         return self.table.size
 
     @cached_property
@@ -136,9 +136,10 @@ class DiscretisedShaft:
 
         Parameters
         ----------
-        translation, rotation
-            (b,): ω² that multiplies the mass and the rotary inertia, real or complex; without the second, both
-            are the first. For e^{λt} in circular coordinates they are −λ² and −λ² ± 2iΩλ.
+        translation : array_like, shape (b,)
+            Factor ω² of the mass, real or complex; −λ² for e^{λt} in circular coordinates.
+        rotation : array_like, shape (b,), optional
+            Factor ω² of the rotary inertia; −λ² ± 2iΩλ in circular coordinates; by default ``translation``.
         """
         return np.moveaxis(self.table.transfer_matrices(translation, rotation)[:, :, 0], 0, 1)[self.element]
 
@@ -165,7 +166,7 @@ class DiscretisedShaft:
         return replace(self, node_stiffness=stiffness)
 
     def node_at(self, position: float) -> int:
-        """Index of the node at a position (m), which must be one of the nodes."""
+        """Index of the node at a position [m], which must be one of the nodes."""
         return station_index(self.nodes, position)
 
     def with_nodes(self, positions: FloatArray) -> "DiscretisedShaft":
@@ -200,21 +201,21 @@ class DiscretisedShaft:
         if self.size == 1:
             free = not bool((self.node_stiffness > 0.0).any())
             return np.ones((1, place.size, 1))[: int(free)]
-        held = place[self.node_stiffness[:, 0] > 0.0]
+        supported = place[self.node_stiffness[:, 0] > 0.0]
         slope, constant = np.ones_like(place), np.zeros_like(place)
         loaded = bool(self.table.coefficients[:, 5].any())
         tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
-        if held.size == 0:
+        if supported.size == 0:
             shift = np.stack([slope, constant], axis=-1)
             tilt = np.stack([place - place.mean(), slope], axis=-1)
             return np.stack([shift] if tilt_held else [shift, tilt])
-        if held.size == 1 and not tilt_held:
-            return np.stack([place - held[0], slope], axis=-1)[None]
+        if supported.size == 1 and not tilt_held:
+            return np.stack([place - supported[0], slope], axis=-1)[None]
         return np.zeros((0, place.size, 2))
 
 
 def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    """Values at some of ``size`` nodes, those of the given ascending indices; zero at the others."""
+    """Spread values at the nodes of ascending ``index`` to ``size`` nodes; zero at the others."""
     if size == index.size:
         return values
     whole = np.zeros((size, *values.shape[1:]), dtype=values.dtype)
@@ -222,7 +223,7 @@ def spread(size: int, index: IntArray, values: npt.NDArray[Scalar]) -> npt.NDArr
     return whole
 
 
-# Elements are this many times shorter than the inequalities demand: the series then stay below |λ²| = 5.
+# Factor by which elements are shorter than the inequalities demand: the series then stay below |λ²| = 5.
 ELEMENT_MARGIN = 2.0
 MOST_ELEMENTS = 50_000
 
@@ -233,22 +234,26 @@ class ContinuousShaft:
 
     Attributes
     ----------
-    label
+    label : str
         Name in messages.
-    nodes
-        (s + 1,): ends of the spans, m.
-    stations
-        (r,): ascending positions of segment ends, discs and supports, m.
-    kind, start, end, lengths
-        (s,): of every span its kind, the fractions of that kind's own span it covers, and its length, m.
-    coefficients, uniform
-        (k, 6 or 2, j) and (k,): of the kinds, as in `rotors.transfer_matrix.timoshenko.ShaftElements`.
-    stiffness, inertia, force
-        (k, n), (k, n) and (k,): their least stiffness, their largest inertia, and axial force, per length in SI.
-    node_inertia, node_stiffness
-        (s + 1, n); and ``node_polar`` (s + 1,).
-    length_unit, displacement_unit
-        As in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
+    nodes : ndarray, shape (s + 1,)
+        Ends of the spans [m].
+    stations : ndarray, shape (r,)
+        Ascending positions of segment ends, discs and supports [m].
+    kind, start, end, lengths : ndarray, shape (s,)
+        Kind of every span, the fractions of the kind's span that it covers, and its length [m].
+    coefficients : ndarray, shape (k, 6 or 2, j)
+        Coefficients of the kinds, as in `rotors.transfer_matrix.timoshenko.ShaftElements`.
+    uniform : ndarray of bool, shape (k,)
+        Whether a kind does not taper.
+    stiffness, inertia : ndarray, shape (k, n)
+        Least stiffness and largest inertia of the kinds, per length in SI.
+    force : ndarray, shape (k,)
+        Axial force of the kinds [N].
+    node_inertia, node_stiffness : ndarray, shape (s + 1, n)
+        Inertia and stiffness at the nodes; ``node_polar`` (s + 1,) is the polar inertia.
+    length_unit, displacement_unit : float, ndarray
+        Units as in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
     """
 
     label: str
@@ -291,7 +296,7 @@ class ContinuousShaft:
 
     @cached_property
     def _wave_sums(self) -> tuple[float, float]:
-        """∫ (m / k)^½ dz with the stiffness against shear (or of the rod), and ∫ (m / k)^¼ dz with that of bending."""
+        """Integrals ∫ (m / k)^½ dz with the shear (or rod) stiffness, and ∫ (m / k)^¼ dz with the bending stiffness."""
         heavy = self.inertia[self.kind, 0]
         shear = self.lengths @ np.sqrt(heavy / self.stiffness[self.kind, 0])
         bent = self.stiffness.shape[1] == 2
@@ -325,12 +330,12 @@ class ContinuousShaft:
         nodes, index, element, kind, middle, half, lengths = cut_spans(
             counts, self.nodes, self.kind, self.start, self.end, self.lengths, self.uniform
         )
-        given = self.coefficients[kind]
-        if given.shape[2] > 1:
-            given = restricted(given, middle, half)
+        coefficients = self.coefficients[kind]
+        if coefficients.shape[2] > 1:
+            coefficients = restricted(coefficients, middle, half)
         return DiscretisedShaft(
             nodes=nodes,
-            table=ShaftElements(lengths / self.length_unit, given),
+            table=ShaftElements(lengths / self.length_unit, coefficients),
             element=element,
             node_inertia=spread(nodes.size, index, self.node_inertia),
             node_stiffness=spread(nodes.size, index, self.node_stiffness),
@@ -342,7 +347,7 @@ class ContinuousShaft:
         )
 
     def held(self, places: Sequence[float], *springs: Sequence[tuple[float, ...]]) -> "list[ContinuousShaft]":
-        """Put the shaft on springs to ground at some places (m), n stiffnesses (in scaled units) each.
+        """Put the shaft on springs to ground at some places [m], n stiffnesses (in scaled units) each.
 
         Returns one shaft for each set of springs; the places are common to all sets.
         """
@@ -361,7 +366,7 @@ class ContinuousShaft:
         return continuous_shafts
 
     def with_nodes(self, nodes: FloatArray) -> "ContinuousShaft":
-        """Replace the nodes (m) by others that include them; new ones carry nothing, and are no stations."""
+        """Replace the nodes [m] by others that include them; new ones carry nothing, and are no stations."""
         span = np.clip(np.searchsorted(self.nodes, 0.5 * (nodes[1:] + nodes[:-1])) - 1, 0, self.kind.size - 1)
         left, width = self.nodes[span], np.diff(self.nodes)[span]
         # Places within the span, and from them within the kind's own span.
@@ -383,7 +388,7 @@ class ContinuousShaft:
 
 
 def discretise_together(continuous_shafts: Sequence[ContinuousShaft], highest: float) -> list[DiscretisedShaft]:
-    """Discretised shafts, valid up to ``highest`` rad/s, of shafts that differ in their springs only."""
+    """Discretise shafts that differ only in their springs, valid up to ``highest`` rad/s."""
     first = continuous_shafts[0].cut(highest)
     index = first.nodes.searchsorted(continuous_shafts[0].nodes)
     springs = [

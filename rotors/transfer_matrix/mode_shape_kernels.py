@@ -23,7 +23,7 @@ def energy_weights(
     fractions: FloatArray,
     weights: FloatArray,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -38,13 +38,13 @@ def energy_weights(
     nodal = (elements + 1) * n
     mass, turning = np.zeros(motion_size + nodal), np.zeros(motion_size + nodal)
     strain = np.zeros(strain_size + nodal)
-    values = np.empty((lengths.size, points, given.shape[1]))
+    values = np.empty((lengths.size, points, coefficients.shape[1]))
     for e in range(lengths.size):
         for g in range(points):
-            for row in range(given.shape[1]):
+            for row in range(coefficients.shape[1]):
                 total = 0.0
-                for j in range(given.shape[2] - 1, -1, -1):
-                    total = total * (2.0 * fractions[g] - 1.0) + given[e, row, j]
+                for j in range(coefficients.shape[2] - 1, -1, -1):
+                    total = total * (2.0 * fractions[g] - 1.0) + coefficients[e, row, j]
                 values[e, g, row] = total * lengths[e] * weights[g]
     at_motion, at_strain = 0, 0
     for number in range(elements):
@@ -76,7 +76,7 @@ def energy_rows(
     states: FloatArray,
     fractions: FloatArray,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     motion: FloatArray,
     strain: FloatArray,
@@ -94,7 +94,9 @@ def energy_rows(
     for k in range(squared.size):
         if k == 0 or squared[k] != squared[k - 1]:
             for e in range(lengths.size):
-                element_transfer_matrices(lengths[e], given[e], squared[k], squared[k], fractions, transfer_matrices[e])
+                element_transfer_matrices(
+                    lengths[e], coefficients[e], squared[k], squared[k], fractions, transfer_matrices[e]
+                )
         at_motion, at_strain = 0, 0
         for number in range(elements):
             for g in range(fractions.size):
@@ -117,7 +119,7 @@ def energy_rows(
 
 
 INVERSE_ITERATIONS = 2
-# Replaces a vanishing pivot, as at a root hit to the last digit.
+# Value that replaces a vanishing pivot, as at a root hit to the last digit.
 LEAST_PIVOT = 1e-30
 
 
@@ -151,14 +153,14 @@ def shooting_band(
                 band[row, 2 * n * node + i - row + width] = 1.0
             else:
                 component = i - n
-                own = 2 * n * node + component - row + width
+                diagonal = 2 * n * node + component - row + width
                 if math.isinf(stiffness[node, component]):
-                    band[row, own] = 1.0
+                    band[row, diagonal] = 1.0
                     continue
                 term = stiffness[node, component] - squared * inertia[node, component]
                 scale[row] = max(1.0, abs(term))
-                band[row, own] = -term / scale[row]
-                band[row, own + n] = 1.0 / scale[row]
+                band[row, diagonal] = -term / scale[row]
+                band[row, diagonal + n] = 1.0 / scale[row]
             if node > 0:
                 transfer = transfer_matrices[element[node - 1]]
                 for j in range(2 * n):
@@ -180,8 +182,8 @@ def factor_band(band: FloatArray, pivots: IntArray) -> None:
         end = min(k + 2 * width, order - 1)
         if pivot != k:
             for j in range(k, end + 1):
-                own, other = j - k + width, j - pivot + width
-                band[k, own], band[pivot, other] = band[pivot, other], band[k, own]
+                pivot_column, other = j - k + width, j - pivot + width
+                band[k, pivot_column], band[pivot, other] = band[pivot, other], band[k, pivot_column]
         if abs(band[k, width]) < LEAST_PIVOT:
             band[k, width] = LEAST_PIVOT
         for i in range(k + 1, last + 1):
@@ -253,7 +255,7 @@ def _orthonormalise(vectors: FloatArray) -> None:
 def null_states(
     squared: FloatArray,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -273,7 +275,7 @@ def null_states(
         while end < number and squared[end] == squared[first]:
             end += 1
         at = squared[first : first + 1]
-        table_transfer_matrices(lengths, given, at, at, np.ones(1), transfer_matrices)
+        table_transfer_matrices(lengths, coefficients, at, at, np.ones(1), transfer_matrices)
         shooting_band(squared[first], transfer_matrices[0, :, 0], element, stiffness, inertia, band, scale)
         factor_band(band, pivots)
         group = states[first:end]
@@ -297,7 +299,7 @@ def shooting_responses(
     squared: float,
     loads: FloatArray,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -308,7 +310,7 @@ def shooting_responses(
     band, scale, pivots = np.empty((order, 3 * width + 1)), np.empty(order), np.empty(order, np.intp)
     transfer_matrices = np.empty((1, lengths.size, 1, 2 * n, 2 * n))
     at = np.full(1, squared)
-    table_transfer_matrices(lengths, given, at, at, np.ones(1), transfer_matrices)
+    table_transfer_matrices(lengths, coefficients, at, at, np.ones(1), transfer_matrices)
     shooting_band(squared, transfer_matrices[0, :, 0], element, stiffness, inertia, band, scale)
     factor_band(band, pivots)
     states = np.empty(loads.shape)
@@ -320,10 +322,10 @@ def shooting_responses(
 
 
 @inner(error_model="python")
-def _product(motion: FloatArray, one: int, other: int, mass: FloatArray) -> float:
+def _product(motion: FloatArray, first: int, second: int, mass: FloatArray) -> float:
     total = 0.0
     for i in range(mass.size):
-        total += mass[i] * motion[one, i] * motion[other, i]
+        total += mass[i] * motion[first, i] * motion[second, i]
     return total
 
 
@@ -333,16 +335,16 @@ def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray,
 
     Rows reduced below the part ``least`` of their norm are dropped, the rest moved up; returns the number left.
     """
-    kept = 0
+    count = 0
     for row in range(motion.shape[0]):
         source, left = row, 1.0
         # First normalised, then orthogonalised twice, because of rounding.
         for turn in range(3):
-            for other in range(kept if turn else 0):
-                overlap = _product(motion, other, kept, mass)
+            for other in range(count if turn else 0):
+                overlap = _product(motion, other, count, mass)
                 for rows in (motion, strain, shapes):
                     for i in range(rows.shape[1]):
-                        rows[kept, i] -= overlap * rows[other, i]
+                        rows[count, i] -= overlap * rows[other, i]
             norm = math.sqrt(_product(motion, source, source, mass))
             left = left * norm if turn else norm
             if left <= (least if turn else 0.0):
@@ -350,8 +352,8 @@ def mass_orthonormal(motion: FloatArray, strain: FloatArray, shapes: FloatArray,
                 break
             for rows in (motion, strain, shapes):
                 for i in range(rows.shape[1]):
-                    rows[kept, i] = rows[source, i] / norm
-            source, left = kept, left if turn else 1.0
+                    rows[count, i] = rows[source, i] / norm
+            source, left = count, left if turn else 1.0
         if left > 0.0:
-            kept += 1
-    return kept
+            count += 1
+    return count

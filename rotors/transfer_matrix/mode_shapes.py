@@ -36,12 +36,12 @@ class ShaftFields:
 
     Attributes
     ----------
-    shaft
+    shaft : DiscretisedShaft
         The shaft.
-    frequency_squared
-        (k,): ω² of each field.
-    states
-        (k, p + 1, 2n): state just right of each node.
+    frequency_squared : ndarray, shape (k,)
+        Squared frequency ω² of each field [rad²/s²].
+    states : ndarray, shape (k, p + 1, 2n)
+        State just right of each node.
     """
 
     shaft: DiscretisedShaft
@@ -64,13 +64,12 @@ class ShaftFields:
 
         Parameters
         ----------
-        mixture
-            (m, k): rows are the combinations; without it, the fields themselves.
+        mixture : ndarray, shape (m, k), optional
+            Combinations, in rows; by default the fields themselves.
 
         Returns
         -------
-        mass, stiffness
-            Both (m, m).
+        mass, stiffness : ndarray, shape (m, m)
         """
         motion, strain = self._rows
         if mixture is not None:
@@ -124,7 +123,7 @@ class ShaftFields:
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
         energy_rows(
             self.frequency_squared,
-            np.ascontiguousarray(self.states),  # as wherever the kernel is called, which is compiled for each layout
+            np.ascontiguousarray(self.states),  # contiguous at every call: the kernel is compiled for each layout
             GAUSS_FRACTIONS,
             table.lengths,
             table.coefficients,
@@ -135,14 +134,14 @@ class ShaftFields:
         return motion, strain
 
 
-# Roots closer than this share one null space, at their mean: the frequencies are good to 1e-12. Shapes err by as much,
-# which a heavy disc amplifies.
+# Relative distance below which roots share one null space, at their mean: frequencies are good to 1e-12. Shapes err by
+# as much, which a heavy disc amplifies.
 ONE_NULL_SPACE = 2e-12
-# Roots closer than this are multiples of one root: a set of modes holds all of them or none.
+# Relative distance below which roots are one multiple root: a set of modes holds all of them or none.
 SAME_ROOT = 1e-10
-# Smallest share of a rigid motion in an elastic mode, as a part of its norm, that is removed.
+# Smallest share of a rigid motion in the norm of an elastic mode that is removed.
 LEAST_SHARE = 1e-12
-# Shapes of roots closer than this mix in rounding, and are separated again by their energies.
+# Relative distance of roots below which rounding mixes their shapes; their energies separate them again.
 NEAR_ROOT = 1e-4
 
 
@@ -210,20 +209,20 @@ def solve_mode_shapes(
 
     Parameters
     ----------
-    shaft
+    shaft : DiscretisedShaft
         The shaft.
-    frequencies
-        (m,): ascending, rad/s, the rigid motions' zeros first.
+    frequencies : ndarray, shape (m,)
+        Natural frequencies, ascending [rad/s], the rigid motions' zeros first.
 
     Returns
     -------
-    fields
-        m fields.
-    mixture
-        (m, m): modes are ``mixture @ fields``; block diagonal over groups of near roots, but for the rigid motions'
+    fields : ShaftFields
+        The m fields.
+    mixture : ndarray, shape (m, m)
+        Modes are ``mixture @ fields``; block diagonal over groups of near roots, but for the rigid motions'
         share that is taken out of the others where rounding has left one.
-    mass, stiffness
-        (m, m): integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
+    mass, stiffness : ndarray, shape (m, m)
+        Integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
     """
     from rotors.transfer_matrix.mode_shape_kernels import null_states
 
@@ -272,9 +271,9 @@ def ritz_vectors(mass: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, F
 
 
 DEFAULT_COUNT = 10
-# Part of the frequency scale below which there are rigid motions only.
+# Part of the frequency scale below which only rigid motions lie.
 STANDSTILL = 1e-12
-# A first guess this far off would mean a model of no finite frequency at all.
+# Largest error of a first guess; beyond it the model has no finite frequency.
 MOST_DOUBLINGS = 200
 
 
@@ -289,7 +288,7 @@ class SolvedModes:
 
 
 def find_modes(continuous_shaft: ContinuousShaft, frequency_limit: float | None, count: int | None) -> SolvedModes:
-    """Every mode of a shaft below the limit (rad/s), or the lowest ``count``."""
+    """Every mode of a shaft below the limit [rad/s], or the lowest ``count``."""
     require(
         frequency_limit is None or count is None,
         "frequency_limit and count",
@@ -311,7 +310,7 @@ def find_modes(continuous_shaft: ContinuousShaft, frequency_limit: float | None,
 
 
 def certified_modes(shaft: DiscretisedShaft, wanted: int, limit: float | None = None) -> SolvedModes:
-    """Solve for the lowest ``wanted`` modes of a shaft: all below a limit (rad/s), or with all twins of the last one.
+    """Solve for the lowest ``wanted`` modes of a shaft: all below a limit [rad/s], or with all twins of the last one.
 
     Raises
     ------
@@ -326,7 +325,7 @@ def certified_modes(shaft: DiscretisedShaft, wanted: int, limit: float | None = 
 
 
 def limit_above(last: float, shaft: DiscretisedShaft) -> float:
-    """Return a limit (rad/s) a little above the last mode, which takes in its twins, if it has any."""
+    """Return a limit [rad/s] a little above the last mode, which takes in its twins, if it has any."""
     return min(max(last * (1.0 + 2.0 * SAME_ROOT), STANDSTILL * shaft.highest), shaft.highest)
 
 
@@ -356,7 +355,7 @@ def shaft_with_modes(continuous_shaft: ContinuousShaft, wanted: int) -> Discreti
 
 
 def require_positions(stations: FloatArray, z: npt.ArrayLike) -> FloatArray:
-    """Positions (m) as an array clipped onto the shaft; raises `RotorError` for one beyond its ends."""
+    """Positions [m] as an array clipped onto the shaft; raises `RotorError` for one beyond its ends."""
     positions = np.atleast_1d(np.asarray(z, dtype=np.float64))
     low, high = float(stations[0]), float(stations[-1])
     slack = STATION_TOLERANCE * (high - low)

@@ -41,19 +41,19 @@ def free_rod_shaft(rotor: Rotor, motion: RodMotion) -> ContinuousShaft:
     """Assemble the continuous shaft of a rotor's torsion, or its axial motion, without supports."""
     rows, inertia_column = (TORSION, 2) if motion == "torsion" else (AXIAL, 0)
     profile = rotor.profile
-    given = profile.coefficients[:, rows]
+    coefficients = profile.coefficients[:, rows]
     # Compliance at the middle stands for that of a tapering span.
-    force = float(np.exp(-np.log(given[profile.section_of_span, 0, 0]).mean())) / rotor.length
+    force = float(np.exp(-np.log(coefficients[profile.section_of_span, 0, 0]).mean())) / rotor.length
     distributed = float(rotor.mass_model == "distributed")
-    sides = np.array([-1.0, 0.0, 1.0])[:, None] ** np.arange(given.shape[2])
-    values = np.einsum("kfj,sj->ksf", given, sides)
+    sides = np.array([-1.0, 0.0, 1.0])[:, None] ** np.arange(coefficients.shape[2])
+    values = np.einsum("kfj,sj->ksf", coefficients, sides)
     units = [force * rotor.length, distributed * rotor.length / force]
     return _continuous_shaft(
         rotor,
-        coefficients=given * np.array(units)[:, None],
+        coefficients=coefficients * np.array(units)[:, None],
         stiffness=1.0 / values[:, :, :1].max(axis=1),
         inertia=distributed * values[:, :, 1:].max(axis=1),
-        force=np.zeros(given.shape[0]),
+        force=np.zeros(coefficients.shape[0]),
         node_inertia=rotor.spans.inertias[:, inertia_column, None] / force,
         node_polar=np.zeros(rotor.spans.nodes.size),
         displacement_unit=np.array([1.0 / np.sqrt(force)]),

@@ -53,11 +53,11 @@ class ShaftElements:
 
     Attributes
     ----------
-    lengths
-        (e,).
-    coefficients
-        (e, 6, j) in bending: 1/(κGA + P), 1/EI, ρA, ρI, g and g P; (e, 2, j) of a rod: 1/EA and ρA, or 1/GJ
-        and ρJ. Over the last axis, the coefficients of 1, s, s², ...; of uniform elements alone, j is 1.
+    lengths : ndarray, shape (e,)
+        Lengths of the elements.
+    coefficients : ndarray, shape (e, 6, j) or (e, 2, j)
+        Coefficients; in bending 1/(κGA + P), 1/EI, ρA, ρI, g and g P; for a rod 1/EA and ρA, or 1/GJ and ρJ. The last
+        axis has the coefficients of 1, s, s², ...; j is 1 where all elements are uniform.
     """
 
     lengths: FloatArray
@@ -65,7 +65,7 @@ class ShaftElements:
 
     @property
     def size(self) -> int:
-        """Displacements at an end, n: 2 in bending, 1 of a rod."""
+        """Number n of displacements at an end: 2 in bending, 1 for a rod."""
         return 2 if self.coefficients.shape[1] == 6 else 1
 
     def transfer_matrices(
@@ -75,16 +75,17 @@ class ShaftElements:
 
         Parameters
         ----------
-        translation, rotation
-            (b,): ω² at the mass and at the rotary inertia, real or complex, of a size for which the elements are
-            short enough; of a rod the first alone counts. Without the second, both are the first.
-        fractions
-            (k,): of every element's length; the whole of it if not given.
+        translation : array_like, shape (b,)
+            Factor ω² of the mass, real or complex, of a size for which the elements are short enough.
+        rotation : array_like, shape (b,), optional
+            Factor ω² of the rotary inertia, unused for a rod; by default ``translation``.
+        fractions : ndarray, shape (k,), optional
+            Fractions of every element's length; by default the whole length.
 
         Returns
         -------
-        (b, e, k, 2n, 2n)
-            In the order displacement, rotation, force, moment; or angle, torque.
+        ndarray, shape (b, e, k, 2n, 2n)
+            Rows and columns in the order displacement, rotation, force, moment; or angle, torque.
         """
         from rotors.transfer_matrix.timoshenko_kernels import table_transfer_matrices
 
@@ -110,7 +111,7 @@ class ShaftElements:
         return out
 
     def growth(self, frequency: float) -> FloatArray:
-        """About by what power of e motion at most grows along the elements at ω, (e,): the root of a bound on |λ²|."""
+        """Bound on the exponential growth of motion along the elements at ω, (e,): the root of a bound on |λ²|."""
         largest = np.abs(self.coefficients).sum(axis=2) * self.lengths[:, None]
         if self.size == 1:
             return np.asarray(frequency * np.sqrt(largest[:, 0] * largest[:, 1]))
@@ -128,11 +129,11 @@ class ShaftElements:
 
     def coefficients_at(self, element: IntArray, fractions: FloatArray) -> FloatArray:
         """Coefficients at fractions (z,) of some elements (z,), (z, 6) or (z, 2)."""
-        given = self.coefficients[element]
-        if given.shape[2] == 1:
-            return given[:, :, 0]
-        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(given.shape[2])
-        return np.asarray(np.einsum("zfj,zj->zf", given, powers))
+        selected = self.coefficients[element]
+        if selected.shape[2] == 1:
+            return selected[:, :, 0]
+        powers = (2.0 * fractions[:, None] - 1.0) ** np.arange(selected.shape[2])
+        return np.asarray(np.einsum("zfj,zj->zf", selected, powers))
 
 
 def _pair(translation: npt.ArrayLike, rotation: npt.ArrayLike | None) -> tuple[NumberArray, NumberArray]:

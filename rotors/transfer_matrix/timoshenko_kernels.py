@@ -46,10 +46,12 @@ ElementArrays = tuple[FloatArray, IntArray, IntArray, IntArray, FloatArray, Floa
 
 
 @inner(error_model="python", fastmath=FINITE)
-def timoshenko_transfer_matrix(h: float, given: FloatArray, translation: Any, rotation: Any, out: NumberArray) -> None:
-    """T of a uniform beam of length h by its closed form; ``given`` (6,) as in `ShaftElements`."""
-    a, b, k = given[0] * h, given[1] * h, given[4] * h
-    m, j = translation * given[2] * h, (rotation * given[3] - given[5]) * h
+def timoshenko_transfer_matrix(
+    h: float, coefficients: FloatArray, translation: Any, rotation: Any, out: NumberArray
+) -> None:
+    """T of a uniform beam of length h by its closed form; ``coefficients`` (6,) as in `ShaftElements`."""
+    a, b, k = coefficients[0] * h, coefficients[1] * h, coefficients[4] * h
+    m, j = translation * coefficients[2] * h, (rotation * coefficients[3] - coefficients[5]) * h
     am, bj, bk, km = a * m, b * j, b * k, k * m
     e1, e2 = -(am + bj), b * m * (a * j - k * k)
     older, newer = 0.0 * e1, 0.0 * e1 + 1.0
@@ -85,9 +87,9 @@ def timoshenko_transfer_matrix(h: float, given: FloatArray, translation: Any, ro
 
 
 @inner(error_model="python", fastmath=FINITE)
-def rod_transfer_matrix(h: float, given: FloatArray, translation: Any, out: NumberArray) -> None:
+def rod_transfer_matrix(h: float, coefficients: FloatArray, translation: Any, out: NumberArray) -> None:
     """T of a uniform rod of length h, by the series of cosine and sine."""
-    twist, swing = given[0] * h, translation * given[1] * h
+    twist, swing = coefficients[0] * h, translation * coefficients[1] * h
     root = -twist * swing
     cosine, sine, power = 0.0 * root + 1.0, 0.0 * root + 1.0, 0.0 * root + 1.0
     for n in range(1, CLOSED_TERMS):
@@ -100,12 +102,12 @@ def rod_transfer_matrix(h: float, given: FloatArray, translation: Any, out: Numb
 
 
 @inner(error_model="python")
-def taper_power_series(h: float, given: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
+def taper_power_series(h: float, coefficients: FloatArray, translation: Any, rotation: Any, series: NumberArray) -> int:
     """Power series of the fundamental matrix about the middle of a tapering element; returns its number of terms.
 
     With s from −1 to 1, y(s) = Σ Y_k s^k · y(0) and Y_{k+1} = h/2 Σ_j A_j Y_{k−j} / (k + 1).
     """
-    beam, order, size = given.shape[0] == 6, given.shape[1], series.shape[1]
+    beam, order, size = coefficients.shape[0] == 6, coefficients.shape[1], series.shape[1]
     for row in range(size):
         for column in range(size):
             series[0, row, column] = 1.0 if row == column else 0.0
@@ -119,13 +121,15 @@ def taper_power_series(h: float, given: FloatArray, translation: Any, rotation: 
             for j in range(min(k + 1, order)):
                 older = series[k - j]
                 if beam:
-                    y0 += given[4, j] * older[1, column] + given[0, j] * older[2, column]
-                    y1 += given[1, j] * older[3, column]
-                    y2 -= translation * given[2, j] * older[0, column]
-                    y3 -= (rotation * given[3, j] - given[5, j]) * older[1, column] + given[4, j] * older[2, column]
+                    y0 += coefficients[4, j] * older[1, column] + coefficients[0, j] * older[2, column]
+                    y1 += coefficients[1, j] * older[3, column]
+                    y2 -= translation * coefficients[2, j] * older[0, column]
+                    y3 -= (rotation * coefficients[3, j] - coefficients[5, j]) * older[1, column] + coefficients[
+                        4, j
+                    ] * older[2, column]
                 else:
-                    y0 += given[0, j] * older[1, column]
-                    y1 -= translation * given[1, j] * older[0, column]
+                    y0 += coefficients[0, j] * older[1, column]
+                    y1 -= translation * coefficients[1, j] * older[0, column]
             series[k + 1, 0, column] = factor * y0
             series[k + 1, 1, column] = factor * y1
             if beam:
@@ -166,20 +170,20 @@ def symplectic_inverse(matrix: NumberArray, out: NumberArray) -> None:
 
 @counted(error_model="python", no_cpython_wrapper=True)
 def element_transfer_matrices(
-    h: float, given: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
+    h: float, coefficients: FloatArray, translation: Any, rotation: Any, fractions: FloatArray, out: NumberArray
 ) -> None:
     """T from an element's left end to fractions (k,) of its length h, into ``out`` (k, 2n, 2n)."""
-    if given.shape[1] == 1:
+    if coefficients.shape[1] == 1:
         for k in range(fractions.size):
-            if given.shape[0] == 6:
-                timoshenko_transfer_matrix(fractions[k] * h, given[:, 0], translation, rotation, out[k])
+            if coefficients.shape[0] == 6:
+                timoshenko_transfer_matrix(fractions[k] * h, coefficients[:, 0], translation, rotation, out[k])
             else:
-                rod_transfer_matrix(fractions[k] * h, given[:, 0], translation, out[k])
+                rod_transfer_matrix(fractions[k] * h, coefficients[:, 0], translation, out[k])
         return
     size = out.shape[1]
     series = np.empty((MOST_TERMS, size, size), out.dtype)
     value, inverse = np.empty((size, size), out.dtype), np.empty((size, size), out.dtype)
-    terms = taper_power_series(h, given, translation, rotation, series)
+    terms = taper_power_series(h, coefficients, translation, rotation, series)
     series_at(series, terms, -1.0, value)
     symplectic_inverse(value, inverse)
     for k in range(fractions.size):
@@ -194,19 +198,19 @@ def element_transfer_matrices(
 
 @counted(error_model="python", no_cpython_wrapper=True)
 def transfer_matrix(
-    h: float, given: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
+    h: float, coefficients: FloatArray, translation: Any, rotation: Any, whole: FloatArray, out: NumberArray
 ) -> None:
     """Transfer matrix T of a whole element into ``out`` (1, 2n, 2n), faster for uniform beams; ``whole`` is one."""
-    if given.shape[0] == 6 and given.shape[1] == 1:
-        timoshenko_transfer_matrix(h, given[:, 0], translation, rotation, out[0])
+    if coefficients.shape[0] == 6 and coefficients.shape[1] == 1:
+        timoshenko_transfer_matrix(h, coefficients[:, 0], translation, rotation, out[0])
     else:
-        element_transfer_matrices(h, given, translation, rotation, whole, out)
+        element_transfer_matrices(h, coefficients, translation, rotation, whole, out)
 
 
 @counted(error_model="python")
 def table_transfer_matrices(
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     translation: NumberArray,
     rotation: NumberArray,
     fractions: FloatArray,
@@ -215,13 +219,13 @@ def table_transfer_matrices(
     """T of every element of a table at every pair of ω² (b,), into ``out`` (b, e, k, 2n, 2n)."""
     for b in range(translation.size):
         for e in range(lengths.size):
-            element_transfer_matrices(lengths[e], given[e], translation[b], rotation[b], fractions, out[b, e])
+            element_transfer_matrices(lengths[e], coefficients[e], translation[b], rotation[b], fractions, out[b, e])
 
 
 @counted(error_model="python")
 def place_transfer_matrices(
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     fractions: FloatArray,
     translation: NumberArray,
@@ -233,13 +237,13 @@ def place_transfer_matrices(
         e = element[z]
         for b in range(translation.size):
             element_transfer_matrices(
-                lengths[e], given[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1]
+                lengths[e], coefficients[e], translation[b], rotation[b], fractions[z : z + 1], out[z, b : b + 1]
             )
 
 
 @inner(error_model="python")
 def longest_element(squared: float, stiffness: FloatArray, inertia: FloatArray, force: float) -> float:
-    """Length (m) of the longest element of one kind that has no root below ω² with clamped ends."""
+    """Length [m] of the longest element of one kind that has no root below ω² with clamped ends."""
     mass = squared * inertia[0]
     if stiffness.size == 1:
         return math.pi * math.sqrt(stiffness[0] / mass) if mass > 0.0 else math.inf
@@ -300,20 +304,20 @@ def cut_spans(
         index[span] = number
         count = counts[span]
         length, part = lengths[span] / count, (end[span] - start[span]) / count
-        known = -1
+        listed = -1
         if uniform[kind[span]]:
             for e in range(elements):
                 if which[e] == kind[span] and element_length[e] == length:
-                    known = e
+                    listed = e
                     break
         for k in range(count):
             new_nodes[number] = nodes[span] + k * ((nodes[span + 1] - nodes[span]) / count)
-            if known < 0 or not uniform[kind[span]]:
-                known = elements
+            if listed < 0 or not uniform[kind[span]]:
+                listed = elements
                 which[elements], element_length[elements] = kind[span], length
                 middle[elements], half[elements] = 2.0 * (start[span] + k * part) + part - 1.0, part
                 elements += 1
-            element[number] = known
+            element[number] = listed
             number += 1
     new_nodes[number], index[-1] = nodes[-1], number
     return (

@@ -40,7 +40,7 @@ from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-# Part of the limit at which all but rigid motions must lie above.
+# Part of the limit above which all motions but the rigid ones must lie.
 LOWEST = 1e-16
 
 
@@ -55,10 +55,10 @@ def wittrick_williams_count(shaft: DiscretisedShaft, frequency: float) -> int:
 
     Parameters
     ----------
-    shaft
+    shaft : DiscretisedShaft
         The shaft; its `highest` must not be exceeded.
-    frequency
-        Positive, rad/s. Rigid motions at zero count as below.
+    frequency : float
+        Frequency, positive [rad/s]. Rigid motions at zero count as below.
     """
     return wittrick_williams_counts([shaft], frequency)[0]
 
@@ -77,12 +77,12 @@ def lowest_natural_frequencies(shaft: DiscretisedShaft, wanted: int, limit: floa
 
     Parameters
     ----------
-    shaft
+    shaft : DiscretisedShaft
         The shaft.
-    wanted
+    wanted : int
         Number of frequencies; the count at the limit must not be less.
-    limit
-        rad/s.
+    limit : float
+        Limit [rad/s].
 
     Raises
     ------
@@ -95,13 +95,13 @@ def lowest_natural_frequencies(shaft: DiscretisedShaft, wanted: int, limit: floa
     if wanted <= zeros:
         return np.zeros(wanted)
     lowest = LOWEST * limit
-    first, last, found = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(shaft))
-    if found.size < wanted - zeros:
+    first, last, roots = lowest_roots(wanted, zeros, lowest, limit, *shaft_arrays(shaft))
+    if roots.size < wanted - zeros:
         raise IncompleteModesError(
             f"the root count is {first} at {lowest:g} rad/s and {last} at {limit:g} rad/s, but "
             f"{zeros} rigid motions and {wanted} modes were expected between; check support stiffnesses "
             "that are absurdly soft, or stiff beyond a constraint (use an infinite stiffness there)"
         )
     # Brackets of one multiple root may end in either order, a rounding apart.
-    found = np.maximum.accumulate(found)
-    return np.concatenate([np.zeros(zeros), found]) if zeros else found
+    roots = np.maximum.accumulate(roots)
+    return np.concatenate([np.zeros(zeros), roots]) if zeros else roots

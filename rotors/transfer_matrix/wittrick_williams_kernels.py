@@ -17,23 +17,23 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 State = tuple[float, float, float, float]
 
-# The whole of an element, as a fraction of it.
+# Fraction of a whole element.
 WHOLE = np.ones(1)
 
 
 @inner(error_model="python")
-def _combined(c: float, one: State, s: float, other: State) -> State:
+def _combined(c: float, first: State, s: float, second: State) -> State:
     return (
-        c * one[0] + s * other[0],
-        c * one[1] + s * other[1],
-        c * one[2] + s * other[2],
-        c * one[3] + s * other[3],
+        c * first[0] + s * second[0],
+        c * first[1] + s * second[1],
+        c * first[2] + s * second[2],
+        c * first[3] + s * second[3],
     )
 
 
 @inner(error_model="python")
-def _inner(one: State, other: State) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2] + one[3] * other[3]
+def _inner(first: State, second: State) -> float:
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2] + first[3] * second[3]
 
 
 @inner(error_model="python")
@@ -64,13 +64,13 @@ def _with_term(first: State, second: State, row: int, term: float) -> tuple[Stat
     elif abs(second[2 + row]) > abs(first[2 + row]):
         # At a root hit to the last digit nothing moves here: the state closer to the reaction is replaced by it.
         first, second = second, _combined(-1.0, first, 0.0, first)
-    held = math.isinf(term)
+    is_rigid = math.isinf(term)
     if row == 0:
         second = (0.0, second[1], second[2], second[3])
-        first = (0.0, 0.0, 1.0, 0.0) if held else (first[0], first[1], first[2] + term * first[0], first[3])
+        first = (0.0, 0.0, 1.0, 0.0) if is_rigid else (first[0], first[1], first[2] + term * first[0], first[3])
     else:
         second = (second[0], 0.0, second[2], second[3])
-        first = (0.0, 0.0, 0.0, 1.0) if held else (first[0], first[1], first[2], first[3] + term * first[1])
+        first = (0.0, 0.0, 0.0, 1.0) if is_rigid else (first[0], first[1], first[2], first[3] + term * first[1])
     first, second = _orthonormal(first, second)
     return first, second, size
 
@@ -155,7 +155,7 @@ def _rod_count(
 def count_at(
     frequency: float,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -164,8 +164,8 @@ def count_at(
     """Count roots below a frequency; the determinant there follows. ``transfer_matrices`` (e, 1, 2n, 2n) is scratch."""
     squared = frequency * frequency
     for e in range(lengths.size):
-        element_transfer_matrices(lengths[e], given[e], squared, squared, WHOLE, transfer_matrices[e])
-    if given.shape[1] == 6:
+        element_transfer_matrices(lengths[e], coefficients[e], squared, squared, WHOLE, transfer_matrices[e])
+    if coefficients.shape[1] == 6:
         return _beam_count(squared, transfer_matrices[:, 0], element, stiffness, inertia)
     return _rod_count(squared, transfer_matrices[:, 0], element, stiffness, inertia)
 
@@ -174,7 +174,7 @@ def count_at(
 def wittrick_williams_count_of(
     frequency: float,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -182,7 +182,7 @@ def wittrick_williams_count_of(
     """Return the number of roots below a frequency."""
     size = 2 * stiffness.shape[1]
     transfer_matrices = np.empty((lengths.size, 1, size, size))
-    return count_at(frequency, lengths, given, element, stiffness, inertia, transfer_matrices)[0]
+    return count_at(frequency, lengths, coefficients, element, stiffness, inertia, transfer_matrices)[0]
 
 
 # Final width of the brackets of multiple roots; steps towards single roots end at a few units of rounding.
@@ -199,7 +199,7 @@ def lowest_roots(
     lowest: float,
     limit: float,
     lengths: FloatArray,
-    given: FloatArray,
+    coefficients: FloatArray,
     element: IntArray,
     stiffness: FloatArray,
     inertia: FloatArray,
@@ -214,8 +214,8 @@ def lowest_roots(
     size = 2 * stiffness.shape[1]
     transfer_matrices = np.empty((lengths.size, 1, size, size))
     number = wanted - zeros
-    first, first_value = count_at(lowest, lengths, given, element, stiffness, inertia, transfer_matrices)
-    last, last_value = count_at(limit, lengths, given, element, stiffness, inertia, transfer_matrices)
+    first, first_value = count_at(lowest, lengths, coefficients, element, stiffness, inertia, transfer_matrices)
+    last, last_value = count_at(limit, lengths, coefficients, element, stiffness, inertia, transfer_matrices)
     if first > zeros or last < wanted:
         return first, last, np.empty(0)
     low, high = np.full(number, lowest), np.full(number, limit)
@@ -231,9 +231,9 @@ def lowest_roots(
                 break
             middle = math.sqrt(a) * math.sqrt(b) if b > 4.0 * a else 0.5 * (a + b)
             if a == lowest and b == limit:
-                # The lowest frequency is seldom lower than this part of the limit.
+                # Part of the limit below which the lowest frequency seldom lies.
                 middle = max(middle, FIRST_PART * limit)
-            count, value = count_at(middle, lengths, given, element, stiffness, inertia, transfer_matrices)
+            count, value = count_at(middle, lengths, coefficients, element, stiffness, inertia, transfer_matrices)
             for k in range(root, number):
                 if count <= zeros + k:
                     if middle > low[k]:
@@ -250,7 +250,7 @@ def lowest_roots(
         x3, f3 = x2, f2
         for _ in range(MOST_STEPS):
             x = x1 + share * (x2 - x1)
-            count, value = count_at(x, lengths, given, element, stiffness, inertia, transfer_matrices)
+            count, value = count_at(x, lengths, coefficients, element, stiffness, inertia, transfer_matrices)
             if (count > order) == above:
                 x3, f3 = x1, f1
             else:

@@ -52,7 +52,7 @@ class RootOnContourError(IncompleteModesError):
 
 @dataclass(frozen=True)
 class Sector:
-    """The annular sector of all λ with least < |λ| < most, rad/s, and first < arg λ < last, rad."""
+    """The annular sector of all λ with least < |λ| < most [rad/s], and first < arg λ < last [rad]."""
 
     least: float
     most: float
@@ -61,16 +61,16 @@ class Sector:
 
     @cached_property
     def bounds(self) -> FloatArray:
-        """The least and the greatest ln |λ| and arg λ, (4,)."""
+        """Least and greatest ln |λ|, and least and greatest arg λ, (4,)."""
         return np.array([math.log(self.least), math.log(self.most), self.first, self.last])
 
     def holds(self, eigenvalues: ComplexArray) -> npt.NDArray[np.bool_]:
-        """Which of the values lie inside."""
+        """Mark the values that lie inside."""
         from rotors.whirl.eigenvalue_kernels import inside
 
-        found = np.empty(eigenvalues.size, dtype=np.bool_)
-        inside(eigenvalues, self.bounds, found)
-        return found
+        is_inside = np.empty(eigenvalues.size, dtype=np.bool_)
+        inside(eigenvalues, self.bounds, is_inside)
+        return is_inside
 
     def halves(self, part: float) -> tuple["Sector", "Sector"]:
         """Two sectors, divided across the longer side at a fraction of it."""
@@ -87,13 +87,13 @@ class ContourCount:
 
     Attributes
     ----------
-    count
-        Roots inside, with multiplicity.
-    samples
+    count : int
+        Number of roots inside, with multiplicity.
+    samples : int
         Number of determinants evaluated.
-    path
-        (3, s + 1): w, ln q continued along the contour, and d ln q/dw; the last point is the first.
-    left
+    path : ndarray of complex, shape (3, s + 1)
+        Values of w, of ln q continued along the contour, and of d ln q/dw; the last point is the first.
+    left : ndarray of complex
         Known roots inside that are not divided out of q.
     """
 
@@ -126,20 +126,20 @@ class ContourCount:
 
 
 def count_by_argument_principle(
-    equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray = NONE
+    equations: WhirlEquations, sector: Sector, speed: Speed, known_roots: ComplexArray = NONE
 ) -> ContourCount:
     """Count the roots in a sector by the winding number of the determinant along its edge.
 
     Parameters
     ----------
-    equations
+    equations : WhirlEquations
         The exact equations.
-    sector
-        The region.
-    speed
+    sector : Sector
+        Region of the count.
+    speed : Speed
         Speed of rotation as an analytic function of λ.
-    known
-        (k,) complex, rad/s: known roots, inside or outside; an inexact root costs samples only.
+    known_roots : ndarray of complex, shape (k,)
+        Known roots, inside or outside; an inexact root costs samples only [rad/s].
 
     Raises
     ------
@@ -154,7 +154,7 @@ def count_by_argument_principle(
         sector.bounds,
         (base, rate),
         equations.total_mass,
-        known,
+        known_roots,
         # With both senses and a speed that is real at real λ, roots come in conjugate pairs.
         len(equations.blocks) > 1 and base.imag == 0.0 == rate.imag,
         matrix.arrays,

@@ -35,7 +35,7 @@ CARTESIAN = np.eye(5, dtype=np.complex128)
 BLOCK_COORDINATES = {1: (0, 1), -1: (2, 3), 0: (4,)}
 # Lateral displacements among the five coordinates: Cartesian and circular.
 RADIAL = {False: (0, 1), True: (0, 2)}
-# Terms below this part of a matrix's largest are rounding of the change of coordinates.
+# Part of a matrix's largest entry below which an entry is rounding of the change of coordinates.
 NO_COUPLING = 1e-14
 
 
@@ -49,18 +49,18 @@ class NodeBearing:
 
     Attributes
     ----------
-    node
+    node : int
         Index of its node.
-    directions
-        (m,): indices into x, y, z and the rotations about x and y, or into r+, β+, r−, β−, z where it is ``circular``.
-    frame
-        (m, n) complex: displacements along the directions from those of the node.
-    stiffness, damping
-        (m, m) complex: force on what carries it.
-    foot
-        (f,): positions in ``directions`` that its pedestal shares; empty without a pedestal.
-    foot_stiffness, foot_damping, foot_mass
-        (f, f) complex: of the pedestal against the ground.
+    directions : tuple of int, shape (m,)
+        Indices into x, y, z and the rotations about x and y, or into r+, β+, r−, β−, z where it is ``circular``.
+    frame : ndarray of complex, shape (m, n)
+        Displacements along the directions from those of the node.
+    stiffness, damping : ndarray of complex, shape (m, m)
+        Force on the bearing's carrier.
+    foot : tuple of int, shape (f,)
+        Positions in ``directions`` that its pedestal shares; empty without a pedestal.
+    foot_stiffness, foot_damping, foot_mass : ndarray of complex, shape (f, f)
+        Stiffness, damping and mass of the pedestal against the ground.
     """
 
     node: int
@@ -75,7 +75,7 @@ class NodeBearing:
     foot_mass: ComplexArray
 
     def dynamic_stiffness(self, eigenvalues: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """K + λC of the bearing, (b, m, m), and K + λC + λ²M of its pedestal, (b, f, f), at every λ (b,)."""
+        """Dynamic stiffness at every λ: K + λC of the bearing (b, m, m), K + λC + λ²M of the pedestal (b, f, f)."""
         at = eigenvalues[:, None, None]
         bearing = self.stiffness + at * self.damping
         return bearing, self.foot_stiffness + at * self.foot_damping + at**2 * self.foot_mass
@@ -111,17 +111,17 @@ def bearing_at_node(bearing: Bearing, node: int, blocks: tuple[int, ...], units:
     members = [member for block in blocks for member in BLOCK_COORDINATES[block]]
     circular = len(blocks) == 1
     if circular:
-        turn, known, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
+        turn, unit_of, names = CIRCULAR, dict(zip(members, units.tolist(), strict=True)), members
     else:
         turn, names = CARTESIAN, [0, 1, 2, 3, 4] if 0 in blocks else [0, 1, 3, 4]
-        known = {0: units[0], 1: units[0], 2: units[0], 3: units[1], 4: units[1]}
+        unit_of = {0: units[0], 1: units[0], 2: units[0], 3: units[1], 4: units[1]}
     matrices = np.array([bearing.spatial_stiffness, bearing.spatial_damping], dtype=np.complex128)
     if circular:
         matrices = turn @ matrices @ turn.conj().T
     acts = (matrices[0] != 0.0) | (matrices[1] != 0.0)
     acts = acts[names][:, names]
     busy = [names[k] for k in np.flatnonzero(acts.any(axis=0) | acts.any(axis=1)).tolist()]
-    unit = np.array([known[k] for k in busy])
+    unit = np.array([unit_of[k] for k in busy])
     scale = unit[:, None] * unit
     stiffness, damping = (m[busy][:, busy] * scale for m in matrices)
     # Coordinates have one unit in both senses, so that it cancels between the two sets of directions.
@@ -130,9 +130,11 @@ def bearing_at_node(bearing: Bearing, node: int, blocks: tuple[int, ...], units:
     foot = () if pedestal is None else tuple(position for position, k in enumerate(busy) if k in RADIAL[circular])
     ground = [np.zeros((len(foot), len(foot)), dtype=np.complex128)] * 3
     if pedestal is not None:
-        own = [busy[position] for position in foot]
-        for index, given in enumerate((pedestal.stiffness, pedestal.damping, pedestal.mass * np.eye(2))):
+        foot_directions = [busy[position] for position in foot]
+        for index, matrix in enumerate((pedestal.stiffness, pedestal.damping, pedestal.mass * np.eye(2))):
             whole = np.zeros((5, 5))
-            whole[:2, :2] = given
-            ground[index] = (turn @ whole @ turn.conj().T)[np.ix_(own, own)] * scale[np.ix_(foot, foot)]
+            whole[:2, :2] = matrix
+            ground[index] = (turn @ whole @ turn.conj().T)[np.ix_(foot_directions, foot_directions)] * scale[
+                np.ix_(foot, foot)
+            ]
     return NodeBearing(node, tuple(busy), circular, frame, stiffness, damping, foot, *ground)

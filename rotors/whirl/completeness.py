@@ -42,7 +42,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# A bearing's smallest eigenvalue may lie this far below zero beside its largest, from rounding.
+# Part of a bearing's largest eigenvalue by which its smallest may lie below zero from rounding.
 ROUNDING = 1e-12
 
 
@@ -58,7 +58,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
         for stiffness in stiffnesses:
             if not np.array_equal(stiffness, stiffness.T):
                 return False
-            # Scaled to a unit diagonal, as forces and moments differ in unit.
+            # The matrix is scaled to a unit diagonal, as forces and moments differ in unit.
             size = np.sqrt(np.maximum(np.diag(stiffness), 0.0))
             unit = np.divide(stiffness, np.outer(size, size), out=stiffness * 0.0, where=np.outer(size, size) > 0.0)
             if bool((stiffness[np.outer(size, size) == 0.0] != 0.0).any()):
@@ -69,7 +69,7 @@ def is_conservative(bearings: Sequence[Bearing]) -> bool:
 
 
 def negative_count(equations: WhirlEquations, frequencies: FloatArray, speed: Speed) -> IntArray:
-    """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω (rad/s), (b,)."""
+    """Negative eigenvalues s(D(ω)) of the undamped dynamic stiffness at every ω [rad/s], (b,)."""
     eigenvalues = (1j * frequencies).astype(np.complex128)
     # One unit of force for all frequencies: with that of a frequency near zero every bearing would seem rigid.
     speeds, scale = speed(eigenvalues), np.full(frequencies.size, equations.force_scale(eigenvalues).max())
@@ -98,9 +98,9 @@ def _node_matrices(
     nodes = terms[..., None] * np.eye(equations.size)
     negatives = np.zeros(eigenvalues.size, dtype=np.intp)
     for node_bearing in equations.node_bearings:
-        reduced, own = _reduced(node_bearing, eigenvalues)
+        reduced, pedestal_negatives = _reduced(node_bearing, eigenvalues)
         nodes[:, node_bearing.node] += reduced / scale[:, None, None]
-        negatives += own
+        negatives += pedestal_negatives
     return nodes, negatives
 
 
@@ -152,35 +152,35 @@ def certified_roots(
         The count and the roots do not agree even after a search.
     """
     method = "inertia" if conservative else "winding"
-    held = roots.take(sector.holds(roots.eigenvalues))
+    inside = roots.take(sector.holds(roots.eigenvalues))
     expected = count_roots(equations, speed, sector, conservative, np.concatenate([roots.eigenvalues, beyond]))
-    if held.eigenvalues.size < expected:
-        held = search(equations, roots, speed, sector)
-    found = held.eigenvalues.size
-    certificate = ModeCertificate(sector.most, expected, found, max(held.residuals.tolist(), default=0.0), method)
+    if inside.eigenvalues.size < expected:
+        inside = search(equations, roots, speed, sector)
+    count = inside.eigenvalues.size
+    certificate = ModeCertificate(sector.most, expected, count, max(inside.residuals.tolist(), default=0.0), method)
     if not certificate.complete:
         raise IncompleteModesError(
-            f"{found} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
+            f"{count} whirl modes are found below {sector.most:g} rad/s, but the exact equations have {expected} "
             f"by their {method} count; choose a limit a little apart, or check the model for parts that differ by many "
             "orders of magnitude in stiffness or damping"
         )
-    return held, certificate
+    return inside, certificate
 
 
 def count_roots(
-    equations: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known: ComplexArray = NONE
+    equations: WhirlEquations, speed: Speed, sector: Sector, conservative: bool, known_roots: ComplexArray = NONE
 ) -> int:
     """Count the roots in a sector: by inertia for a conservative rotor, else by the argument principle."""
     if conservative:
         edges = np.array([sector.least, sector.most])
         low, high = negative_count(equations, edges, speed).tolist()
         return int(high - low)
-    return count_by_argument_principle(equations, sector, speed, known).count
+    return count_by_argument_principle(equations, sector, speed, known_roots).count
 
 
-def search(equations: WhirlEquations, known: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
+def search(equations: WhirlEquations, known_roots: ExactRoots, speed: Speed, sector: Sector) -> ExactRoots:
     """All roots in a sector: the known ones, and the missing ones by the argument principle and power sums."""
-    roots, waiting, cuts = known, [sector], 0
+    roots, waiting, cuts = known_roots, [sector], 0
     while waiting:
         part = waiting.pop()
         counted = count_by_argument_principle(equations, part, speed, roots.eigenvalues)
@@ -204,12 +204,12 @@ def search(equations: WhirlEquations, known: ExactRoots, speed: Speed, sector: S
     return roots.take(sector.holds(roots.eigenvalues))
 
 
-def _cut(equations: WhirlEquations, sector: Sector, speed: Speed, known: ComplexArray) -> list[Sector]:
+def _cut(equations: WhirlEquations, sector: Sector, speed: Speed, known_roots: ComplexArray) -> list[Sector]:
     """Two parts of a sector without a root on their common side."""
     for nudge in range(MOST_NUDGES):
         halves = sector.halves(0.5 + 0.037 * nudge)
         try:
-            count_by_argument_principle(equations, halves[0], speed, known)
+            count_by_argument_principle(equations, halves[0], speed, known_roots)
         except RootOnContourError:
             continue
         return list(halves)

@@ -21,11 +21,11 @@ ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.intp]
 
-# Slopes are recomputed after steps longer than this.
+# Relative step above which slopes are recomputed.
 STALE = 1e-4
-# A step larger than this part of the root is shortened: its start is not near a root.
+# Relative step above which a step is shortened: its start is not near a root.
 LONGEST_STEP = 0.3
-# After a smaller relative step the existing factors serve for the next one.
+# Relative step below which the existing factors serve for the next step.
 CLOSE = 1e-6
 # Largest correction of the vector in that step: its remaining error is a few times the square of the correction.
 TURNED = 1e-7
@@ -41,8 +41,8 @@ def logarithm(value: complex) -> complex:
 
 @counted(error_model="python")
 def ascending(values: ComplexArray, least: float, angle: float) -> ComplexArray:
-    """Values above the real axis by more than a small angle (rad) and larger than ``least``, by ascending modulus."""
-    kept, sizes, count = np.empty(values.size, dtype=np.complex128), np.empty(values.size), 0
+    """Values above the real axis by more than a small angle [rad] and larger than ``least``, by ascending modulus."""
+    selected, sizes, count = np.empty(values.size, dtype=np.complex128), np.empty(values.size), 0
     for k in range(values.size):
         size = abs(values[k])
         # Both are false for NaN.
@@ -50,11 +50,11 @@ def ascending(values: ComplexArray, least: float, angle: float) -> ComplexArray:
             continue
         place = count
         while place > 0 and sizes[place - 1] > size:
-            kept[place], sizes[place] = kept[place - 1], sizes[place - 1]
+            selected[place], sizes[place] = selected[place - 1], sizes[place - 1]
             place -= 1
-        kept[place], sizes[place] = values[k], size
+        selected[place], sizes[place] = values[k], size
         count += 1
-    return kept[:count].copy()
+    return selected[:count].copy()
 
 
 @uncounted(error_model="python")
@@ -103,7 +103,7 @@ def forms(
     left: ComplexArray,
     right: ComplexArray,
 ) -> tuple[complex, complex]:
-    """yᴴ N x and yᴴ N' x; the varying entries come first."""
+    """Compute yᴴ N x and yᴴ N' x; the varying entries come first."""
     top, bottom = 0.0j, 0.0j
     for entry in range(slopes.size):
         both = np.conj(left[rows[entry]]) * right[columns[entry]]
@@ -117,7 +117,7 @@ def forms(
 @counted(error_model="python")
 def newton(
     starts: ComplexArray,
-    given: ComplexArray,
+    start_vectors: ComplexArray,
     bases: ComplexArray,
     rate: complex,
     mass: float,
@@ -146,11 +146,11 @@ def newton(
     roots, vectors = np.empty(count, dtype=np.complex128), np.empty((count, order), dtype=np.complex128)
     residuals, scales = np.empty(count), np.empty(count)
     for root in range(count):
-        at, base, last, held = starts[root], bases[root % bases.size], math.inf, False
+        at, base, last, reuse = starts[root], bases[root % bases.size], math.inf, False
         residuals[root], right = math.inf, vectors[root : root + 1]
-        put(given[root], right[0])
+        put(start_vectors[root], right[0])
         for _ in range(MOST_STEPS):
-            scale = scales[root] if held else force_unit(at, mass)
+            scale = scales[root] if reuse else force_unit(at, mass)
             scales[root] = scale
             put_entries(at, base + rate * at, scale, table, beams, rods, values)
             # Slopes of the last step serve for a root that has hardly moved: they do not enter the residual.
@@ -161,7 +161,7 @@ def newton(
                 for entry in range(varying):
                     slopes[entry] = (slopes[entry] - values[entry]) * over
             turned = 0.0
-            if held:
+            if reuse:
                 # The factors of the last step correct the vector.
                 for i in range(order):
                     side[i] = 0.0
@@ -200,11 +200,11 @@ def newton(
             # Estimated error after the step, from the decrease of the last two steps.
             forecast = math.inf
             if share < math.sqrt(ACCEPTED) and last < 1.0:
-                forecast = share**2 * (1.0 / last if held else max(1.0, share / last**2)) + STALE * share
+                forecast = share**2 * (1.0 / last if reuse else max(1.0, share / last**2)) + STALE * share
             residuals[root] = share if rounding else min(share, forecast)
             # Old factors serve one step: a root that has not converged by then gets new ones.
-            kept, held, last = held, not held and share <= CLOSE, share
-            if turned <= TURNED**2 and (rounding or share <= SETTLED or (kept and forecast <= SETTLED)):
+            reused, reuse, last = reuse, not reuse and share <= CLOSE, share
+            if turned <= TURNED**2 and (rounding or share <= SETTLED or (reused and forecast <= SETTLED)):
                 break
         roots[root] = at
     return roots, vectors, residuals, scales
@@ -212,7 +212,7 @@ def newton(
 
 @inner(error_model="python")
 def _project(matrix: FloatArray, motions: FloatArray, spare: FloatArray, out: FloatArray) -> None:
-    """½ MᵀDM of motions M (n, N) into ``out`` (N, N); ``spare`` (n, N) is scratch space for DM."""
+    """Compute ½ MᵀDM of motions M (n, N) into ``out`` (N, N); ``spare`` (n, N) is scratch space for DM."""
     for i in range(matrix.shape[0]):
         for k in range(out.shape[0]):
             spare[i, k] = 0.0
@@ -230,7 +230,7 @@ def _project(matrix: FloatArray, motions: FloatArray, spare: FloatArray, out: Fl
 
 @counted(error_model="python")
 def squares(frequencies: FloatArray, gyroscopic: FloatArray, speeds: FloatArray) -> FloatArray:
-    """CᵀC at every speed, (speeds, N, N)."""
+    """Compute CᵀC at every speed, (speeds, N, N)."""
     order, (y, x) = frequencies.size, gyroscopic.shape
     whole = np.zeros((speeds.size, order, order))
     for speed in range(speeds.size):
@@ -256,7 +256,7 @@ def damped(
     damping_x: FloatArray,
     damping_y: FloatArray,
 ) -> tuple[ComplexArray, FloatArray]:
-    """λ and conjugates at every speed, (speeds, 2N), and how strongly damping couples the lower half, (speeds,).
+    """Compute λ and conjugates at every speed, (speeds, 2N), and the coupling of the lower half by damping, (speeds,).
 
     ``squared`` (speeds, N) and ``right`` (speeds, N, N) are σ² and V.
     """

@@ -37,11 +37,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 
-# Starting values closer than this are refined together first: their errors may be as large.
+# Relative distance below which starting values are refined together first: their errors may be as large.
 NEAR = 1e-3
-# Refined roots closer than this stay together: its square is below rounding.
+# Relative distance below which refined roots stay together: its square is below rounding.
 TIED = 1e-7
-# Refined roots closer than this with parallel vectors are one root found twice.
+# Relative distance below which refined roots with parallel vectors are one root, found twice.
 SAME = 1e-9
 PARALLEL = 1e-3
 # Relative step of the central difference for slopes of the entries: accurate to about 1e-10. The refined roots lose
@@ -52,21 +52,21 @@ NO_PLACES = np.zeros(0, dtype=np.complex128)
 
 @dataclass(frozen=True)
 class Speed:
-    """Speed of rotation Ω = base + rate λ, rad/s: an analytic function of the root.
+    """Speed of rotation Ω = base + rate λ [rad/s]: an analytic function of the root.
 
     Attributes
     ----------
-    base
-        rad/s; or one for each root, (w,).
-    rate
-        rad/s per rad/s.
+    base : complex or ndarray of complex
+        Constant part of the speed [rad/s]; a number, or one for each root, (w,).
+    rate : complex
+        Slope of the speed over the root [rad/s per rad/s].
     """
 
     base: complex | ComplexArray
     rate: complex = 0.0
 
     def __call__(self, eigenvalues: ComplexArray) -> ComplexArray:
-        """Ω at every λ, (w,)."""
+        """Evaluate Ω at every λ, (w,)."""
         return np.asarray(self.base + self.rate * eigenvalues, dtype=np.complex128)
 
 
@@ -76,14 +76,14 @@ class ExactRoots:
 
     Attributes
     ----------
-    eigenvalues
-        (w,) complex, rad/s.
-    solutions
-        (w, order) complex: right null vectors, of unit norm in the scaled unknowns.
-    residuals
-        (w,): the last relative correction.
-    scales
-        (w,): the unit of forces in each solution.
+    eigenvalues : ndarray of complex, shape (w,)
+        Eigenvalues [rad/s].
+    solutions : ndarray of complex, shape (w, order)
+        Right null vectors, of unit norm in the scaled unknowns.
+    residuals : ndarray, shape (w,)
+        Last relative correction of each root.
+    scales : ndarray, shape (w,)
+        Unit of forces in each solution.
     """
 
     eigenvalues: ComplexArray
@@ -119,11 +119,11 @@ def converged_roots(equations: WhirlEquations, starts: ComplexArray, speed: Spee
 
     Parameters
     ----------
-    equations
+    equations : WhirlEquations
         The exact equations.
-    starts
-        (w,) complex, rad/s.
-    speed
+    starts : ndarray of complex, shape (w,)
+        Starting values [rad/s].
+    speed : Speed
         Speed of rotation as an analytic function of λ.
     """
     order = equations.pattern.order
@@ -189,17 +189,17 @@ def distinct(roots: ExactRoots) -> ExactRoots:
     """Each root once: equal values are several roots only where their vectors are independent."""
     if apart(roots.eigenvalues, SAME):
         return roots
-    kept: list[int] = []
+    chosen: list[int] = []
     for cluster in clusters(roots.eigenvalues, SAME):
-        first = len(kept)
+        first = len(chosen)
         for i in cluster.tolist():
-            if len(kept) > first:
-                basis = np.linalg.qr(roots.solutions[kept[first:]].T)[0]
+            if len(chosen) > first:
+                basis = np.linalg.qr(roots.solutions[chosen[first:]].T)[0]
                 rest = roots.solutions[i] - basis @ (basis.conj().T @ roots.solutions[i])
                 if np.linalg.norm(rest) < PARALLEL:
                     continue
-            kept.append(i)
-    return roots.take(np.array(sorted(kept), dtype=np.intp))
+            chosen.append(i)
+    return roots.take(np.array(sorted(chosen), dtype=np.intp))
 
 
 def slopes_at(equations: WhirlEquations, eigenvalues: ComplexArray, speed: Speed, scale: FloatArray) -> ComplexArray:
@@ -262,11 +262,11 @@ def _together(
         offsets, mixing = linalg.eig(top, -bottom)
         if not np.isfinite(offsets).all():
             return ExactRoots(values, basis[0], np.full(values.size, np.inf), np.full(values.size, scale[0]))
-        found = centre[0] + offsets
-        moved = np.abs(np.sort_complex(found) - np.sort_complex(values)).max() / np.abs(found)
+        eigenvalues = centre[0] + offsets
+        moved = np.abs(np.sort_complex(eigenvalues) - np.sort_complex(values)).max() / np.abs(eigenvalues)
         # The small eigenproblem neglects terms of the order of the squared distances.
-        change = np.maximum(moved, np.abs(offsets / found) ** 2)
-        values, basis, mixture = found, right, mixing
+        change = np.maximum(moved, np.abs(offsets / eigenvalues) ** 2)
+        values, basis, mixture = eigenvalues, right, mixing
         if step > 0 and moved.max() <= 5.0 * SETTLED:
             break
     mixed = mixture.T @ basis[0]
@@ -274,28 +274,28 @@ def _together(
     return ExactRoots(values, mixed, change, np.full(values.size, scale[0]))
 
 
-# Radii of circles tried about a place, as parts of it.
+# Radii of the circles tried about a place, relative to it.
 CIRCLES = (0.03, 0.006, 0.1)
 POINTS = 48
 MOST_INSIDE = 8
-# Singular values below this part of the largest count as zero.
+# Part of the largest singular value below which a singular value counts as zero.
 RANK = 1e-9
-# Roots closer than this are treated together.
+# Relative distance below which roots are treated together.
 ONE_ROOT = 1e-3
-# Roots closer than this cannot be resolved: they are set to their mean, whose error is the square of this.
+# Relative distance below which roots are not resolved: they are set to their mean, whose error is its square.
 UNRESOLVED = 3e-8
-# Rounding moves either of two roots by this over their distance.
+# Relative move of either of two roots by rounding, times their distance.
 ROUNDING = 1e-15
-# The narrow circle's radius about them, as a part of them.
+# Radius of the narrow circle about such roots, relative to them.
 CLOSE = 3e-3
-# A refined root may differ from the integral's by this part of the circle's radius.
+# Largest difference of a refined root from the integral's, over the circle's radius.
 SAME_PLACE = 1e-3
 
 
 def refine_roots(equations: WhirlEquations, starts: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots near starting values; fewer where several lead to one root, or one to none.
 
-    Arguments are as of `converged_roots`.
+    Arguments are those of `converged_roots`.
     """
     roots, crawling = converged_roots(equations, starts, speed)
     if crawling.size == 0:
@@ -309,15 +309,15 @@ def with_circle(equations: WhirlEquations, roots: ExactRoots, centre: complex, s
     """Replace the roots about a place by the roots of contour integrals."""
     for part in CIRCLES:
         radius = part * abs(centre)
-        found = roots_in_circle(equations, centre, radius, speed)
-        if found is not None:
-            known = found.take(np.isfinite(found.residuals))
-            return distinct(roots.take(np.abs(roots.eigenvalues - centre) > radius).joined(known))
+        in_circle = roots_in_circle(equations, centre, radius, speed)
+        if in_circle is not None:
+            resolved = in_circle.take(np.isfinite(in_circle.residuals))
+            return distinct(roots.take(np.abs(roots.eigenvalues - centre) > radius).joined(resolved))
     return roots
 
 
 def roots_in_circle(equations: WhirlEquations, centre: complex, radius: float, speed: Speed) -> ExactRoots | None:
-    """All roots within ``radius`` of ``centre``, rad/s; None where the circle passes too near one, or holds too many.
+    """All roots within ``radius`` of ``centre`` [rad/s]; None where the circle passes too near one, or holds too many.
 
     The second vector of a coalesced pair is a principal vector: the pair has one shape.
     """
@@ -339,10 +339,10 @@ def roots_in_circle(equations: WhirlEquations, centre: complex, radius: float, s
     if sizes[-1] <= RANK * sizes[0]:
         return None
     offsets, mixture = linalg.eig(left.conj().T @ first @ right.conj().T / sizes)
-    found = centre + radius * offsets
+    eigenvalues = centre + radius * offsets
     vectors = (left @ mixture).T
-    roots = ExactRoots(found, vectors, np.full(count, np.inf), np.full(count, scale[0]))
-    parts = [_settled(equations, roots.take(group), left, radius, speed) for group in clusters(found, ONE_ROOT)]
+    roots = ExactRoots(eigenvalues, vectors, np.full(count, np.inf), np.full(count, scale[0]))
+    parts = [_settled(equations, roots.take(group), left, radius, speed) for group in clusters(eigenvalues, ONE_ROOT)]
     whole = parts[0]
     for part in parts[1:]:
         whole = whole.joined(part)
@@ -367,7 +367,7 @@ def _settled(
         if again is not None and again.eigenvalues.size == roots.eigenvalues.size:
             return again
     if spread.size == 1 or spread.max() > ONE_ROOT:
-        return roots  # with infinite residuals: not converged
+        return roots  # infinite residuals: not converged
     # Independent vectors of the space that belongs to the group: the shape, and principal vectors.
     projected = span.conj().T @ roots.solutions.T
     basis = span @ np.linalg.qr(projected)[0]

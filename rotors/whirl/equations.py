@@ -58,7 +58,7 @@ IntArray = npt.NDArray[np.intp]
 STATIC_FORCE = 1e-6
 # Largest growth of motion along a run of elements, as a power of e: it costs the states two digits at most.
 MOST_GROWTH = 4.5
-# Number of frequencies in an octave for which equations are made.
+# Number of frequencies in an octave for which equations are assembled.
 REACH_STEPS = 4
 
 
@@ -68,16 +68,16 @@ class WhirlEquations:
 
     Attributes
     ----------
-    rotor
+    rotor : Rotor
         The rotor.
-    bending
+    bending : DiscretisedShaft
         Elements and node inertias of one plane, without springs.
-    blocks
-        1 for r+, −1 for r−, 0 for z, in the order of the unknowns.
-    node_bearings
+    blocks : tuple of int
+        Blocks in the order of the unknowns: 1 for r+, −1 for r−, 0 for z.
+    node_bearings : tuple of NodeBearing
         Bearings with constant coefficients.
-    kept
-        (r + 1,): nodes whose states are unknowns, ascending: both ends, and nodes with inertia or a bearing.
+    kept : ndarray of int, shape (r + 1,)
+        Nodes whose states are unknowns, ascending: both ends, and nodes with inertia or a bearing.
     """
 
     rotor: Rotor
@@ -88,12 +88,12 @@ class WhirlEquations:
 
     @property
     def size(self) -> int:
-        """Displacements at a node, n."""
+        """Number n of displacements at a node."""
         return sum(len(BLOCK_COORDINATES[block]) for block in self.blocks)
 
     @property
     def units(self) -> FloatArray:
-        """SI value of each of a node's displacements; forces have its reciprocal. (n,)."""
+        """SI value of each displacement of a node, (n,); forces have its reciprocal."""
         return block_units(self.bending, self.blocks)
 
     @cached_property
@@ -130,10 +130,10 @@ class WhirlEquations:
 
     def response_scale(self, eigenvalues: ComplexArray) -> FloatArray:
         """Return the unit of forces for responses at every λ, zero included: bearings may carry more than inertia."""
-        held = max(
+        stiffest = max(
             (float(np.abs(node_bearing.stiffness).max(initial=0.0)) for node_bearing in self.node_bearings), default=1.0
         )
-        least = np.full(eigenvalues.size, min(max(STATIC_FORCE * held, 1e-30), 1.0))
+        least = np.full(eigenvalues.size, min(max(STATIC_FORCE * stiffest, 1e-30), 1.0))
         return np.asarray(np.maximum(self.force_scale(eigenvalues), least))
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
@@ -141,7 +141,7 @@ class WhirlEquations:
         return self.shooting_matrix.values(eigenvalues, speeds, scale)
 
     def node_terms(self, eigenvalues: ComplexArray, speeds: ComplexArray) -> ComplexArray:
-        """λ²M ∓ iΩλ I_p of the nodes' own inertias, (b, p + 1, n)."""
+        """Inertia terms λ²M ∓ iΩλ I_p of the nodes, (b, p + 1, n)."""
         shaft = self.bending
         squared = eigenvalues[:, None] ** 2
         columns = []
@@ -180,12 +180,12 @@ class WhirlEquations:
         """States (b, p + 1, 2 or 4) of every block at all nodes in scaled units, from solutions (b, order)."""
         from rotors.whirl.shooting_matrix_kernels import node_states
 
-        states, given = {}, np.ascontiguousarray(solutions)
+        states, unknowns = {}, np.ascontiguousarray(solutions)
         for block, places in zip(self.blocks, self._state_places, strict=True):
-            own = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
+            block_states = np.empty((eigenvalues.size, self.bending.nodes.size, places.shape[1]), dtype=np.complex128)
             runs = self.shooting_matrix.beams if block else self.shooting_matrix.rods
-            node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, given, own)
-            states[block] = own
+            node_states(runs, *squared_frequencies(block, eigenvalues, speeds), places, scale, unknowns, block_states)
+            states[block] = block_states
         return states
 
     @cached_property
@@ -194,9 +194,9 @@ class WhirlEquations:
         first, places, layout = 0, [], self.layout
         forces = np.concatenate([layout.forces, np.full((1, self.size), -1)])
         for block in self.blocks:
-            own = slice(first, first + len(BLOCK_COORDINATES[block]))
-            places.append(np.concatenate([layout.displacements[:, own], forces[:, own]], axis=1))
-            first = own.stop
+            columns = slice(first, first + len(BLOCK_COORDINATES[block]))
+            places.append(np.concatenate([layout.displacements[:, columns], forces[:, columns]], axis=1))
+            first = columns.stop
         return places
 
     def in_runs(self) -> "WhirlEquations":
@@ -205,9 +205,9 @@ class WhirlEquations:
         needed = shaft.node_inertia.any(axis=1) | (shaft.node_polar != 0.0)
         needed[[0, -1, *(node_bearing.node for node_bearing in self.node_bearings)]] = True
         growth, total = shaft.table.growth(shaft.highest)[shaft.element].tolist(), 0.0
-        for number, own in enumerate(growth):
-            needed[number] |= total + own > MOST_GROWTH
-            total = own if needed[number] else total + own
+        for number, element_growth in enumerate(growth):
+            needed[number] |= total + element_growth > MOST_GROWTH
+            total = element_growth if needed[number] else total + element_growth
         return replace(self, kept=np.flatnonzero(needed))
 
 
@@ -225,7 +225,7 @@ def squared_frequencies(
 
 
 def whirl_reach(limit: float, speed: float) -> float:
-    """Planar frequency for which elements must be short enough, for whirl up to ``limit`` at ``speed``, rad/s.
+    """Planar frequency for which elements must be short enough, for whirl up to ``limit`` at ``speed`` [rad/s].
 
     The rotary inertia's ω² ± 2Ωω is largest in magnitude at ω(ω + 2|Ω|).
     """
@@ -243,14 +243,14 @@ def whirl_equations(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings.
-    blocks
+    blocks : tuple of int
         One of `rotors.whirl.circular_coordinates.coupled_motions`.
-    highest
-        Planar frequency up to which elements are short enough, rad/s: see `whirl_reach`.
-    places
-        Further places to be nodes, m.
+    highest : float
+        Planar frequency up to which elements are short enough [rad/s]: see `whirl_reach`.
+    places : sequence of float
+        Further places to be nodes [m].
     """
     supports = [RadialSupport(at, 0.0) for at in (*(bearing.at for bearing in bearings), *places)]
     shaft = discretised_bending_shaft(rotor, tuple(supports), highest)
@@ -267,12 +267,12 @@ def whirl_equations_in_runs(
 
 
 def reach_step(highest: float) -> float:
-    """Round up to a frequency (rad/s) that equations are made for, so that those of near speeds are the same."""
+    """Round up to a frequency [rad/s] that equations are made for, so that those of near speeds are the same."""
     return math.exp2(math.ceil(REACH_STEPS * math.log2(highest)) / REACH_STEPS)
 
 
 def equations_at_speed(equations: WhirlEquations, bearings: Sequence[Bearing], speed: float) -> WhirlEquations:
-    """Replace the bearings' coefficients in the equations by those at another speed (rad/s)."""
+    """Replace the bearings' coefficients in the equations by those at another speed [rad/s]."""
     units = block_units(equations.bending, equations.blocks)
     node_bearings = tuple(
         bearing_at_node(bearing.at_speed(speed), node_bearing.node, equations.blocks, units)

@@ -48,13 +48,13 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
 
-# Most that damping may couple modes, squared, relative to their distance: starting values then err by a thousandth of
+# Largest squared coupling of modes by damping, relative to their distance: starting values then err by a thousandth of
 # the distance. Checked for the lower half: above are responses to loads, which stand for all higher modes and start no
 # root.
 MOST_MIXED = 0.01
-# Squared frequencies below this part of the largest lose their digits in CᵀC.
+# Part of the largest squared frequency below which squared frequencies lose their digits in CᵀC.
 LEAST_SQUARED = 1e-10
-# Stiffness may lack this part of its size to be symmetric, from rounding.
+# Largest asymmetry of a stiffness over its size that is rounding.
 ROUNDING = 1e-12
 IntArray = npt.NDArray[np.intp]
 NumberArray = npt.NDArray[Any]
@@ -70,12 +70,12 @@ class CoupledPlanes:
 
     Attributes
     ----------
-    frequencies
-        (x + y,): of both planes at rest, ascending in each, rad/s.
-    gyroscopic
-        (y, x): G, per rad/s of the speed.
-    damping_x, damping_y
-        (x, x) and (y, y): D, 1/s.
+    frequencies : ndarray, shape (x + y,)
+        Natural frequencies of both planes at rest, ascending in each [rad/s].
+    gyroscopic : ndarray, shape (y, x)
+        Gyroscopic matrix G, per rad/s of the speed.
+    damping_x, damping_y : ndarray, shapes (x, x) and (y, y)
+        Damping matrices D [1/s].
     """
 
     frequencies: FloatArray
@@ -87,7 +87,7 @@ class CoupledPlanes:
     def of(
         cls, mass: FloatArray, stiffness: FloatArray, damping: FloatArray, gyroscopic: FloatArray, in_x: BoolArray
     ) -> "CoupledPlanes | None":
-        """From diagonal mass (N,) and matrices (N, N), ``in_x`` marking one plane; None where it does not apply."""
+        """Split diagonal mass (N,) and matrices (N, N) into planes, one marked by ``in_x``; None if not applicable."""
         x, y = np.flatnonzero(in_x), np.flatnonzero(~in_x)
         apart = np.ix_(x, y), np.ix_(y, x)
         within = np.ix_(x, x), np.ix_(y, y)
@@ -120,7 +120,7 @@ class CoupledPlanes:
 
 
 def slowest(bearing: Bearing) -> float:
-    """Return the lowest speed of a bearing's tables, or zero, rad/s."""
+    """Return the lowest speed of a bearing's tables, or zero [rad/s]."""
     return 0.0 if bearing.speeds is None else float(bearing.speeds[0])
 
 
@@ -134,14 +134,15 @@ class ModalProjection:
 
     Attributes
     ----------
-    basis
-        Motions of one plane.
-    blocks
-        As of `rotors.whirl.equations.WhirlEquations`.
-    axial_frequencies, axial_shapes
-        (a,) in rad/s and (a, bearings): free axial modes at the bearings; empty where no bearing needs them.
-    total_mass
-        Of the rotor, kg.
+    basis : PlanarBasis
+        Basis of the motions of one plane.
+    blocks : tuple of int
+        Blocks as of `rotors.whirl.equations.WhirlEquations`.
+    axial_frequencies, axial_shapes : ndarray, shapes (a,) and (a, bearings)
+        Frequencies of the free axial modes [rad/s], and their shapes at the bearings; empty where no bearing needs
+        them.
+    total_mass : float
+        Mass of the rotor [kg].
     """
 
     basis: PlanarBasis
@@ -162,7 +163,7 @@ class ModalProjection:
 
     @property
     def floor(self) -> float:
-        """The lowest frequency of the basis that is not a rigid motion's zero, rad/s."""
+        """The lowest frequency of the basis that is not a rigid motion's zero [rad/s]."""
         return self.basis.floor
 
     def matrices(self, bearings: Sequence[Bearing]) -> tuple[FloatArray, NumberArray, NumberArray, NumberArray]:
@@ -170,11 +171,11 @@ class ModalProjection:
         b, a = self.basis.count, self.axial_frequencies.size
         alone = len(self.blocks) == 1
         shaft = b if alone else 2 * b + a
-        relative, held, damped, feet = self._bearing_terms(bearings, shaft)
+        relative, stiffnesses, dampings, feet = self._bearing_terms(bearings, shaft)
         order = relative.shape[-1]
         rows = relative.reshape(-1, order)
         mass = np.ones(order)
-        stiffness, damping = rows.T @ _times(held, relative), rows.T @ _times(damped, relative)
+        stiffness, damping = rows.T @ _times(stiffnesses, relative), rows.T @ _times(dampings, relative)
         gyroscopic = np.zeros_like(stiffness)
         if alone:
             stiffness[:b, :b] += self.basis.stiffness
@@ -187,9 +188,9 @@ class ModalProjection:
             stiffness[axial, axial] += self.axial_frequencies**2
         for bearing, coordinates, directions in feet:
             assert bearing.pedestal is not None
-            own, ground = np.ix_(coordinates, coordinates), np.ix_(directions, directions)
-            stiffness[own] += self._turned(bearing.pedestal.stiffness)[ground]
-            damping[own] += self._turned(bearing.pedestal.damping)[ground]
+            foot_block, ground = np.ix_(coordinates, coordinates), np.ix_(directions, directions)
+            stiffness[foot_block] += self._turned(bearing.pedestal.stiffness)[ground]
+            damping[foot_block] += self._turned(bearing.pedestal.damping)[ground]
             mass[coordinates] = max(bearing.pedestal.mass, PEDESTAL_MASS * self.total_mass)
         return mass, stiffness, damping, gyroscopic
 
@@ -239,21 +240,21 @@ class ModalProjection:
         spatial = np.zeros((2, len(bearings), 5, 5))
         for k, bearing in enumerate(bearings):
             spatial[0, k], spatial[1, k] = bearing.spatial_stiffness, bearing.spatial_damping
-        held: NumberArray = spatial
+        matrices: NumberArray = spatial
         if alone:
             turn = CIRCULAR[list(BLOCK_COORDINATES[self.blocks[0]])]
-            held = turn @ spatial @ turn.conj().T
+            matrices = turn @ spatial @ turn.conj().T
         feet: list[tuple[int, IntArray, list[int]]] = []
         order = shaft
         for k, bearing in enumerate(bearings):
             if bearing.pedestal is None:
                 continue
-            acts = (held[0, k] != 0.0) | (held[1, k] != 0.0)
+            acts = (matrices[0, k] != 0.0) | (matrices[1, k] != 0.0)
             busy = acts.any(axis=0) | acts.any(axis=1)
             directions = [direction for direction in ((0,) if alone else (0, 1)) if busy[direction]]
             feet.append((k, order + np.arange(len(directions)), directions))
             order += len(directions)
-        relative = np.zeros((len(bearings), held.shape[-1], order))
+        relative = np.zeros((len(bearings), matrices.shape[-1], order))
         displacement, slope = self.basis.displacement, self.basis.slope
         if bearings and alone:
             relative[:, 0, :b], relative[:, 1, :b] = displacement.T, slope.T
@@ -263,8 +264,8 @@ class ModalProjection:
             relative[k, directions, coordinates] -= 1.0
         return (
             relative,
-            held[0],
-            held[1],
+            matrices[0],
+            matrices[1],
             [(bearings[k], coordinates, directions) for k, coordinates, directions in feet],
         )
 
@@ -282,11 +283,11 @@ class Pencil:
 
     Attributes
     ----------
-    blocks
-        As of `rotors.whirl.equations.WhirlEquations`.
-    still, turning
-        (2N, 2N): in 1/s, and per rad/s of the speed Ω.
-    planes
+    blocks : tuple of int
+        Blocks as of `rotors.whirl.equations.WhirlEquations`.
+    still, turning : ndarray, shape (2N, 2N)
+        Constant part [1/s], and part per rad/s of the speed Ω.
+    planes : CoupledPlanes or None
         The cheaper form for lightly damped planes, where it applies.
     """
 

@@ -1,8 +1,8 @@
 """Complex motion of a shaft in both planes, continued exactly from its node states, and its strain energy.
 
-In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. The strain energy of a length of shaft,
-a bearing or a pedestal is here the mean over one turn of the phase, with the growth or decay e^{Re λ t} left out,
-¼ Re(q̂ᴴ K q̂): of the shaft
+In motion Re[q̂ e^{λt}] strain energy swings at twice the frequency about a mean. The strain energy of a length of
+shaft, a bearing or a pedestal is here the mean over one turn of the phase, with the growth or decay e^{Re λ t} left
+out, ¼ Re(q̂ᴴ K q̂): of the shaft
 
     ¼ ∫ |f_x|²/(κGA + P) + |f_y|²/(κGA + P) + (|m_x|² + |m_y|²)/EI + g P (|β_x|² + |β_y|²) + |n|²/EA dz
 
@@ -45,15 +45,15 @@ class ShaftMotion:
 
     Attributes
     ----------
-    shaft
+    shaft : DiscretisedShaft
         Elements and nodes of one plane.
-    eigenvalues, speeds
-        (w,) complex: λ and Ω, rad/s.
-    forward, backward
-        (w, p + 1, 4) complex: r±, β± and the forces that belong to them, right of every node, in scaled units.
-    axial
-        (w, p + 1, 2) complex: the same of z; zero where no bearing couples it to lateral motion.
-    rod
+    eigenvalues, speeds : ndarray of complex, shape (w,)
+        Eigenvalues λ and speeds of rotation Ω [rad/s].
+    forward, backward : ndarray of complex, shape (w, p + 1, 4)
+        States r±, β± and the conjugate forces, right of every node, in scaled units.
+    axial : ndarray of complex, shape (w, p + 1, 2)
+        State z and its force; zero where no bearing couples it to lateral motion.
+    rod : DiscretisedShaft or None
         The shaft's axial motion, discretised; None without any.
     """
 
@@ -126,9 +126,9 @@ class ShaftMotion:
 
     @cached_property
     def shares(self) -> FloatArray:
-        """∫ ρA |r±|² + ρI |β±|² dz of the forward and the backward part, ∫ ρA |z|² dz of the axial one, (w, 3), kg·m².
+        """Integrals ∫ ρA |r±|² + ρI |β±|² dz of forward and backward part, and ∫ ρA |z|² dz, (w, 3) [kg·m²].
 
-        With the nodes' own inertias.
+        The inertias of the nodes are included.
         """
         from rotors.whirl.shooting_matrix_kernels import inertia_shares
 
@@ -142,7 +142,7 @@ class ShaftMotion:
         return np.stack([*shares, self._axial_inertia()], axis=-1)
 
     def _axial_inertia(self) -> FloatArray:
-        """∫ ρA |z|² dz with the nodes' masses, (w,)."""
+        """Integral ∫ ρA |z|² dz with the nodes' masses, (w,)."""
         rod = self.rod
         if rod is None:
             return np.zeros(self.count)
@@ -168,7 +168,7 @@ class ShaftMotion:
         return np.asarray(self.shares[:, 2] / self.shares.sum(axis=1))
 
     def at(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Forward and backward states (w, len(z), 4) at positions z (m), in scaled units, by the exact transfer.
+        """Forward and backward states (w, len(z), 4) at positions z [m], in scaled units, by the exact transfer.
 
         Raises
         ------
@@ -183,19 +183,19 @@ class ShaftMotion:
         )
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex x and y at positions z (m), both (w, len(z)), m."""
+        """Complex x and y at positions z [m], both (w, len(z)) [m]."""
         forward, backward = self.at(z)
         unit = self.shaft.displacement_unit[0]
         return planes(forward[:, :, 0] * unit, backward[:, :, 0] * unit)
 
     def evaluate_slopes(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex slopes of the section in x and in y at positions z (m), both (w, len(z)), rad."""
+        """Complex slopes of the section in x and in y at positions z [m], both (w, len(z)) [rad]."""
         forward, backward = self.at(z)
         unit = self.shaft.displacement_unit[1]
         return planes(forward[:, :, 1] * unit, backward[:, :, 1] * unit)
 
     def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex shear forces (N) and bending moments (N·m) at positions z (m), both (2, w, len(z)) over x and y."""
+        """Complex shear forces [N] and bending moments [N·m] at positions z [m], both (2, w, len(z)) over x and y."""
         forward, backward = self.at(z)
         unit = self.shaft.displacement_unit
         shear = planes(forward[:, :, 2] / unit[0], backward[:, :, 2] / unit[0])
@@ -203,14 +203,14 @@ class ShaftMotion:
         return np.array(shear), np.array(moment)
 
     def axial_at(self, z: npt.ArrayLike) -> ComplexArray:
-        """Axial states (w, len(z), 2) at positions z (m) of a shaft that moves along its axis, in scaled units."""
+        """Axial states (w, len(z), 2) at positions z [m] of a shaft that moves along its axis, in scaled units."""
         assert self.rod is not None
         numbers, fractions = self.rod.places(require_positions(self.rod.nodes, z))
         transfer_matrices = self.rod.transfer_matrices_to(numbers, fractions, -(self.eigenvalues**2))
         return np.asarray(np.einsum("zwij,wzj->wzi", transfer_matrices, self.axial[:, numbers]))
 
     def evaluate_axial(self, z: npt.ArrayLike) -> ComplexArray:
-        """Complex displacement along the axis (m) at positions z (m), (w, len(z)); zero without axial motion."""
+        """Complex displacement along the axis [m] at positions z [m], (w, len(z)); zero without axial motion."""
         if self.rod is None:
             return np.zeros((len(self.axial), np.size(z)), dtype=np.complex128)
         return np.asarray(self.axial_at(z)[:, :, 0] * self.rod.displacement_unit[0])
@@ -235,12 +235,12 @@ class StrainShares:
 
     Attributes
     ----------
-    lengths
-        (w, e): in lengths of shaft.
-    bearings
-        (w, b): in the bearings; the energy of a spring that drives, which would count as negative, included.
-    pedestals
-        (w, b): in the pedestals that the bearings stand on; zero where they have none.
+    lengths : ndarray, shape (w, e)
+        Shares in lengths of shaft.
+    bearings : ndarray, shape (w, b)
+        Shares in the bearings; the energy of a destabilising spring counts as negative.
+    pedestals : ndarray, shape (w, b)
+        Shares in the bearings' pedestals; zero where there is none.
     """
 
     lengths: FloatArray
@@ -249,7 +249,7 @@ class StrainShares:
 
 
 def strain_shares(motion: ShaftMotion, bearings: Sequence[Bearing], edges: npt.ArrayLike) -> StrainShares:
-    """Shares of motions (w,) on bearings of constant coefficients, in lengths between ascending ``edges`` (e + 1,), m.
+    """Shares of motions (w,) on bearings of constant coefficients, in lengths between ascending ``edges`` (e + 1,) [m].
 
     Raises
     ------
@@ -257,16 +257,19 @@ def strain_shares(motion: ShaftMotion, bearings: Sequence[Bearing], edges: npt.A
         A position is not on the shaft.
     """
     lengths = _along(motion, require_positions(motion.shaft.nodes, edges))
-    held, grounded = np.zeros((2, motion.count, len(bearings)))
+    in_bearings, in_pedestals = np.zeros((2, motion.count, len(bearings)))
     for k, bearing in enumerate(bearings):
-        held[:, k], grounded[:, k] = _in_springs(motion, bearing)
-    whole = (lengths.sum(axis=1) + held.sum(axis=1) + grounded.sum(axis=1))[:, None]
-    parts = (np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0) for part in (lengths, held, grounded))
+        in_bearings[:, k], in_pedestals[:, k] = _in_springs(motion, bearing)
+    whole = (lengths.sum(axis=1) + in_bearings.sum(axis=1) + in_pedestals.sum(axis=1))[:, None]
+    parts = (
+        np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
+        for part in (lengths, in_bearings, in_pedestals)
+    )
     return StrainShares(*parts)
 
 
 def _along(motion: ShaftMotion, edges: FloatArray) -> FloatArray:
-    """Four times the mean strain energy of the shaft between the edges, (w, e), J."""
+    """Four times the mean strain energy of the shaft between the edges, (w, e) [J]."""
     shaft = motion.shaft
     cuts = merged_positions(shaft.nodes, edges.tolist())
     widths = np.diff(cuts)
@@ -286,7 +289,7 @@ def _along(motion: ShaftMotion, edges: FloatArray) -> FloatArray:
 
 
 def _in_springs(motion: ShaftMotion, bearing: Bearing) -> tuple[FloatArray, FloatArray]:
-    """Four times the mean strain energy in a bearing and in its pedestal, (w,) each, J."""
+    """Four times the mean strain energy in a bearing and in its pedestal, (w,) each [J]."""
     x, y = (part[:, 0] for part in motion.evaluate([bearing.at]))
     slope_x, slope_y = (part[:, 0] for part in motion.evaluate_slopes([bearing.at]))
     along = motion.evaluate_axial([bearing.at])[:, 0]
@@ -305,5 +308,5 @@ def _in_springs(motion: ShaftMotion, bearing: Bearing) -> tuple[FloatArray, Floa
 
 
 def _stored(stiffness: FloatArray, deflection: ComplexArray) -> FloatArray:
-    """Re(δᴴ K δ) of deflections (w, n), (w,)."""
+    """Compute Re(δᴴ K δ) of deflections (w, n), (w,)."""
     return np.asarray(np.einsum("wi,ij,wj->w", deflection.conj(), stiffness, deflection).real)

@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 DEFAULT_COUNT = 12
 LEAST_MODES = 6
 SPARE_MODES = 3
-# The basis holds modes up to this multiple of the highest whirl frequency: it gives starting values only.
+# Multiple of the highest whirl frequency up to which the basis has modes: it gives starting values only.
 BASIS_REACH = 1.5
 
 
@@ -37,14 +37,14 @@ class PlanarBasis:
 
     Attributes
     ----------
-    stiffness
-        (b, b): of the shaft without supports, 1/s².
-    polar_inertia
-        (b, b): the gyroscopic matrix per rad/s.
-    displacement, slope
-        (b, bearings): at the bearings, in m and rad per unit modal coordinate.
-    floor
-        The lowest frequency on the mean supports that is not a rigid motion's zero, rad/s.
+    stiffness : ndarray, shape (b, b)
+        Stiffness of the shaft without supports [1/s²].
+    polar_inertia : ndarray, shape (b, b)
+        Gyroscopic matrix per rad/s.
+    displacement, slope : ndarray, shape (b, bearings)
+        Displacement [m] and slope [rad] at the bearings, per unit modal coordinate.
+    floor : float
+        The lowest frequency on the mean supports that is not a rigid motion's zero [rad/s].
     """
 
     stiffness: FloatArray
@@ -70,7 +70,7 @@ def mean_supports(bearings: Sequence[Bearing]) -> tuple[RadialSupport, ...]:
 
 
 def loaded_places(rotor: Rotor, bearings: Sequence[Bearing]) -> tuple[list[float], list[float]]:
-    """Places (m) of forces and of moments on the turning shaft: bearings, and discs with polar inertia."""
+    """Places [m] of forces and of moments on the turning shaft: bearings, and discs with polar inertia."""
     moments = [disc.at for disc in rotor.discs if disc.polar_inertia > 0.0]
     moments += [bearing.at for bearing in bearings if bearing.stiffness.shape[-1] == 5]
     return [bearing.at for bearing in bearings], moments
@@ -92,11 +92,11 @@ def planar_basis(
 
     Parameters
     ----------
-    rotor, bearings
-        The rotor and what holds it.
-    frequency_limit
-        Highest whirl frequency of interest, rad/s.
-    count
+    rotor, bearings : Rotor, sequence of Bearing
+        The rotor and its bearings.
+    frequency_limit : float or None
+        Highest whirl frequency of interest [rad/s].
+    count : int or None
         Number of whirl modes of interest, instead.
 
     Raises
@@ -120,7 +120,7 @@ def planar_basis(
     nodes = [shaft.node_at(place) for place in forces]
     loads = [(node, 0) for node in nodes] + [(shaft.node_at(place), 1) for place in moments]
     loads = list(dict.fromkeys(loads))
-    # As in `rotors.modes.residual_modes`, a free shaft answers a little below zero.
+    # As in `rotors.modes.residual_modes`, the response of a free shaft is taken at ω² slightly below zero.
     shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
     squared = shared_roots(elastic) ** 2
     states = [null_states(squared, *shaft_arrays(shaft))]
@@ -138,12 +138,12 @@ def planar_basis(
     energy_rows(squared, fields, GAUSS_FRACTIONS, *arrays, motion, strain)
     at_bearings = fields[:, nodes, :2] * shaft.displacement_unit
     shapes = np.ascontiguousarray(at_bearings.reshape(squared.size, -1))
-    kept = mass_orthonormal(motion, strain, shapes, mass, NOTHING_LEFT)
-    motion, strain, shapes = motion[:kept], strain[:kept], shapes[:kept]
-    own = (strain * stiffness) @ strain.T
-    moving = np.sqrt(own.diagonal()[own.diagonal() > 0.0]) if elastic.size == 0 else elastic
+    count_kept = mass_orthonormal(motion, strain, shapes, mass, NOTHING_LEFT)
+    motion, strain, shapes = motion[:count_kept], strain[:count_kept], shapes[:count_kept]
+    projected = (strain * stiffness) @ strain.T
+    moving = np.sqrt(projected.diagonal()[projected.diagonal() > 0.0]) if elastic.size == 0 else elastic
     return PlanarBasis(
-        stiffness=own,
+        stiffness=projected,
         polar_inertia=(motion * polar) @ motion.T,
         displacement=shapes[:, 0::2],
         slope=shapes[:, 1::2],

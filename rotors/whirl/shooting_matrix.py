@@ -53,14 +53,14 @@ class Layout:
 
     Attributes
     ----------
-    order
+    order : int
         Number of unknowns, and of equations.
-    displacements, forces
-        (r + 1, n) and (r, n): columns of the state right of a node.
-    continuity, balances
-        (r, n) and (r + 1, n): rows of the displacements at every node but the first, and of the forces at every node.
-    bearings
-        For every bearing.
+    displacements, forces : ndarray of int, shapes (r + 1, n) and (r, n)
+        Columns of the state right of a node.
+    continuity, balances : ndarray of int, shapes (r, n) and (r + 1, n)
+        Rows of the displacements at every node but the first, and of the forces at every node.
+    bearings : tuple of BearingPlaces
+        Rows and columns of every bearing.
     """
 
     order: int
@@ -71,21 +71,21 @@ class Layout:
     bearings: tuple[BearingPlaces, ...]
 
     @classmethod
-    def of(cls, blocks: tuple[int, ...], kept: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
+    def of(cls, blocks: tuple[int, ...], nodes: IntArray, node_bearings: Sequence[NodeBearing]) -> "Layout":
         """Layout of the blocks at the nodes with unknowns, (r + 1,), and of the bearings at some of them."""
         widths = np.array([len(BLOCK_COORDINATES[block]) for block in blocks])
         n, width = int(widths.sum()), np.repeat(widths, widths)
-        # A block's displacements and then its forces, behind those of the blocks before it.
-        own = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
-        at = [int(kept.searchsorted(node_bearing.node)) for node_bearing in node_bearings]
-        extra = np.zeros(kept.size, dtype=np.intp)
+        # The displacements of a block and then its forces follow those of the previous blocks.
+        offsets = np.arange(n) + np.repeat(np.cumsum(widths) - widths, widths)
+        at = [int(nodes.searchsorted(node_bearing.node)) for node_bearing in node_bearings]
+        extra = np.zeros(nodes.size, dtype=np.intp)
         for node, node_bearing in zip(at, node_bearings, strict=True):
             extra[node] += len(node_bearing.directions) + len(node_bearing.foot)
-        # The first node has no displacement to meet, the last no force.
+        # The first node has no continuity equations, the last no forces.
         columns = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n)])
         rows = np.concatenate([[0], np.cumsum(extra[:-1] + 2 * n) - n])
         states = columns + extra
-        displacements, balances = states[:, None] + own, rows[:, None] + width + own
+        displacements, balances = states[:, None] + offsets, rows[:, None] + width + offsets
         displacements[-1], balances[0] = states[-1] + np.arange(n), np.arange(n)
         behind = rows + 2 * n
         behind[0] = n
@@ -99,8 +99,8 @@ class Layout:
         return cls(
             int(states[-1]) + n,
             displacements,
-            states[:-1, None] + width + own,
-            rows[1:, None] + own,
+            states[:-1, None] + width + offsets,
+            rows[1:, None] + offsets,
             balances,
             tuple(places),
         )
@@ -112,18 +112,18 @@ class ShootingMatrix:
 
     Attributes
     ----------
-    pattern
+    pattern : BandPattern
         Rows and columns of the entries.
-    blocks
-        1 for r+, −1 for r−, 0 for z.
-    beams, rods
+    blocks : ndarray of int
+        Blocks: 1 for r+, −1 for r−, 0 for z.
+    beams, rods : Runs
         Lengths (e,) and coefficients (e, 6 or 2, j) of the distinct elements, the index of each among them, (p,), the
         nodes with unknowns, between which elements form a run, (r + 1,), and for each run the first equal one, (r,); no
         rods without z.
-    numerators, denominators
-        (t, 5) complex and (t, 2): of the entries that follow those of the transfer matrices.
-    constants
-        (c,) complex: constant entries, at the end.
+    numerators, denominators : ndarray of complex and ndarray, shapes (t, 5) and (t, 2)
+        Coefficients of the entries that follow those of the transfer matrices.
+    constants : ndarray of complex, shape (c,)
+        Constant entries, at the end.
     """
 
     pattern: BandPattern
@@ -159,48 +159,48 @@ def shooting_matrix(
     axial: DiscretisedShaft | None,
     blocks: tuple[int, ...],
     node_bearings: Sequence[NodeBearing],
-    kept: IntArray,
+    nodes: IntArray,
     layout: Layout,
 ) -> ShootingMatrix:
-    """Assemble the shooting matrix with unknowns at the nodes ``kept``, (r + 1,), in the given layout."""
+    """Assemble the shooting matrix with unknowns at ``nodes``, (r + 1,), in the given layout."""
     first, terms, runs = 0, _Terms(), []
     states = np.stack([layout.displacements[:-1], layout.forces])
     reached = np.stack([layout.continuity, layout.balances[1:]])
     for block in blocks:
-        own = slice(first, first + len(BLOCK_COORDINATES[block]))
+        block_columns = slice(first, first + len(BLOCK_COORDINATES[block]))
         # (r, 2n) each, displacements before forces.
-        rows, columns = (np.concatenate([*places[:, :, own]], axis=1) for places in (reached, states))
+        rows, columns = (np.concatenate([*places[:, :, block_columns]], axis=1) for places in (reached, states))
         runs.append(np.array(np.broadcast_arrays(rows[:, :, None], columns[:, None])).reshape(2, -1))
-        first = own.stop
-    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, kept, blocks)], FORCE_DENOMINATOR)
+        first = block_columns.stop
+    terms.add(layout.balances, layout.displacements, [0.0, 0.0, *_inertias(bending, nodes, blocks)], FORCE_DENOMINATOR)
     terms.add(layout.continuity, layout.displacements[1:], [1.0])
     terms.add(layout.balances[:-1], layout.forces, [1.0])
     for node_bearing, own_places in zip(node_bearings, layout.bearings, strict=True):
-        node = int(kept.searchsorted(node_bearing.node))
+        node = int(nodes.searchsorted(node_bearing.node))
         _add_node_bearing(terms, node_bearing, layout.balances[node], layout.displacements[node], own_places)
     places, numerators, denominators, constants = terms.parted()
     rows, columns = np.concatenate(runs + places, axis=1)
     return ShootingMatrix(
         BandPattern.of(rows, columns, layout.order),
         np.array(blocks, dtype=np.intp),
-        _runs(bending, kept),
-        NO_RUNS if axial is None else _runs(axial, kept),
+        _runs(bending, nodes),
+        NO_RUNS if axial is None else _runs(axial, nodes),
         numerators,
         denominators,
         constants,
     )
 
 
-def _runs(shaft: DiscretisedShaft, kept: IntArray) -> Runs:
+def _runs(shaft: DiscretisedShaft, nodes: IntArray) -> Runs:
     first: dict[bytes, int] = {}
-    elements = [shaft.element[left:right].tobytes() for left, right in pairwise(kept.tolist())]
+    elements = [shaft.element[left:right].tobytes() for left, right in pairwise(nodes.tolist())]
     like = [first.setdefault(same, run) for run, same in enumerate(elements)]
-    return shaft.table.lengths, shaft.table.coefficients, shaft.element, kept, np.array(like, dtype=np.intp)
+    return shaft.table.lengths, shaft.table.coefficients, shaft.element, nodes, np.array(like, dtype=np.intp)
 
 
-def _inertias(shaft: DiscretisedShaft, kept: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
-    """−M and the gyroscopic term of λΩ, (r + 1, n) both, of the nodes' own inertias."""
-    inertia, polar = shaft.node_inertia[kept], shaft.node_polar[kept]
+def _inertias(shaft: DiscretisedShaft, nodes: IntArray, blocks: tuple[int, ...]) -> tuple[FloatArray, ComplexArray]:
+    """Terms −M and the gyroscopic term of λΩ, (r + 1, n) both, of the inertias at nodes."""
+    inertia, polar = shaft.node_inertia[nodes], shaft.node_polar[nodes]
     squared, turning = [], []
     for block in blocks:
         squared += [-inertia[:, 0], -inertia[:, -1]][: len(BLOCK_COORDINATES[block])]
@@ -213,7 +213,7 @@ def _add_node_bearing(
 ) -> None:
     """Add the entries of a bearing's forces g and its pedestal's displacements p at a node."""
     shared = list(node_bearing.foot)
-    held = _over(node_bearing.stiffness)
+    denominators = _over(node_bearing.stiffness)
     grounded = _over(node_bearing.foot_stiffness)
     force, foot = places.force_rows, places.foot_rows
     terms.add(balance[:, None], places.forces, [-node_bearing.frame.conj().T])
@@ -221,12 +221,12 @@ def _add_node_bearing(
         force[:, None],
         node,
         [-node_bearing.stiffness @ node_bearing.frame, -node_bearing.damping @ node_bearing.frame],
-        held[:, None],
+        denominators[:, None],
     )
-    terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], held)
+    terms.add(force, places.forces, [0.0, 0.0, 0.0, 0.0, 1.0], denominators)
     if shared:
         felt = [node_bearing.stiffness[:, shared], node_bearing.damping[:, shared]]
-        terms.add(force[:, None], places.feet, felt, held[:, None])
+        terms.add(force[:, None], places.feet, felt, denominators[:, None])
         ground = [node_bearing.foot_stiffness, node_bearing.foot_damping, node_bearing.foot_mass]
         terms.add(foot[:, None], places.feet, ground, grounded[:, None])
         terms.add(foot, places.forces[shared], [0.0, 0.0, 0.0, 0.0, -1.0], grounded)
@@ -239,7 +239,7 @@ def _over(stiffness: ComplexArray) -> FloatArray:
 
 
 class _Terms:
-    """Entries collected block by block."""
+    """Entries of the matrix, collected block by block."""
 
     def __init__(self) -> None:
         self.places: list[IntArray] = []
@@ -266,9 +266,9 @@ class _Terms:
         self.denominators.append(bottom.reshape(-1, 2))
 
     def parted(self) -> tuple[list[IntArray], ComplexArray, FloatArray, ComplexArray]:
-        """Rows and columns of varying and of constant entries, the terms of the former and the values of the latter."""
+        """Rows and columns of varying and of constant entries, terms of the varying, values of the constant ones."""
         places = np.concatenate(self.places, axis=1)
         top, bottom = np.concatenate(self.numerators), np.concatenate(self.denominators)
-        held = ~top[:, 1:].any(axis=1) & (bottom == UNIT_DENOMINATOR).all(axis=1)
-        varying, others = top.any(axis=1) & ~held, held & (top[:, 0] != 0.0)
+        is_constant = ~top[:, 1:].any(axis=1) & (bottom == UNIT_DENOMINATOR).all(axis=1)
+        varying, others = top.any(axis=1) & ~is_constant, is_constant & (top[:, 0] != 0.0)
         return [places[:, varying], places[:, others]], top[varying], bottom[varying], top[others, 0]

@@ -44,21 +44,21 @@ def _times(left: ComplexArray, right: ComplexArray, out: ComplexArray) -> None:
 def _put_runs(
     runs: Runs, translation: complex, rotation: complex, scale: float, transfer_matrices: Any, out: ComplexArray
 ) -> int:
-    """−T of every run of elements, forces in the given unit, at the start of ``out``; returns the number of entries."""
-    lengths, given, element, kept, like = runs
+    """Put −T of every run of elements, forces in the given unit, at the start of ``out``; return their number."""
+    lengths, coefficients, element, run_ends, like = runs
     whole, over = np.ones(1), 1.0 / scale
     size, half, spare = transfer_matrices.shape[2], transfer_matrices.shape[2] // 2, lengths.size
     for e in range(lengths.size):
-        transfer_matrix(lengths[e], given[e], translation, rotation, whole, transfer_matrices[e])
+        transfer_matrix(lengths[e], coefficients[e], translation, rotation, whole, transfer_matrices[e])
     entry = 0
-    for run in range(kept.size - 1):
+    for run in range(run_ends.size - 1):
         if like[run] < run:
             for same in range(like[run] * size * size, (like[run] + 1) * size * size):
                 out[entry] = out[same]
                 entry += 1
             continue
-        product = element[kept[run]]
-        for number in range(kept[run] + 1, kept[run + 1]):
+        product = element[run_ends[run]]
+        for number in range(run_ends[run] + 1, run_ends[run + 1]):
             # Two spare matrices take turns.
             following = spare + 1 if product == spare else spare
             _times(
@@ -153,21 +153,21 @@ def node_states(
 ) -> None:
     """Fill in the states (w, p + 1, 2n) of one block at all nodes, those inside runs from the nodes before them.
 
-    Of ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
+    In ``solutions`` (w, order) the unknowns at ``places`` (r + 1, 2n) are the states where runs end, zero where a place
     is negative, their forces in units of ``scale`` (w,); ω² are those of ``translation`` and ``rotation``, (w,) both.
     """
-    lengths, given, element, kept, _ = runs
+    lengths, coefficients, element, run_ends, _ = runs
     size, whole = states.shape[2], np.ones(1)
     transfer_matrices = np.empty((lengths.size, 1, size, size), dtype=np.complex128)
     for w in range(states.shape[0]):
         for e in range(lengths.size):
-            transfer_matrix(lengths[e], given[e], translation[w], rotation[w], whole, transfer_matrices[e])
-        for end in range(kept.size):
+            transfer_matrix(lengths[e], coefficients[e], translation[w], rotation[w], whole, transfer_matrices[e])
+        for end in range(run_ends.size):
             for i in range(size):
                 unit, place = scale[w] if i >= size // 2 else 1.0, places[end, i]
-                states[w, kept[end], i] = unit * solutions[w, place] if place >= 0 else 0.0j
-        for run in range(kept.size - 1):
-            for node in range(kept[run] + 1, kept[run + 1]):
+                states[w, run_ends[end], i] = unit * solutions[w, place] if place >= 0 else 0.0j
+        for run in range(run_ends.size - 1):
+            for node in range(run_ends[run] + 1, run_ends[run + 1]):
                 transfer = transfer_matrices[element[node - 1], 0]
                 for i in range(size):
                     total = transfer[i, 0] * states[w, node - 1, 0]
@@ -191,13 +191,13 @@ def inertia_shares(
     ``states`` (w, p + 1, 4) continue from the left end of every element at ω² of (w,) ``translation`` and ``rotation``;
     the weights are ``along`` (e, g, 2) at the ``fractions`` (g,) of the elements and ``nodal`` (p + 1, 2).
     """
-    lengths, given, element = elements
+    lengths, coefficients, element = elements
     transfer_matrices = np.empty((lengths.size, fractions.size, 4, 4), dtype=np.complex128)
     totals = np.zeros(states.shape[0])
     for w in range(states.shape[0]):
         for e in range(lengths.size):
             element_transfer_matrices(
-                lengths[e], given[e], translation[w], rotation[w], fractions, transfer_matrices[e]
+                lengths[e], coefficients[e], translation[w], rotation[w], fractions, transfer_matrices[e]
             )
         for number in range(element.size):
             state, e = states[w, number], element[number]

@@ -31,7 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Made = TypeVar("Made")
 
-# Starting values up to this multiple of the limit are refined: the projection's lie above the roots.
+# Multiple of the limit up to which starting values are refined: those of the projection lie above the roots.
 START_REACH = 1.2
 # Beyond the modes wanted, starting values are refined up to the first gap of this relative width, in which the proof's
 # limit is placed.
@@ -39,35 +39,35 @@ WIDE_GAP = 0.01
 # Share of axial kinetic energy above which a motion is called axial. Unbalance still drives one with less, in
 # proportion to the root of its lateral share.
 MOSTLY_AXIAL = 0.9
-# A damping ratio nearer to zero is rounding: the mode neither grows nor decays.
+# Magnitude of a damping ratio below which it is rounding: the mode neither grows nor decays.
 NEUTRAL = 1e-9
-# In a narrower gap a limit would be too close to a root for the count.
+# Least relative gap for a limit: in a narrower one it would be too close to a root for the count.
 LEAST_GAP = 1e-6
-# Number of results that a solver holds, those made last.
+# Number of the latest results that a solver keeps.
 MOST_HELD = 16
 
 
 class ComplexFrequencies:
     """Frequencies and damping that complex eigenvalues λ [rad/s] stand for, of one speed or of a Campbell diagram.
 
-    All arrays have the shape of ``eigenvalues``; what is NaN there is NaN in them.
+    All arrays have the shape of ``eigenvalues``, with NaN at the same places.
     """
 
     eigenvalues: ComplexArray
 
     @property
     def frequencies(self) -> FloatArray:
-        """Natural frequency |λ|, rad/s."""
+        """Natural frequency |λ| [rad/s]."""
         return np.asarray(np.abs(self.eigenvalues))
 
     @property
     def damped_frequencies(self) -> FloatArray:
-        """Im λ, rad/s."""
+        """Damped frequency Im λ [rad/s]."""
         return np.asarray(self.eigenvalues.imag)
 
     @property
     def damping_ratios(self) -> FloatArray:
-        """−Re λ / |λ|; negative where a mode grows."""
+        """Damping ratio −Re λ / |λ|; negative where a mode grows."""
         return np.asarray(-self.eigenvalues.real / np.abs(self.eigenvalues))
 
     @property
@@ -82,16 +82,16 @@ class WhirlModes(ComplexFrequencies):
 
     Attributes
     ----------
-    speed
-        Ω, rad/s.
-    eigenvalues
-        (w,) complex, rad/s, with positive imaginary part: exact to about 1e-13 of each.
-    certificate
+    speed : float
+        Ω [rad/s].
+    eigenvalues : ndarray of complex, shape (w,)
+        Eigenvalues [rad/s], with positive imaginary part: exact to about 1e-13 of each.
+    certificate : ModeCertificate
         Proof that none is missing.
-    bearings
+    bearings : tuple of Bearing
         The bearings, with their coefficients at this speed.
-    roots
-        The same eigenvalues as roots of the exact equations, with their vectors, of which `motion` makes the shapes.
+    roots : WhirlRoots
+        The eigenvalues as roots of the exact equations, with the vectors from which `motion` makes the shapes.
     """
 
     speed: float
@@ -125,11 +125,11 @@ class WhirlModes(ComplexFrequencies):
         return bool((self.damping_ratios >= -NEUTRAL).all())
 
     def evaluate(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex x and y of every mode at positions z (m), both (w, len(z)), by the exact field."""
+        """Complex x and y of every mode at positions z [m], both (w, len(z)), by the exact field."""
         return self.motion.evaluate(z)
 
     def evaluate_axial(self, z: npt.ArrayLike) -> ComplexArray:
-        """Complex displacement along the axis of every mode at positions z (m), (w, len(z)), by the exact field.
+        """Complex displacement along the axis of every mode at positions z [m], (w, len(z)), by the exact field.
 
         Zeros where no bearing couples axial and lateral motion.
 
@@ -141,7 +141,7 @@ class WhirlModes(ComplexFrequencies):
         return self.motion.evaluate_axial(z)
 
     def section_loads(self, z: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Complex shear forces and bending moments of every mode at positions z (m), both (2, w, len(z)) over x and y.
+        """Complex shear forces and bending moments of every mode at positions z [m], both (2, w, len(z)) over x and y.
 
         f = κGA (x' − β) + P x' in N and EI β' in N·m, for the motion that `evaluate` gives; just right of a position,
         and at the shaft's right end just left of it. Over a cycle the bending moment's vector goes round an ellipse.
@@ -161,8 +161,8 @@ class WhirlModes(ComplexFrequencies):
 
         Parameters
         ----------
-        edges
-            (e + 1,): ascending positions that divide the shaft, m: `Rotor.joints` for its segments.
+        edges : array_like, shape (e + 1,)
+            Ascending positions that divide the shaft [m]: `Rotor.joints` for its segments.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class WhirlModes(ComplexFrequencies):
         return strain_shares(self.motion, self.bearings, edges)
 
     def direction_at(self, z: npt.ArrayLike) -> FloatArray:
-        """Whirl at positions z (m), (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
+        """Whirl at positions z [m], (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
         forward, backward = (np.abs(part[:, :, 0]) ** 2 for part in self.motion.at(z))
         total = forward + backward
         return np.asarray(np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0))
@@ -187,7 +187,7 @@ class WhirlSolver:
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at each speed.
 
     Examples
@@ -205,7 +205,7 @@ class WhirlSolver:
         object.__setattr__(self, "bearings", tuple(self.bearings))
 
     def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
-        """Complex modes at a speed of rotation (rad/s), certified complete; arguments and errors of `solve_whirl`."""
+        """Complex modes at a speed of rotation [rad/s], certified complete; arguments and errors of `solve_whirl`."""
         require_finite("speed", speed)
         basis = self.planar_basis(frequency_limit, count)
         constant = tuple(bearing.at_speed(speed) for bearing in self.bearings)
@@ -223,7 +223,7 @@ class WhirlSolver:
         return WhirlModes(speed, roots.eigenvalues, certificate, constant, roots)
 
     def planar_basis(self, frequency_limit: float | None, count: int | None) -> PlanarBasis:
-        """Planar basis for whirl below a limit (rad/s), or for the lowest ``count`` modes."""
+        """Planar basis for whirl below a limit [rad/s], or for the lowest ``count`` modes."""
         return self._hold(
             ("basis", frequency_limit, count),
             lambda: planar_basis(self.rotor, self.bearings, frequency_limit, count),
@@ -266,13 +266,13 @@ def solve_whirl(
 
     Parameters
     ----------
-    rotor, bearings
+    rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings; tables over speed are read at ``speed``.
-    speed
-        Ω, rad/s; negative is clockwise.
-    frequency_limit
-        rad/s: modes whose natural frequency |λ| is below it.
-    count
+    speed : float
+        Ω [rad/s]; negative is clockwise.
+    frequency_limit : float, optional
+        Limit of the natural frequency |λ| of the modes [rad/s].
+    count : int, optional
         Number of modes, the lowest in |λ|, instead of a limit; with neither, 12. A rotor with fewer gives all.
 
     Raises
@@ -291,12 +291,12 @@ class WhirlRoots:
 
     Attributes
     ----------
-    equation_sets, parts
+    equation_sets, parts : sequence of WhirlEquations, sequence of ExactRoots
         The equations of the sets, and their roots.
-    speed
+    speed : Speed
         Speed of rotation.
-    order
-        (w,): index of each root among the roots of all sets.
+    order : ndarray of int, shape (w,)
+        Index of each root among the roots of all sets.
     """
 
     equation_sets: Sequence[WhirlEquations]
@@ -306,15 +306,15 @@ class WhirlRoots:
 
     @property
     def eigenvalues(self) -> ComplexArray:
-        """λ of every root, rad/s, (w,)."""
+        """Eigenvalue λ of every root [rad/s], (w,)."""
         return _all([roots.eigenvalues for roots in self.parts])[self.order]
 
     @cached_property
     def motion(self) -> ShaftMotion:
         """The exact motion of every root, without normalisation."""
         motions = [
-            ShaftMotion.of(equations, one.eigenvalues, self.speed(one.eigenvalues), one.solutions, one.scales)
-            for equations, one in zip(self.equation_sets, self.parts, strict=True)
+            ShaftMotion.of(equations, roots.eigenvalues, self.speed(roots.eigenvalues), roots.solutions, roots.scales)
+            for equations, roots in zip(self.equation_sets, self.parts, strict=True)
         ]
         motion = motions[0]
         for more in motions[1:]:
@@ -336,12 +336,12 @@ def certified_whirl(
 
     ``starts`` are starting values for every set of coupled motions.
 
-    ``turning`` is the speed at which elements must be short enough, rad/s; None where it follows the frequency.
+    ``turning`` is the speed at which elements must be short enough [rad/s]; None where it follows the frequency.
     """
     from rotors.whirl.eigenvalue_kernels import ascending
 
-    kept = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
-    sizes: list[list[float]] = [np.abs(values).tolist() for values in kept]
+    oscillating_starts = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
+    sizes: list[list[float]] = [np.abs(values).tolist() for values in oscillating_starts]
     if limit is None:
         assert count is not None
         reach = _reach_behind(sorted(size for own in sizes for size in own), count)
@@ -353,7 +353,7 @@ def certified_whirl(
     near = [bisect_right(own, reach) for own in sizes]
     refined = [
         refine_roots(equations, values[:k], speed)
-        for equations, values, k in zip(equation_sets, kept, near, strict=True)
+        for equations, values, k in zip(equation_sets, oscillating_starts, near, strict=True)
     ]
     if limit is None:
         assert count is not None
@@ -363,10 +363,10 @@ def certified_whirl(
     conservative = solver.is_conservative_rotor(bearings)
     parts = [
         certified_roots(equations, roots, speed, sector, conservative, values[k:])
-        for equations, roots, values, k in zip(equation_sets, refined, kept, near, strict=True)
+        for equations, roots, values, k in zip(equation_sets, refined, oscillating_starts, near, strict=True)
     ]
-    found = _all([roots.eigenvalues for roots, _ in parts])
-    order = np.lexsort((found.imag, np.abs(found)))[:count]
+    eigenvalues = _all([roots.eigenvalues for roots, _ in parts])
+    order = np.lexsort((eigenvalues.imag, np.abs(eigenvalues)))[:count]
     proofs = [proof for _, proof in parts]
     certificate = combined_certificate(proofs, sector.most, proofs[0].method)
     return WhirlRoots(equation_sets, [roots for roots, _ in parts], speed, order), certificate
@@ -379,7 +379,7 @@ def is_conservative_rotor(rotor: Rotor, bearings: Sequence[Bearing]) -> bool:
 
 
 def _reach_behind(ascending: Sequence[float], count: int) -> float:
-    """Modulus below which lie the lowest ``count`` starting values, multiples of the last, and one more."""
+    """Modulus below which the lowest ``count`` starting values lie, with multiples of the last, and one more."""
     if not ascending:
         return 1.0
     last = min(count, len(ascending) - 1)

@@ -88,7 +88,7 @@ KernelArguments = tuple[FloatArray, int]
 _MEAN_PHASES = 256
 """Phases for the mean stiffness of helical teeth, whose mesh stiffness is smooth."""
 _TILT_PHASES, _TILT_HARMONICS, _TILT_KNOTS = 128, 20, 80
-"""Phases at which the tilt of the bodies is solved, mesh harmonics of it that are kept, and knots of their spline."""
+"""Phases at which the tilt of the bodies is solved, number of mesh harmonics retained, and knots of their spline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +120,9 @@ class PairStates(PairPositions):
     Attributes
     ----------
     stiffness : ndarray, shape (n, m)
-        Without the shared compliance [N/m]; 0 where absent, and for an uneven face, whose slices have their own.
+        Stiffness without the shared compliance [N/m]; 0 where absent, and for an uneven face, whose slices have theirs.
     deviation : ndarray, shape (n, m)
-        Gap by profile and pitch [m], infinite where absent; at first touch for an uneven face.
+        Gap by profile and pitch [m], infinite where absent; for an uneven face the gap at first touch.
     pitch_gap : ndarray, shape (n, m)
         Gap by pitch deviations alone [m].
     faces : FaceSliceStates or None
@@ -158,13 +158,13 @@ class ToothContact:
     damping_depth : float
         Compression up to which the damping fades in [m]; 0 for full damping at first touch.
     variants : tuple of ToothPairCurves
-        Of pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
+        Curves of the pairs of damaged teeth, numbered from 1; pairs of sound teeth are number 0.
     pair_variants, back_pair_variants : ndarray of int, shape (h,)
         Variant of the pair that enters at phase n, at n mod h; empty where all are alike.
     faces : FaceSlices or None
         Slices of the face where it is not loaded evenly; positions are then those of the middle of the face.
     module : float
-        Of the gears [m], which sets the depth of the table for the kernels. Needed with `faces` alone.
+        Normal module of the gears [m]: it sets the depth of the table for the kernels. Only used with `faces`.
     shared_compliance : float
         Compliance that pairs in contact at once share, C [m/N]; below that of any pair alone.
     mean_load : float
@@ -255,16 +255,16 @@ class ToothContact:
 
     @property
     def table_faces(self) -> FaceSlices | None:
-        """Slices of the face for the table of motion, whose positions along the path are as far apart as the slices.
+        """Slices of the face for the lookup table, whose positions along the path are as far apart as the slices.
 
-        The ripple of slices that come into touch would alias there to low harmonics of the mesh: some nanometres.
+        With coarser slices their ripple as they come into touch aliases to low mesh harmonics: some nanometres.
         """
         faces = self.faces
         return faces if faces is None or faces.half_span == 0.0 or faces.z.size > DEFAULT_SLICES else faces.halved()
 
     @cached_property
     def body_tilt(self) -> PiecewiseCubic | None:
-        """Deflection g of the mesh by bodies that tilt over the face, at the mean load, by the phase from 0 to 1 [m].
+        """Deflection g of the mesh by tilting gear bodies at the mean load [m], over the phase from 0 to 1.
 
         None where the face is loaded evenly or the bodies are not known, and of flanks without a mean load.
         """
@@ -285,7 +285,7 @@ class ToothContact:
             faces, slices.base, slices.gap, slices.meeting, owner, force, touching=loads.touching
         )
         deflection = tilting - even
-        # Slices come into touch one by one: harmonics beyond these are their steps.
+        # Slices come into touch one by one: higher harmonics are their steps.
         harmonics = np.fft.rfft(deflection)[: _TILT_HARMONICS + 1]
         values = np.fft.irfft(harmonics, _TILT_KNOTS) * (_TILT_KNOTS / phases.size)
         knots = np.arange(_TILT_KNOTS + 1.0) / _TILT_KNOTS
@@ -415,11 +415,11 @@ class ToothContact:
         """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending."""
         if self.faces is not None:
             return ()
-        found: set[float] = set()
+        phases: set[float] = set()
         for curves in self.variant_curves:
             for curve in (curves.deviation, curves.stiffness):
-                found.update((slope_jumps(curve) % 1.0).tolist())
-        return tuple(sorted(found))
+                phases.update((slope_jumps(curve) % 1.0).tolist())
+        return tuple(sorted(phases))
 
     @property
     def back_flanks(self) -> ToothContact:
@@ -483,20 +483,22 @@ class ToothContact:
         """Elastic force of each pair [N], shape (n, m), at `phases` (n,) and `compression` (n,) [m]."""
         states = self.pairs(phases)
         total = np.atleast_1d(np.asarray(compression, dtype=np.float64))
-        own = total
+        after_shared = total
         # The pairs' force is convex in their own compression: from above Newton's method only releases pairs.
         for _ in range(states.stiffness.shape[1] + 1):
-            touching = states.stiffness * (states.deviation < own[:, None])
-            depth = np.where(touching > 0.0, own[:, None] - states.deviation, 0.0)
-            excess = own - total + self.shared_compliance * (touching * depth).sum(axis=1)
-            own = own - excess / (1.0 + self.shared_compliance * touching.sum(axis=1))
-        return np.asarray(states.stiffness * np.maximum(0.0, own[:, None] - states.deviation), dtype=np.float64)
+            touching = states.stiffness * (states.deviation < after_shared[:, None])
+            depth = np.where(touching > 0.0, after_shared[:, None] - states.deviation, 0.0)
+            excess = after_shared - total + self.shared_compliance * (touching * depth).sum(axis=1)
+            after_shared = after_shared - excess / (1.0 + self.shared_compliance * touching.sum(axis=1))
+        return np.asarray(
+            states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
+        )
 
 
 def slices_of_teeth(faces: FaceSlices, model: StiffnessModel, geometry: GearPairGeometry) -> FaceSlices:
-    """Give slices what a model knows of its teeth: the flattening of their contact and the body that they share.
+    """Return slices with the contact flattening and the shared body compliance of a tooth model.
 
-    Of other models the slices stay as they are, with the flattening of Yang and Sun's constant.
+    Other models leave the slices as they are, with the flattening of Yang and Sun's constant.
     """
     if not isinstance(model, CompliantTeeth):
         return faces
@@ -529,7 +531,7 @@ def tooth_contact(
     corner_contact : bool
         Whether pairs touch beyond their path of contact as well, where a load closes the gap to a corner.
     faces : FaceSlices or None
-        From `face_slices`, where the face is not loaded evenly; None for a uniform load.
+        Slices from `face_slices`, where the face is not loaded evenly; None for a uniform load.
 
     Returns
     -------
@@ -563,16 +565,19 @@ def tooth_contact(
 
 
 def with_flanks_of(contact: ToothContact, geometry: GearPairGeometry) -> ToothContact:
-    """Return a contact with the deviations of a pair that differs in the modifications of its flanks alone.
+    """Return a contact with the deviations of a pair that differs only in the modifications of its flanks.
 
-    As `tooth_contact` of that pair, without the stiffness and the reach of the teeth, which are the same.
+    The result equals `tooth_contact` of that pair; stiffness and reach of the teeth are reused.
     """
     if contact.contact_ratio == 1.0 and geometry.contact_ratio != 1.0:
-        return contact  # of a whole mesh, whose deviation is zero
+        return contact  # the deviation of a whole-mesh model is zero
     start, end = float(contact.stiffness.knots[0]), float(contact.stiffness.knots[-1])
     sound, *others = (
-        pair_deviation(geometry, start, end, corner_contact=contact.has_corner_contact, faults=own)
-        for own in pair_variants(geometry).faults
+        pair_deviation(geometry, start, end, corner_contact=contact.has_corner_contact, faults=faults_of_variant)
+        for faults_of_variant in pair_variants(geometry).faults
     )
-    variants = (replace(one, deviation=own) for one, own in zip(contact.variants, others, strict=True))
+    variants = (
+        replace(variant, deviation=faults_of_variant)
+        for variant, faults_of_variant in zip(contact.variants, others, strict=True)
+    )
     return replace(contact, deviation=sound, variants=tuple(variants))

@@ -62,7 +62,7 @@ steps by the share of one slice, a few per cent of the mesh's with `DEFAULT_SLIC
 FACE_STATIONS = 5
 """Stations over the face of a gear at which it follows its shaft."""
 _NO_SPAN = 1e-6
-"""In base pitches: a line of contact with a shorter span along the path counts as one point of it."""
+"""Span of a line of contact along the path below which it counts as one point [base pitches]."""
 _MOST_ROUNDS = 200
 _ALONE_ROUNDS = 8
 
@@ -108,11 +108,11 @@ class FaceSlices:
     Attributes
     ----------
     z : ndarray, shape (n,)
-        Their middles, counted from that of the face [m].
+        Middles of the slices, from the middle of the face [m].
     width : float
-        Of each [m].
+        Width of each slice [m].
     shift : ndarray, shape (n,)
-        Their offsets to the position of the pair [base pitches].
+        Offset of each slice from the position of the pair [base pitches].
     gap : ndarray, shape (n,)
         Gap of the flanks there, in addition to that of their profiles [m].
     flattening : float
@@ -133,7 +133,7 @@ class FaceSlices:
 
     @property
     def face_width(self) -> float:
-        """Of all slices [m]."""
+        """Width of all slices together [m]."""
         return self.width * self.z.size
 
     @cached_property
@@ -144,8 +144,8 @@ class FaceSlices:
         """
         n = self.z.size
         degrees = min(len(self.shared), n - 1)
-        found, triangle = np.linalg.qr(np.polynomial.legendre.legvander(2.0 * self.z / self.face_width, degrees))
-        return np.asarray(math.sqrt(n) * (found * np.sign(np.diagonal(triangle)))[:, 1:])
+        polynomials, triangle = np.linalg.qr(np.polynomial.legendre.legvander(2.0 * self.z / self.face_width, degrees))
+        return np.asarray(math.sqrt(n) * (polynomials * np.sign(np.diagonal(triangle)))[:, 1:])
 
     @property
     def half_span(self) -> float:
@@ -154,10 +154,10 @@ class FaceSlices:
         return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
 
     def halved(self) -> FaceSlices:
-        """Return the same face in twice as many slices, the gap straight from middle to middle of today's.
+        """Return the same face in twice as many slices; the gap is interpolated linearly.
 
-        Slices of helical teeth come into touch one by one, a ripple on force and deflection of as many waves per base
-        pitch as slices. Its amplitude goes down with the square of their width.
+        Slices of helical teeth come into touch one by one, which ripples force and deflection with one wave per slice
+        in a base pitch. The ripple's amplitude falls with the square of the slices' width.
         """
         fine = self.z.size * 2
         z = self.face_width * ((np.arange(fine) + 0.5) / fine - 0.5)
@@ -176,7 +176,7 @@ class FaceLoads:
     line_load, line_tangent : ndarray, shape (p, n)
         Load per width [N/m], transverse, and its derivative by compression [N/m per m].
     force, tangent : ndarray, shape (p,)
-        Of each pair [N], and its derivative by compression [N/m].
+        Force of each pair [N], and its derivative by compression [N/m].
     touching : ndarray of bool, shape (p, n)
         Slices in contact.
     """
@@ -189,18 +189,18 @@ class FaceLoads:
 
 
 def face_stations(width: float) -> FloatArray:
-    """Stations from the middle of a face of some width [m], at Chebyshev's points, both ends among them, (j,)."""
+    """Stations over a face of a width [m], from its middle: Chebyshev points with both ends, shape (j,)."""
     steps = np.arange(FACE_STATIONS)[::-1] / (FACE_STATIONS - 1)
     return np.asarray(0.5 * width * np.cos(np.pi * steps))
 
 
 def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
-    """Lagrange's polynomials over j stations at places z (s,), shape (s, j)."""
-    found = np.ones((z.size, stations.size))
-    for j, own in enumerate(stations):
+    """Lagrange polynomials over the stations (j,), evaluated at z (s,), shape (s, j)."""
+    weights = np.ones((z.size, stations.size))
+    for j, node in enumerate(stations):
         for other in np.delete(stations, j):
-            found[:, j] *= (z - other) / (own - other)
-    return found
+            weights[:, j] *= (z - other) / (node - other)
+    return weights
 
 
 def face_slices(
@@ -279,9 +279,9 @@ def face_loads(
     gap : ndarray, shape (p, n)
         [m]; finite where slices meet.
     meeting : ndarray of bool, shape (p, n)
-        Whether the slice is where it can touch.
+        Whether the slice is in the range of contact.
     compression : ndarray, shape (p,)
-        [m].
+        Compression of the slice [m].
 
     Raises
     ------
@@ -319,13 +319,13 @@ def face_equilibrium(
     Parameters
     ----------
     slices, base, gap, meeting
-        As for `face_loads`, of all pairs of all meshes.
+        Arrays of all pairs of all meshes, see `face_loads`.
     owner : ndarray of int, shape (p,)
         Mesh of each pair.
     force : ndarray, shape (m,)
         Load of each mesh along the line of action [N].
     touching : ndarray of bool, shape (p, n), optional
-        Slices in contact where the search starts: those of a load alike.
+        Slices in contact at the start of the search, such as those at a similar load.
 
     Raises
     ------
@@ -338,13 +338,13 @@ def face_equilibrium(
     if touching is None:
         touching = _touching_alone(slices, base, gap, meeting, owner, force)
     touching = touching & meeting
-    # Motions y of a mesh over its face: its compression, and minus its bodies' shared deflections in `shapes`.
+    # Motions y of a mesh over its face: its compression, then minus the shared deflections over `shapes`.
     motions = np.column_stack([np.ones(slices.z.size), slices.shapes])
     size = motions.shape[1]
     shared = slices.shared[: size - 1, : size - 1]
     loaded = np.zeros((meshes, size))
     loaded[:, 0] = force
-    # Loads by each motion and at none, of each pair: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w).
+    # Loads of each pair per motion, and at zero motion: Bᵀ k_h (B - W) and Bᵀ k_h (gap + w).
     slopes, constants = np.zeros((owner.size, size, size)), np.zeros((owner.size, size))
     moved = np.zeros((owner.size, slices.z.size, size))
     fixed = np.zeros(gap.shape)
@@ -368,7 +368,7 @@ def face_equilibrium(
         motion = np.linalg.solve(resisting, right[..., None])[..., 0]
         motion[apart] = 0.0
         motion[apart, 0] = nearest[apart]
-        # Pairs of meshes in which nothing changed stay as they are.
+        # Pairs of meshes without a change keep their solution.
         whose = owner[unsettled]
         deep = motion[whose] @ motions.T
         yielding = fixed[unsettled] + _combined(moved[unsettled], motion[whose])
@@ -414,7 +414,7 @@ def _combined(fields: FloatArray, parts: FloatArray) -> FloatArray:
 def _touching_alone(
     slices: FaceSlices, base: FloatArray, gap: FloatArray, meeting: BoolArray, owner: IntArray, force: FloatArray
 ) -> BoolArray:
-    """Slices in contact without their coupling: a close first guess of those in contact with it."""
+    """Slices that touch when uncoupled: a close first guess of the slices that touch when coupled."""
     spring = meeting / (1.0 / base + 1.0 / slices.flattening)
     pushed = spring * gap
     touching = meeting
@@ -454,7 +454,7 @@ def _fields(
     Shapes (p, n) and (p, n, m), for given touching slices.
     """
     flat = np.where(touching, slices.flattening, 0.0)
-    # One field after the other, as they are solved for.
+    # The fields are solved one after the other.
     loads = np.empty((1 + motions.shape[1], *gap.shape))
     np.multiply(flat, -gap, out=loads[0])
     np.multiply(flat, motions.T[:, None], out=loads[1:])
@@ -471,7 +471,7 @@ def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads:
     base : ndarray, shape (p, n)
         k_b of each slice [N/m per m].
     touching : ndarray of bool, shape (p, n)
-        Slices in contact, where k_h joins.
+        Slices in contact, which have k_h in addition.
     loads : ndarray, shape (p, n, m)
         q [N/m].
 
@@ -493,7 +493,7 @@ def face_yield(slices: FaceSlices, base: FloatArray, touching: BoolArray, loads:
     diagonal = base + np.where(touching, slices.flattening, 0.0) + link * neighbours
     beside = np.full(diagonal.shape, -link)
     beside[:, -1] = 0.0  # where one pair's face ends and the next one's begins
-    # One symmetric, diagonally dominant tridiagonal matrix of all pairs; right-hand sides in LAPACK's order.
+    # All pairs form one symmetric, diagonally dominant tridiagonal matrix; right-hand sides are in LAPACK's order.
     right = np.array(np.moveaxis(loads, 2, 0)).reshape(loads.shape[2], -1).T
     _, _, fields, info = dptsv(
         diagonal.ravel(), beside.ravel()[:-1], right, overwrite_d=1, overwrite_e=1, overwrite_b=1

@@ -58,7 +58,7 @@ _DEPTHS = 24
 _DEEPEST = 0.02
 """Depth of the table in modules, in addition to the compression that evens out the face."""
 _FEWEST = 4
-"""Intervals between corners, at least."""
+"""Least number of intervals between corners."""
 _APART = 1e-6
 """Corners nearer to each other than this, in base pitches, are one."""
 
@@ -72,7 +72,7 @@ class FaceForceTable:
     knots : ndarray, shape (m + 1,)
         Positions of the middle of the face [base pitches].
     first_touch : ndarray, shape (v, m, 4)
-        Cubics of the gap at which a pair first touches [m].
+        Coefficients of the cubics of the gap at which a pair first touches [m].
     cells : ndarray, shape (d + 1, v, m, CELL)
         Coefficients c_mn of the force [N], row by row, and the four of U_0 [J]. Cells of one depth lie side by side, as
         the pairs of a mesh are about equally deep; the last ones are those beyond the table.
@@ -99,7 +99,7 @@ class FaceSliceStates:
     gap : ndarray
         [m]
     meeting : ndarray of bool
-        Whether the slice is where it can touch.
+        Whether the slice is in the range of contact.
     """
 
     whole: FloatArray
@@ -128,19 +128,19 @@ def face_force_table(
     weights: Sequence[Weight] = (np.ones_like,),
     breaks: Sequence[float] = (),
 ) -> FaceForceTable:
-    """Table of every variant of pair, or of sums over its slices with other weights than one.
+    """Force table of every variant of pair, or of its slices' forces summed with weights other than one.
 
     Parameters
     ----------
     slices : FaceSlices
     variants : tuple of ToothPairCurves
     module : float
-        Of the gears [m]; it sets the depth of the table.
+        Normal module of the gears [m]; it sets the depth of the table.
     weights : sequence of callable
-        Weight of each slice's force, by its position on the path of contact [base pitches]. With w of them the table
+        Weight of each slice's force, by its position on the path of contact [base pitches]. With w weights the table
         holds w variants for each of `variants`, one after another.
     breaks : sequence of float
-        Places on the path where a weight has a corner.
+        Positions on the path at which a weight has a corner [base pitches].
     """
     reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
     pieces = _pieces(_breaks(variants, reach, breaks))
@@ -203,7 +203,7 @@ def _powers(pieces: list[FloatArray], values: FloatArray) -> FloatArray:
 
 
 def _cells(force: FloatArray, rise: FloatArray, unit: float) -> FloatArray:
-    """Coefficients (d + 1, m, 20) from those of force and derivative by r along the positions, (m, d + 1, 4)."""
+    """Cell coefficients (d + 1, m, 20) from the cubics (m, d + 1, 4) of force and derivative by r along positions."""
     low, high, rise_low, rise_high = force[:, :-1], force[:, 1:], rise[:, :-1], rise[:, 1:]
     powers = np.stack(
         [
@@ -235,7 +235,7 @@ DAMPING, DAMPING_DEPTH, HUNTING, DEPTH_UNIT, DEPTHS, DEPTH_STEP = 6, 7, 8, 9, 10
 """Damping [N s/m] and the depth over which it fades in [m]; pairs of the hunting period; unit of the cells' depth [m],
 0 where there are none, their number in depth, and the distance from one depth to the next."""
 INTERVALS_AT, PAIRS_AT, ENTERING_AT, CELLS_AT = 12, 13, 14, 15
-"""Where these begin; the parts begin at `HEADER`."""
+"""Index at which intervals, pairs, hunting pairs and cells begin; the parts begin at `HEADER`."""
 SHARED, GUESS_AT = 16, 17
 """Compliance that all pairs share, of their gears' bodies [m/N]; where the first guesses of the pairs' fraction of the
 mesh's compression begin, by the depth of cells."""
@@ -244,7 +244,7 @@ INTERVAL, PAIR, ENTERING = 2, 8, 2
 
 _PARTS_PER_INTERVAL = 4
 _HAIR = 1e-14
-"""In periods: by rounding alone a part must not begin in the interval before its own."""
+"""Tolerance in periods, so that rounding does not put the begin of a part into the interval before its own."""
 _SAME_KNOT = 1e-9
 """Knots nearer to each other than this, in base pitches, are one."""
 
@@ -262,11 +262,11 @@ def law_table(
     Parameters
     ----------
     curves : sequence of ToothPairCurves, or FaceForceTable
-        Of every variant of pair, behind the shared compliance.
+        Curves of every variant of pair, without the shared compliance.
     entering : ndarray, shape (h, 2)
         Gap [m] and variant of each pair of the hunting period.
     damping, damping_depth : float
-        [N s/m], [m]
+        Damping [N s/m] and the compression up to which it fades in [m].
     shared_compliance : float
         [m/N]
     deflection : PiecewiseCubic, optional
@@ -309,7 +309,7 @@ def law_table(
 
 
 def _guesses(table: FaceForceTable, first_touch: float, shared: float) -> FloatArray:
-    """Fraction of the mesh's compression in the pairs, without the shared bodies, mean over the period, by depth."""
+    """Mean part of the mesh's compression that is in the pairs, not in the shared bodies, at each depth."""
     depths = np.arange(table.cells.shape[0], dtype=np.float64)
     compression = table.depth_unit * depths**2
     beyond = np.maximum(0.0, first_touch + compression[:, None] - table.first_touch[0, :, 0])
@@ -326,7 +326,7 @@ def _guesses(table: FaceForceTable, first_touch: float, shared: float) -> FloatA
 
 
 def _period_knots(knots: Sequence[FloatArray]) -> FloatArray:
-    """Where any pair's curve has a knot, over the period from 0 to 1; the ends of contact are kept exactly."""
+    """Union of all pairs' knots over the period from 0 to 1; the ends of contact are kept exactly."""
     ends = np.unique([0.0, 1.0, *(knots[0][[0, -1]] % 1.0)])
     inner = np.unique(np.concatenate(knots) % 1.0)
     # The nearest end is one of the two that it lies between.
@@ -337,13 +337,13 @@ def _period_knots(knots: Sequence[FloatArray]) -> FloatArray:
 
 
 def _places(knots: FloatArray, curve_knots: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Where the intervals of all pairs begin and end on the curve, (m, j) both."""
+    """Begin and end of the intervals of all pairs on the curve, shape (m, j) each."""
     pairs = np.arange(math.floor(curve_knots[0]), math.ceil(curve_knots[-1]))
     return knots[:-1, None] + pairs, knots[1:, None] + pairs
 
 
 def _by_pair(curve: PiecewiseCubic, knots: FloatArray, absent: float) -> FloatArray:
-    """Cubics (m, j, 4) of all pairs on each interval, and a constant where there is none."""
+    """Cubics (m, j, 4) of all pairs on each interval, and the constant ``absent`` outside the curve."""
     low, high = _places(knots, curve.knots)
     cubics = curve.between(low, high)
     middle = 0.5 * (low + high)
@@ -356,7 +356,7 @@ def _cell_places(table: FaceForceTable, knots: FloatArray) -> FloatArray:
     low, high = _places(knots, table.knots)
     row = np.clip(np.searchsorted(table.knots, 0.5 * (low + high), side="right") - 1, 0, table.knots.size - 2)
     width = np.diff(table.knots)[row]
-    one = np.stack([row, (low - table.knots[row]) / width, (high - low) / width, 0.0 * row], axis=-1)
-    variants = np.repeat(one[None], table.cells.shape[1], axis=0)
+    places = np.stack([row, (low - table.knots[row]) / width, (high - low) / width, 0.0 * row], axis=-1)
+    variants = np.repeat(places[None], table.cells.shape[1], axis=0)
     variants[..., 0] += (np.arange(len(variants)) * table.cells.shape[2])[:, None, None]
     return variants

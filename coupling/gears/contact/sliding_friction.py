@@ -40,12 +40,12 @@ LARGEST_COEFFICIENT = 0.5
 
 @dataclass(frozen=True, eq=False)
 class SlidingFriction:
-    """Coulomb friction of a gear pair: its coefficient, and where along the path of contact it reverses.
+    """Coulomb friction of a gear pair: coefficient and position along the path of contact at which it reverses.
 
     Attributes
     ----------
     coefficient : float
-        mu over the cosine of the base helix angle: friction force by the pair's force in the transverse plane.
+        mu over the cosine of the base helix angle: friction force over the pair's force in the transverse plane.
     pitch_point : float
         Position at which the sliding reverses [base pitches].
     path_end : float
@@ -73,9 +73,9 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     ----------
     geometry : GearPairGeometry
     contact : ToothContact
-        The law of its teeth, on the side that slides.
+        Contact law of the flanks that slide.
     coefficient : float
-        Of friction, mu.
+        Coefficient of friction, mu.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 r"""Tooth contact force and tooth friction, compiled: scalars and a row of numbers in, scalars out, no allocation.
 
-The law is derived in :mod:`coupling.gears.contact.contact_law`; what describes the contact is laid out by
+The law is derived in :mod:`coupling.gears.contact.contact_law`; the contact's row of numbers is laid out by
 :mod:`coupling.gears.contact.lookup_tables` and comes from `ToothContact.kernel_arguments`:
 ``tooth_force(phase, compression, rate, *contact.kernel_arguments)``.
 
@@ -84,28 +84,28 @@ def locate(law: FloatArray, at: int, phase: float) -> tuple[float, int, float, f
         x -= 1.0
         number += 1.0
     interval = int(law_value(law, at + HEADER + int(x * law_value(law, at + PARTS))))
-    here = at + int(law_value(law, at + INTERVALS_AT)) + INTERVAL * interval
-    while law_value(law, here + INTERVAL) <= x:
-        here += INTERVAL
+    place = at + int(law_value(law, at + INTERVALS_AT)) + INTERVAL * interval
+    while law_value(law, place + INTERVAL) <= x:
+        place += INTERVAL
         interval += 1
-    per_width = law_value(law, here + 1)
-    return number, interval, (x - law_value(law, here)) * per_width, per_width
+    per_width = law_value(law, place + 1)
+    return number, interval, (x - law_value(law, place)) * per_width, per_width
 
 
 @inner(fastmath={"contract"}, inline="always")
 def penetration(
-    law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, here: int
+    law: FloatArray, at: int, hunting: int, entered: int, u: float, compression: float, place: int
 ) -> tuple[float, int]:
     """Penetration of a pair's flanks [m], negative where they are apart, and the index of its numbers.
 
-    ``here``: index of the same pair's numbers if it is of the first variant; ``entered``: phase at which it entered.
+    ``place``: index of the same pair's numbers if it is of the first variant; ``entered``: phase at which it entered.
     """
     if hunting > 0:
         entry = at + int(law_value(law, at + ENTERING_AT)) + ENTERING * (entered % hunting)
         compression -= law_value(law, entry)
-        here += int(law_value(law, entry + 1)) * int(law_value(law, at + VARIANT_STEP))
-    g0, g1 = law_value(law, here), law_value(law, here + 1)
-    return compression - g0 - u * (g1 + u * (law_value(law, here + 2) + u * law_value(law, here + 3))), here
+        place += int(law_value(law, entry + 1)) * int(law_value(law, at + VARIANT_STEP))
+    g0, g1 = law_value(law, place), law_value(law, place + 1)
+    return compression - g0 - u * (g1 + u * (law_value(law, place + 2) + u * law_value(law, place + 3))), place
 
 
 @inner(fastmath={"contract"}, inline="always")
@@ -157,7 +157,7 @@ def face_force(
 def face_force_and_tangent(
     law: FloatArray, cell: int, per_unit: float, p: float, begin: float, rho: float
 ) -> tuple[float, float, float]:
-    """Force and tangent, as of `face_force`, and the tangent's slope by the compression.
+    """Force and tangent as in `face_force`, and the tangent's slope by the compression.
 
     Newton's iteration in `pairs_compression` needs no energy: the polynomials of `face_force` are repeated here
     without those of the energy, which cost as much again.
@@ -182,11 +182,11 @@ def face_force_and_tangent(
 
 @inner(fastmath={"contract"}, inline="always")
 def pair_force_and_tangent(
-    law: FloatArray, at: int, here: int, u: float, approach: float
+    law: FloatArray, at: int, place: int, u: float, approach: float
 ) -> tuple[float, float, float]:
     """Force, tangent and the tangent's derivative of a pair with a penetration ``approach`` > 0.
 
-    ``here``: index of its numbers. `tooth_force` has the same law in line, with the energy: it looks up what its
+    ``place``: index of its numbers. `tooth_force` has the same law in line, with the energy: it looks up what its
     pairs share only once.
     """
     unit = law_value(law, at + DEPTH_UNIT)
@@ -195,11 +195,11 @@ def pair_force_and_tangent(
         r = math.sqrt(approach * per_unit)
         depth = min(int(r), int(law_value(law, at + DEPTHS)) - 1)
         cell = at + int(law_value(law, at + CELLS_AT)) + depth * int(law_value(law, at + DEPTH_STEP))
-        cell += CELL * int(law_value(law, here + 4))
-        p = law_value(law, here + 5) + u * law_value(law, here + 6)
+        cell += CELL * int(law_value(law, place + 4))
+        p = law_value(law, place + 5) + u * law_value(law, place + 6)
         return face_force_and_tangent(law, cell, per_unit, p, float(depth), r - depth)
-    c1, c2, c3 = law_value(law, here + 5), law_value(law, here + 6), law_value(law, here + 7)
-    k = law_value(law, here + 4) + u * (c1 + u * (c2 + u * c3))
+    c1, c2, c3 = law_value(law, place + 5), law_value(law, place + 6), law_value(law, place + 7)
+    k = law_value(law, place + 4) + u * (c1 + u * (c2 + u * c3))
     return k * approach, k, 0.0
 
 
@@ -207,9 +207,9 @@ def pair_force_and_tangent(
 def pairs_compression(
     law: FloatArray, at: int, number: float, interval: int, u: float, compression: float, precision: float
 ) -> tuple[float, float]:
-    """Compression of the pairs without that of their gears' bodies, and its derivative by that of the mesh.
+    """Compression x of the pairs without the gears' bodies, and its derivative by the mesh's compression.
 
-    The first is the root of ``x + C F(x) = compression``, whose left side increases, by Newton's method between bounds.
+    x is the root of ``x + C F(x) = compression``, whose left side increases, by Newton's method between bounds.
     The iteration stops where the curvature of F changes a step by no more than ``precision`` of the whole compression,
     and adds that change: the error is of the next order.
 
@@ -235,10 +235,10 @@ def pairs_compression(
     for _ in range(_NEWTON_STEPS):
         force, tangent, curvature, nearest = 0.0, 0.0, 0.0, math.inf
         for pair in range(pairs):
-            approach, here = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            approach, place = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
             nearest = min(nearest, abs(approach))
             if approach > 0.0:
-                pair_force, pair_tangent, pair_curvature = pair_force_and_tangent(law, at, here, u, approach)
+                pair_force, pair_tangent, pair_curvature = pair_force_and_tangent(law, at, place, u, approach)
                 force += pair_force
                 tangent += pair_tangent
                 curvature += pair_curvature
@@ -274,16 +274,16 @@ def ranked_penetration(phase: float, compression: float, law: FloatArray, at: in
     first = int(number) - int(law_value(law, at + FIRST_PAIR))
     shared = law_value(law, at + SHARED)
     for pair in range(pairs):
-        own, _ = penetration(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
+        depth, _ = penetration(law, at, hunting, first - pair, u, compression, start + PAIR * pair)
         before, force = 0, 0.0
         for rival in range(pairs):
-            other, here = penetration(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
-            if other > own or (other == own and rival < pair):
+            other, place = penetration(law, at, hunting, first - rival, u, compression, start + PAIR * rival)
+            if other > depth or (other == depth and rival < pair):
                 before += 1
-                if shared > 0.0 and -math.inf < own < other:
-                    force += pair_force_and_tangent(law, at, here, u, other - own)[0]
+                if shared > 0.0 and -math.inf < depth < other:
+                    force += pair_force_and_tangent(law, at, place, u, other - depth)[0]
         if before == rank - 1:
-            return own - shared * force
+            return depth - shared * force
     return -math.inf
 
 
@@ -298,19 +298,19 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     compression, rate : float
         Compression of the contact [m] and its rate [m/s].
     law : ndarray
-        Numbers of `coupling.gears.contact.lookup_tables`, of this law alone or of several laws in a row.
+        Numbers of `coupling.gears.contact.lookup_tables`, of one law or of several laws in a row.
     at : int
-        Index at which those of this law begin.
+        Index at which the numbers of this law begin.
 
     Returns
     -------
     force : float
-        Pushing the gears apart [N].
+        Force that pushes the gears apart [N].
     stiffness_tangent, damping_tangent : float
-        Its derivatives by compression [N/m] and rate [N s/m]; where the force is held at zero, 0 and the
+        Derivatives of the force by compression [N/m] and rate [N s/m]; where the force is held at zero, 0 and the
         coefficient by which the springs' power is lost.
     energy : float
-        Stored in the pairs [J].
+        Energy stored in the pairs [J].
     energy_phase_slope : float
         Derivative of the energy by phase at fixed compression [J per mesh period].
     touching : int
@@ -341,20 +341,20 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         force, tangent, energy, slope, slope_by_x, curve = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         touching, deepest, nearest = 0, 0.0, math.inf
         for pair in range(pairs):
-            approach, here = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            approach, place = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
             if approach <= 0.0:
                 continue
-            g2, g3 = law_value(law, here + 2), law_value(law, here + 3)
-            gap_slope = law_value(law, here + 1) + u * (2.0 * g2 + 3.0 * u * g3)
+            g2, g3 = law_value(law, place + 2), law_value(law, place + 3)
+            gap_slope = law_value(law, place + 1) + u * (2.0 * g2 + 3.0 * u * g3)
             touching += 1
             deepest = max(deepest, approach)
             nearest = min(nearest, approach)
             if uneven:
                 r = math.sqrt(approach * per_unit)
                 depth = min(int(r), deepest_cell)
-                cell = cells + depth * depth_step + CELL * int(law_value(law, here + 4))
-                length = law_value(law, here + 6)
-                p = law_value(law, here + 5) + u * length
+                cell = cells + depth * depth_step + CELL * int(law_value(law, place + 4))
+                length = law_value(law, place + 6)
+                p = law_value(law, place + 5) + u * length
                 begin = float(depth)
                 pair_force, pair_tangent, pair_energy, pair_slope = face_force(
                     law, cell, unit, per_unit, p, begin, r - begin
@@ -364,8 +364,8 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 energy += pair_energy
                 slope += pair_slope * length - pair_force * gap_slope
             else:
-                c1, c2, c3 = law_value(law, here + 5), law_value(law, here + 6), law_value(law, here + 7)
-                k = law_value(law, here + 4) + u * (c1 + u * (c2 + u * c3))
+                c1, c2, c3 = law_value(law, place + 5), law_value(law, place + 6), law_value(law, place + 7)
+                k = law_value(law, place + 4) + u * (c1 + u * (c2 + u * c3))
                 k_slope = c1 + u * (2.0 * c2 + 3.0 * u * c3)
                 force += k * approach
                 tangent += k
@@ -374,7 +374,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
                 slope += (pull - 0.5 * k_slope * approach) * approach
                 slope_by_x += pull
                 curve += 0.5 * k_slope
-        # Excess of x over the pairs' compression with these in contact.
+        # Excess of x over the pairs' compression with the touching pairs.
         excess = (x - compression + shared * force) / (1.0 + shared * tangent)
         touches = uneven or excess < nearest
         if abs(excess - nearest) <= doubt and not uneven:
@@ -437,18 +437,18 @@ def friction_shares(
     Parameters
     ----------
     phase, compression : float
-        As for `coupling.gears.contact.tooth_force_kernels.tooth_force`.
+        Phase and compression as for `coupling.gears.contact.tooth_force_kernels.tooth_force`.
     law : ndarray
     at : int
         Index at which the numbers begin of the contact law or, with ``by_slices``, of `SlidingFriction.shares`.
     by_slices : bool
         Whether the sliding of a line of contact reverses slice by slice.
     pitch_point, path_end : float
-        As in `coupling.gears.contact.sliding_friction.SlidingFriction`.
+        Distances as in `coupling.gears.contact.sliding_friction.SlidingFriction`.
     """
     number, interval, u, _ = locate(law, at, phase)
-    # The pairs' own compression, without that of their gears' bodies.
-    own, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
+    # Compression of the pairs without that of the gears' bodies.
+    flank_compression, gain = pairs_compression(law, at, number, interval, u, compression, PRECISE)
     pairs = int(law_value(law, at + PAIRS))
     hunting, first = int(law_value(law, at + HUNTING)), int(law_value(law, at + FIRST_PAIR))
     pairs_at = at + int(law_value(law, at + PAIRS_AT))
@@ -457,13 +457,13 @@ def friction_shares(
     elastic, stiff, across, across_slope, moments, moments_slope = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for pair in range(pairs):
         start = pairs_at + PAIR * (pairs * interval + pair)
-        approach, here = penetration(law, at, hunting, int(number) - first - pair, u, own, start)
+        approach, place = penetration(law, at, hunting, int(number) - first - pair, u, flank_compression, start)
         if approach <= 0.0:
             continue
-        force, k, _ = pair_force_and_tangent(law, at, here, u, approach)
+        force, k, _ = pair_force_and_tangent(law, at, place, u, approach)
         if by_slices:
-            signed, signed_slope, _ = pair_force_and_tangent(law, at, here + next_variant, u, approach)
-            moment, moment_slope, _ = pair_force_and_tangent(law, at, here + 2 * next_variant, u, approach)
+            signed, signed_slope, _ = pair_force_and_tangent(law, at, place + next_variant, u, approach)
+            moment, moment_slope, _ = pair_force_and_tangent(law, at, place + 2 * next_variant, u, approach)
         else:
             # Beyond the path the corner slides, at the end of the path.
             position = min(max(phase - number + (first + pair), 0.0), path_end)

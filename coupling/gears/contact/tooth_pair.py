@@ -60,7 +60,7 @@ def pair_deviation(
 ) -> PiecewiseCubic:
     """Gap between the flanks of a pair in nominal motion, over [start, end] in base pitches [m].
 
-    Sum of the gaps of both flanks, by their modifications, deviations and faults; with corner contact also of the gap
+    The gap sums both flanks' modifications, deviations and faults; with corner contact it includes the gap
     to a corner where the position lies beyond the path of contact.
 
     Parameters
@@ -71,7 +71,7 @@ def pair_deviation(
     corner_contact : bool
         Whether corners touch beyond it; else the flanks continue.
     faults : pair of tuples
-        Of the driver's tooth and of the driven gear's.
+        Faults of the driver's tooth and of the driven gear's.
     """
     gears = (geometry.driver, geometry.driven)
     pitch_roll = math.tan(geometry.working_pressure_angle)
@@ -82,15 +82,17 @@ def pair_deviation(
         if corner_contact:
             places = flank_contact_points(geometry, position)
             rolls, total = (places.driver_roll_angle, places.driven_roll_angle), places.gap
-        for gear, roll, own in zip(gears, rolls, faults, strict=True):
+        for gear, roll, gear_faults in zip(gears, rolls, faults, strict=True):
             total = total + flank_gap(gear, roll)
-            for fault in own:
+            for fault in gear_faults:
                 total = total + fault.gap(gear, roll, pitch_roll)
         return np.asarray(total, dtype=np.float64)
 
     corners = [0.0, geometry.contact_ratio] if corner_contact else []
-    for gear, locate, own in zip(gears, (geometry.driver_position, geometry.driven_position), faults, strict=True):
-        rolls = [*_corners(gear), *(roll for fault in own for roll in fault.corners(gear, pitch_roll))]
+    for gear, locate, gear_faults in zip(
+        gears, (geometry.driver_position, geometry.driven_position), faults, strict=True
+    ):
+        rolls = [*_corners(gear), *(roll for fault in gear_faults for roll in fault.corners(gear, pitch_roll))]
         corners += [locate(roll) for roll in rolls]
     breaks = piecewise.with_corners(np.array([start, end]), corners, SAME_CORNER)
     return piecewise.fitted(gap, breaks, TOLERANCE)
@@ -136,9 +138,9 @@ def tooth_pair_curves(
     ----------
     geometry : GearPairGeometry
     stiffness : PiecewiseCubic
-        Of a pair of sound teeth, from 0 to the contact ratio; or of the whole mesh, from 0 to 1.
+        Stiffness of a pair of sound teeth, from 0 to the contact ratio; or of the whole mesh, from 0 to 1 [N/m].
     faults : sequence
-        Of every variant, the driver's tooth's and the driven's.
+        Faults of the driver's and of the driven tooth, for every variant.
     corner_contact : bool
         Whether the curves reach beyond the path of contact, to where corners may touch.
 
@@ -150,7 +152,7 @@ def tooth_pair_curves(
     """
     length = float(stiffness.knots[-1])
     whole_mesh = length == 1.0 and geometry.contact_ratio != 1.0
-    if whole_mesh and (corner_contact or any(any(own) for own in faults)):
+    if whole_mesh and (corner_contact or any(any(variant_faults) for variant_faults in faults)):
         raise GearError(
             f"{geometry.label}: the stiffness model describes the whole mesh as one spring, without single pairs that "
             "could be damaged or meet beyond the path of contact; choose a model of pairs of teeth"
@@ -160,7 +162,9 @@ def tooth_pair_curves(
             f"{geometry.label}: corner contact needs the teeth's own contact ratio, {geometry.contact_ratio:.6g}; "
             f"the stiffness model has {length:.6g}"
         )
-    broken = any(isinstance(fault, MissingTooth) for variant in faults for own in variant for fault in own)
+    broken = any(
+        isinstance(fault, MissingTooth) for variant in faults for variant_faults in variant for fault in variant_faults
+    )
     if broken and not (corner_contact and length + 2.0 * LONGEST_REACH > 2.0):
         raise GearError(
             f"{geometry.label}: where a tooth is missing only corners of its neighbours could touch; that needs "
@@ -174,12 +178,12 @@ def tooth_pair_curves(
         stiffness = stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
     return tuple(
         ToothPairCurves(
-            _weakened(geometry, stiffness, own),
+            _weakened(geometry, stiffness, variant_faults),
             piecewise.constant(0.0, length)
             if whole_mesh
-            else pair_deviation(geometry, start, end, corner_contact=corner_contact, faults=own),
+            else pair_deviation(geometry, start, end, corner_contact=corner_contact, faults=variant_faults),
         )
-        for own in faults
+        for variant_faults in faults
     )
 
 
@@ -188,11 +192,11 @@ def without_shared_compliance(curves: ToothPairCurves, shared: float) -> ToothPa
     return curves if shared == 0.0 else replace(curves, stiffness=_stiffness_alone(curves.stiffness, shared))
 
 
-@lru_cache(maxsize=16)  # by the curve itself, not by its values: contacts of other flanks have the same one
+@lru_cache(maxsize=16)  # keyed by identity of the curve: contacts of other flanks share it
 def _stiffness_alone(stiffness: PiecewiseCubic, shared: float) -> PiecewiseCubic:
     def without(position: FloatArray) -> FloatArray:
-        own = stiffness(position)
-        return np.asarray(own / (1.0 - shared * own), dtype=np.float64)
+        with_shared = stiffness(position)
+        return np.asarray(with_shared / (1.0 - shared * with_shared), dtype=np.float64)
 
     largest = float(without(stiffness.knots).max())
     return piecewise.fitted(without, stiffness.knots, _STIFFNESS_TOLERANCE * largest)
@@ -223,11 +227,15 @@ def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Pai
     def weakened(position: FloatArray) -> FloatArray:
         places = flank_contact_points(geometry, np.clip(position, 0.0, geometry.contact_ratio))
         compliance = 1.0 / stiffness(position)
-        for (gear, _, own), roll in zip(sides, (places.driver_roll_angle, places.driven_roll_angle), strict=True):
-            for fault in own:
+        for (gear, _, gear_faults), roll in zip(
+            sides, (places.driver_roll_angle, places.driven_roll_angle), strict=True
+        ):
+            for fault in gear_faults:
                 compliance = compliance + fault.extra_compliance(gear, roll)
         return np.asarray(1.0 / compliance, dtype=np.float64)
 
-    corners = [locate(roll) for gear, locate, own in sides for f in own for roll in f.corners(gear, pitch_roll)]
+    corners = [
+        locate(roll) for gear, locate, gear_faults in sides for f in gear_faults for roll in f.corners(gear, pitch_roll)
+    ]
     breaks = piecewise.with_corners(stiffness.knots, corners, SAME_CORNER)
     return piecewise.fitted(weakened, breaks, _STIFFNESS_TOLERANCE * stiffness.mean)

@@ -31,9 +31,9 @@ class Wear:
     depth : float
         Largest depth [m].
     tooth : int or None
-        Which tooth; None for all.
+        Number of the worn tooth; None for all.
     shape : {"sliding", "uniform"}
-        In proportion to the sliding, so zero at the pitch point and `depth` at the end of the flank farther from it;
+        Proportional to the sliding: zero at the pitch point and `depth` at the end of the flank farther from it;
         or uniform.
     """
 
@@ -81,9 +81,9 @@ class Spall:
     ----------
     tooth : int
     start_roll_angle, end_roll_angle : float
-        Where it begins and ends on the profile [rad].
+        Roll angles at which the spall begins and ends [rad].
     depth : float
-        [m].
+        Depth of the spall [m].
     width : float or None
         Across the face [m]; None for all of it.
     """
@@ -108,7 +108,7 @@ class Spall:
             require_finite("spall width", self.width, minimum=0.0)
 
     def require_fit(self, gear: Gear) -> None:
-        """See `coupling.gears.geometry.gear.Fault`; it must lie on the flank."""
+        """Require that the spall lies on the flank; see `coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
         tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
         if not (self.start_roll_angle < tip and self.end_roll_angle > form):

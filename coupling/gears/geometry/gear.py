@@ -53,7 +53,7 @@ class Inertia(NamedTuple):
 
 
 def hollow_disc(density: float, width: float, outer_radius: float, inner_radius: float) -> Inertia:
-    """Inertia of a disc with a hole, lengths in m and density in kg/m^3."""
+    """Inertia of a disc with a hole, from lengths [m] and density [kg/m^3]."""
     mass = density * width * math.pi * (outer_radius**2 - inner_radius**2)
     polar = 0.5 * mass * (outer_radius**2 + inner_radius**2)
     return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
@@ -134,7 +134,7 @@ class Gear:
     helix_angle : float
         Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear.
     rim_thickness : float or None
-        From the root circle to the inside of the rim [m]; None for a disc without a rim.
+        Thickness from the root circle to the inside of the rim [m]; None for a disc without a rim.
     web_thickness : float or None
         Width of the disc between rim and bore [m]; None for a rim alone.
     tooth_thinning : float
@@ -197,7 +197,7 @@ class Gear:
     def transverse_pressure_angle(self) -> float:
         """Transverse pressure angle on the reference circle [rad]."""
         if self.helix_angle == 0.0:
-            return self.pressure_angle  # to the last bit
+            return self.pressure_angle  # equal to the last bit
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
     @cached_property

@@ -37,7 +37,7 @@ class TipRelief:
     start_roll_angle : float or None
         Roll angle where the relief begins [rad]; zero roll is the base circle.
     length : float or None
-        In its place: distance from the tip to the start of the relief, along the line of action [m].
+        Distance from the tip to the start of the relief, along the line of action [m]; in place of `start_roll_angle`.
     shape : {"linear", "parabolic"}
 
     Raises
@@ -118,7 +118,7 @@ class ProfileDeviation:
     """Deviation of all flanks of a gear along the profile.
 
     With ``u`` running from -1 at the form circle to 1 at the tip in proportion to the roll angle, the deviation is
-    ``slope u / 2 + form sin(pi waves u + phase) / 2 - crowning u^2``, and the table's on top.
+    ``slope u / 2 + form sin(pi waves u + phase) / 2 - crowning u^2``, plus that of the table.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class ProfileDeviation:
     waves : float
         Number of waves over the flank.
     phase : float
-        Of the waves at the middle of the flank [rad].
+        Phase of the waves at the middle of the flank [rad].
     crowning : float
         Profile crowning C_alpha [m]: material removed at both ends.
     table : tuple of (float, float)
@@ -185,7 +185,7 @@ class HelixDeviation:
     crowning : float
         Lead crowning C_beta [m]: material removed at both ends.
     end_relief, end_relief_length : float
-        Amount at the ends [m], and its length from each end [m].
+        Amount of the relief at the ends, and its length from each end [m].
     """
 
     slope: float = 0.0

@@ -152,7 +152,7 @@ class GearPairGeometry:
     def backlash(self) -> float:
         """Backlash: gap of the back flanks along their line of action, in the transverse plane [m].
 
-        From centre distance and tooth thicknesses, ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
+        By centre distance and tooth thicknesses it is ``2 (rb_k + rb_i) (inv(w) - inv(w_close))``; negative where the
         teeth would jam.
         """
         return (
@@ -352,17 +352,17 @@ def _check_distance(pair: GearPairGeometry) -> None:
     if distance is None:
         return
     close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
-    found = f"at a centre distance of {distance * 1e3:.6g} mm; they mesh without backlash at {close * 1e3:.6g} mm"
+    where = f"at a centre distance of {distance * 1e3:.6g} mm; they mesh without backlash at {close * 1e3:.6g} mm"
     if not (math.isfinite(distance) and distance > pair.base_radii_sum):
         raise InterferenceError(
-            f"{pair.label}: the gears do not fit {found}, which exceeds the sum of the base radii, "
+            f"{pair.label}: the gears do not fit {where}, which exceeds the sum of the base radii, "
             f"{pair.base_radii_sum * 1e3:.6g} mm"
         )
     if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:
-        raise InterferenceError(f"{pair.label}: the teeth jam {found}")
+        raise InterferenceError(f"{pair.label}: the teeth jam {where}")
     if pair.contact_ratio < 1.0:
         GearPairGeometry(pair.driver, pair.driven)  # raises for teeth that mesh at no distance
-        raise NoContactError(f"{pair.label}: the teeth lose contact {found}")
+        raise NoContactError(f"{pair.label}: the teeth lose contact {where}")
 
 
 def _check_contact(pair: GearPairGeometry) -> None:
@@ -432,7 +432,7 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
     Parameters
     ----------
     driver, driven : Gear
-        Their own profile shifts do not matter.
+        The gears; their profile shifts do not matter.
     centre_distance : float
         [m]
 

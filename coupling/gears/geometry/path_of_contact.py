@@ -38,8 +38,8 @@ from coupling.gears.geometry.pair import GearPairGeometry
 FloatArray = npt.NDArray[np.float64]
 
 POINTS_OF_CONTACT: tuple[str, ...] = ("SAP", "LPSTC", "pitch point", "HPSTC", "EAP")
-"""Of the driver: start of active profile, lowest point of single tooth contact, pitch point, highest point of single
-tooth contact, end of active profile.  The driven gear's start is the driver's end, and so on."""
+"""Points of the driver: start of active profile, lowest point of single tooth contact, pitch point, highest point of
+single tooth contact, end of active profile.  The driven gear's start is the driver's end, and so on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class PathOfContact:
     Attributes
     ----------
     position : ndarray, shape (5,)
-        Along the path [base pitches].
+        Position along the path [base pitches].
     driver_roll_angle, driven_roll_angle : ndarray, shape (5,)
         [rad]
     driver_radius, driven_radius : ndarray, shape (5,)
@@ -97,9 +97,9 @@ def specific_sliding(pair: GearPairGeometry, position: npt.ArrayLike) -> tuple[F
 
 
 LARGEST_GAP = 0.03
-"""In modules: no load that teeth can carry closes a wider gap."""
+"""Widest gap, in modules, that a load which teeth can carry closes."""
 LONGEST_REACH = 0.45
-"""In base pitches, beyond either end of the path."""
+"""Longest range of corner contact beyond either end of the path [base pitches]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,9 +109,9 @@ class FlankContactPoints:
     Attributes
     ----------
     driver_roll_angle, driven_roll_angle : ndarray, shape (n,)
-        Of the points on the flanks [rad]; the tip's own for the gear whose corner touches.
+        Roll angle of the point on the flank [rad]; that of the tip for the gear whose corner touches.
     gap : ndarray, shape (n,)
-        Their distance in nominal motion, along the line of action [m]; zero on the path.
+        Distance of the points in nominal motion, along the line of action [m]; zero on the path.
     """
 
     driver_roll_angle: FloatArray
@@ -152,8 +152,8 @@ def corner_contact_range(geometry: GearPairGeometry, largest_gap: float = LARGES
     def beyond(reach: float, end: float, outward: int) -> float:
         flank, corner = (0, 1)[::-outward]
         at = np.float64(end + outward * reach)
-        own, mating = rolls[flank](at), rolls[corner](at)
-        return float(_corner(own, mating, radii[flank], radii[corner], tips[corner])[1]) - widest
+        roll, mating = rolls[flank](at), rolls[corner](at)
+        return float(_corner(roll, mating, radii[flank], radii[corner], tips[corner])[1]) - widest
 
     reaches = []
     for ends in ((0.0, -1), (geometry.contact_ratio, 1)):
@@ -169,7 +169,7 @@ def _corner(
 ) -> tuple[FloatArray, FloatArray]:
     """Roll angle of the point of the flank that a corner would touch [rad], and the gap [m].
 
-    ``roll``, ``mating_roll``: nominal contact's roll angles on the flank's gear and on the corner's.
+    ``roll``, ``mating_roll``: roll angles of the nominal contact on the flank's gear and on the corner's gear.
     """
     tip_roll = np.sqrt((mating_tip / mating_base) ** 2 - 1.0)
     angle = mating_roll - tip_roll + np.arctan(tip_roll)

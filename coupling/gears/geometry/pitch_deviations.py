@@ -39,21 +39,21 @@ def pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
     Returns
     -------
     ndarray, shape (h,)
-        f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
+        Gap f_pair of the pair that enters at phase n, at n mod h [m].  h is the least common multiple of the numbers
         of teeth; of one gear's alone where the other's teeth are all alike; 0 where the teeth of both are alike.
     """
     return -_lead(geometry, *geometry.mating_teeth(hunting_numbers(geometry)))
 
 
 def back_flank_pitch_gaps(geometry: GearPairGeometry) -> FloatArray:
-    """Return the gap of each pair of back flanks [m], by its phase of entering, ``back_flank_offset - p``."""
+    """Return the gap of each pair of back flanks [m], by the pair's phase of entering, ``back_flank_offset - p``."""
     return _lead(geometry, *geometry.mating_back_teeth(hunting_numbers(geometry)))
 
 
 def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
     """Numbers 0, 1, ... of the pairs over the hunting period, after which the same teeth meet again.
 
-    Only gears whose teeth differ count; empty where those of neither do.
+    Only gears whose teeth differ count; empty where the teeth of both are alike.
     """
     differing = [
         gear.teeth
@@ -78,14 +78,14 @@ PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]
 
 @dataclass(frozen=True, eq=False)
 class PairVariants:
-    """Kinds of tooth pairs in a mesh, by the faults of their teeth.
+    """Variants of tooth pair in a mesh, by the faults of their teeth.
 
     Attributes
     ----------
     faults : tuple
-        Of every variant, the driver's tooth's and the driven's; the first variant is that of sound teeth.
+        Faults of the driver's and of the driven tooth, for every variant; the first variant has sound teeth.
     of_pair, of_back_pair : ndarray of int, shape (h,)
-        Kind of the pair that enters at phase n, at n mod h, on the working and on the back flanks; empty where all
+        Variant of the pair that enters at phase n, at n mod h, on the working and on the back flanks; empty where all
         teeth are alike.
     """
 
@@ -102,15 +102,15 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
     damaged = [{fault.tooth for fault in gear.faults} - {None} for gear in (geometry.driver, geometry.driven)]
 
     def kinds_of(driver_teeth: IntArray, driven_teeth: IntArray) -> IntArray:
-        found = np.zeros(driver_teeth.size, dtype=np.int64)
+        variant_of_pair = np.zeros(driver_teeth.size, dtype=np.int64)
         for n, teeth in enumerate(zip(driver_teeth.tolist(), driven_teeth.tolist(), strict=True)):
             key = tuple(tooth if tooth in bad else -1 for tooth, bad in zip(teeth, damaged, strict=True))
             pair = (key[0], key[1])
             if pair not in variants:
                 variants[pair] = len(faults)
                 faults.append((_faults_of(geometry.driver, pair[0]), _faults_of(geometry.driven, pair[1])))
-            found[n] = variants[pair]
-        return found
+            variant_of_pair[n] = variants[pair]
+        return variant_of_pair
 
     numbers = hunting_numbers(geometry)
     of_pair = kinds_of(*geometry.mating_teeth(numbers))
@@ -119,7 +119,7 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
 
 
 def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
-    """Faults of a tooth, with those of all teeth; of a sound one for None or -1."""
+    """Faults of a tooth, including those of all teeth; None or -1 stands for a sound tooth."""
     return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)
 
 
@@ -139,7 +139,7 @@ def runout_error(
     Parameters
     ----------
     driver, driven : Gear
-        Their `eccentricity` [m] and `eccentricity_phase` [rad] are used.
+        The gears, of which `eccentricity` [m] and `eccentricity_phase` [rad] are used.
     line_of_action_angle : float
         Angle of e from x [rad], `GearPairGeometry.line_of_action_angle`.
     driver_angle, driven_angle : array_like, shape (n,)
@@ -148,7 +148,7 @@ def runout_error(
     Returns
     -------
     ndarray, shape (n,)
-        [m].
+        Deviations [m].
     """
     components = [
         gear.eccentricity * np.cos(np.asarray(angle, dtype=np.float64) + gear.eccentricity_phase - line_of_action_angle)

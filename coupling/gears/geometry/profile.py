@@ -105,7 +105,7 @@ def root_half_angle(gear: Gear) -> float:
 def tooth_side(gear: Gear, points: int) -> tuple[FloatArray, FloatArray]:
     """Half thickness and height [m] of one side of a tooth, from the root circle to the tip, (2 * points - 1,) each.
 
-    `points` are those on each curve, fillet and flank.
+    `points` is the number of points on each curve, fillet and flank.
     """
     fillet = fillet_points(gear, np.linspace(math.pi / 2.0, gear.fillet_end, points))
     angles = load_angle(gear, np.array([gear.form_radius, gear.tip_radius]))
@@ -154,9 +154,9 @@ def gear_outline(
     rotation : float
         Angle from x of the axis of tooth 0 [rad], in the plane z = 0.
     centre : tuple of float
-        Where the gear's centre is [m].
+        Position of the gear's centre [m].
     axial_position : float
-        Which transverse plane of a helical gear [m]: a right-hand tooth rotates by ``tan(beta) z / r``.
+        Place z of the transverse plane of a helical gear [m]: a right-hand tooth rotates by ``tan(beta) z / r``.
     points : int
         Points on each fillet and each flank, at least 2.
 
@@ -184,7 +184,7 @@ def meshing_rotations(
     ----------
     pair : GearPairGeometry
     phase : float
-        In mesh periods: where along the path of contact the teeth with number 0 touch [base pitches].
+        Phase in mesh periods: position along the path of contact at which the teeth 0 touch [base pitches].
     centre_line_angle : float
         Angle from x of the line from the driver's centre to the driven's [rad].
     sense : int
@@ -193,7 +193,7 @@ def meshing_rotations(
     Returns
     -------
     tuple of float
-        Angles from x of the axes of the two teeth with number 0 [rad].
+        Angles from x of the axes of the two teeth 0 [rad].
     """
     if sense not in (1, -1):
         raise GearError(f"{pair.label}: sense must be +1 or -1, got {sense!r}")
@@ -213,7 +213,7 @@ def pair_outlines(
     pair, phase, centre_line_angle, sense
         As in `meshing_rotations`.
     points : int
-        As in `gear_outline`.
+        Number of points, as in `gear_outline`.
 
     Returns
     -------

@@ -56,12 +56,12 @@ class BasicRack:
     module, pressure_angle : float
         Normal module [m] and normal pressure angle [rad].
     addendum, dedendum : float
-        Of the gear that it cuts, in modules: the rack's tooth reaches one `dedendum` below its reference line.
+        Addendum and dedendum of the cut gear, in modules: the rack's tooth reaches `dedendum` below its reference line.
     tip_radius : float or None
         Radius of the tip corner [m].  None: the radius that ends the straight flank one addendum below the reference
         line, ``(dedendum - addendum) m / (1 - sin(alpha))``, or the full tip radius where that is smaller.
     helix_angle : float
-        Of the gear [rad].
+        Helix angle of the gear [rad].
     """
 
     module: float
@@ -122,9 +122,9 @@ class RackCorner:
     Attributes
     ----------
     depth, across : float
-        Its centre: below the gear's pitch line, and from the tooth's axis [m].
+        Distances of the corner's centre below the gear's pitch line, and from the tooth's axis [m].
     radius : float
-        In the rack's normal section [m].
+        Radius of the corner in the rack's normal section [m].
     helix_angle : float
         [rad]
     """
@@ -140,7 +140,7 @@ class RackCorner:
         Parameters
         ----------
         pitch_radius : float
-            Of the rolling circle [m].
+            Radius of the rolling circle [m].
         gamma : array_like
             Angles of the common normal to the pitch line [rad]: pi/2 at the root circle, the transverse pressure
             angle where the straight flank takes over.
@@ -175,7 +175,7 @@ def fillet_end(corner: RackCorner, pitch_radius: float, pressure_angle: float, b
     Parameters
     ----------
     corner : RackCorner
-        In the transverse plane.
+        Tip corner in the transverse plane.
     pitch_radius : float
         [m]
     pressure_angle : float
@@ -186,7 +186,7 @@ def fillet_end(corner: RackCorner, pitch_radius: float, pressure_angle: float, b
     Returns
     -------
     float
-        Between `pressure_angle` (where nothing is cut off) and pi/2.
+        Angle between `pressure_angle` (where nothing is cut off) and pi/2 [rad].
     """
     base_radius = pitch_radius * math.cos(pressure_angle)
 

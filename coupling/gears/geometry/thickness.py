@@ -33,7 +33,7 @@ class SpanMeasurement:
     Attributes
     ----------
     teeth : int
-        Teeth between the anvils.
+        Number of teeth between the anvils.
     length : float
         Base tangent length [m].
     contact_radius : float
@@ -52,7 +52,7 @@ class BallMeasurement:
     Attributes
     ----------
     diameter : float
-        Of a ball [m].
+        Diameter of a ball [m].
     length : float
         Dimension over the balls [m].
     centre_radius, contact_radius : float
@@ -157,7 +157,7 @@ def over_balls(gear: Gear, diameter: float | None = None) -> BallMeasurement:
     ----------
     gear : Gear
     diameter : float or None
-        Of the balls [m]; None for 1.728 modules.
+        Diameter of the balls [m]; None for 1.728 modules.
 
     Raises
     ------
@@ -173,21 +173,21 @@ def over_balls(gear: Gear, diameter: float | None = None) -> BallMeasurement:
     angle = inverse_involute(value)
     centre = gear.base_radius / math.cos(angle)
     roll_length = gear.base_radius * math.tan(angle) - 0.5 * diameter * helix
-    what = f"a ball of {diameter * 1e3:.4g} mm"
-    # Below its own tangent point the normal would meet the far branch of the involute.
+    ball = f"a ball of {diameter * 1e3:.4g} mm"
+    # Below the tangent point the normal would meet the far branch of the involute.
     touch = math.hypot(gear.base_radius, roll_length) if roll_length >= 0.0 else 0.0
-    _require_on_flank(gear, touch, what)
+    _require_on_flank(gear, touch, ball)
     if centre + 0.5 * diameter <= gear.tip_radius:
-        raise GearError(f"gear {gear.name!r}: {what} stands below the tips; take larger ones")
+        raise GearError(f"gear {gear.name!r}: {ball} stands below the tips; take larger ones")
     if centre - 0.5 * diameter <= gear.root_circle_radius:
-        raise GearError(f"gear {gear.name!r}: {what} lies on the root; take larger ones")
+        raise GearError(f"gear {gear.name!r}: {ball} lies on the root; take larger ones")
     spread = 1.0 if gear.teeth % 2 == 0 else math.cos(math.pi / (2.0 * gear.teeth))
     return BallMeasurement(diameter, 2.0 * centre * spread + diameter, centre, touch)
 
 
-def _require_on_flank(gear: Gear, radius: float, what: str) -> None:
+def _require_on_flank(gear: Gear, radius: float, ball: str) -> None:
     if not gear.form_radius <= radius <= gear.tip_radius:
         raise GearError(
-            f"gear {gear.name!r}: {what} does not touch the flank, which runs from {gear.form_radius * 1e3:.6g} to "
+            f"gear {gear.name!r}: {ball} does not touch the flank, which runs from {gear.form_radius * 1e3:.6g} to "
             f"{gear.tip_radius * 1e3:.6g} mm radius"
         )

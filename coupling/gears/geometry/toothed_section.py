@@ -34,7 +34,7 @@ import numpy as np
 from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.profile import gear_outline
 
-_POINTS = 6  # of the outline, on each fillet and each flank
+_POINTS = 6  # number of outline points on each fillet and each flank
 _TORSION_DEPTH = 0.335  # transverse modules, by finite elements of sections
 _SPREAD_BENDING, _SPREAD_TORSION = 0.243, 0.158  # shaft diameters, by finite elements at ν = 0.3
 _END_LENGTH = 1.9  # modules, by finite elements of solid pinions of 20 teeth, faces of 10 and 20 modules; 2.3 of 40
@@ -47,7 +47,7 @@ class ToothedSection:
     Attributes
     ----------
     bending_diameter : float
-        In bending, shear and tension [m].
+        Diameter of the shaft equivalent in bending, shear and tension [m].
     torsion_diameter : float
         [m]
     end_length : float
@@ -65,7 +65,7 @@ def toothed_section(gear: Gear) -> ToothedSection:
     Parameters
     ----------
     gear : Gear
-        Of one body, without a rim on a web.
+        A gear of one body, without a rim on a web.
     """
     root = gear.root_circle_radius
     of_root = math.pi / 4.0 * root**4
@@ -83,22 +83,22 @@ def toothed_section(gear: Gear) -> ToothedSection:
 
 
 def bare_lengths(shaft_diameter: float, body_diameter: float, width: float) -> tuple[float, float]:
-    """Lengths at one end of a body in one piece with its shaft, over which the shaft is as soft as without it.
+    """Lengths at one end of a body over which its shaft, in one piece with it, is as soft as without the body.
 
     Parameters
     ----------
     shaft_diameter, body_diameter : float
         [m]
     width : float
-        Of the body along the shaft [m].
+        Width of the body along the shaft [m].
 
     Returns
     -------
     tuple of float
-        In bending and in torsion, up to half of the width each; 0 where the body is not wider than the shaft [m].
+        Lengths in bending and in torsion [m], at most half of the width; 0 where the body is not wider than the shaft.
     """
     step = max(1.0 - (shaft_diameter / body_diameter) ** 3, 0.0) * shaft_diameter
-    found = []
+    lengths = []
     for spread in (_SPREAD_BENDING * step, _SPREAD_TORSION * step):
-        found.append(-spread * math.expm1(-0.5 * width / spread) if spread > 0.0 else 0.0)
-    return found[0], found[1]
+        lengths.append(-spread * math.expm1(-0.5 * width / spread) if spread > 0.0 else 0.0)
+    return lengths[0], lengths[1]

@@ -94,15 +94,15 @@ def mesh_pressure(pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMes
     Parameters
     ----------
     pair : GearPairGeometry
-        With the face widths over which the load spreads.
+        Gear pair with the face widths over which the load spreads.
     contact : ToothContact
-        Whose faces the line loads are on.
+        Contact law with the face slices of the line loads.
     mesh : LoadedMesh
 
     Returns
     -------
     ndarray, shape (n, m) or (n, m, s)
-        Of each pair at each phase; of every slice of its face for an uneven load.
+        Pressure of each pair at each phase; for an uneven load, of every slice of its face.
     """
     if contact.faces is None or mesh.line_loads is None:
         return contact_pressure(pair, mesh.positions, mesh.pair_forces / pair.face_width)

@@ -51,8 +51,8 @@ from coupling.gears.loaded.transmission_error import LoadedMesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_PHASES = 48  # of a mesh period in the means
-_CONVERGED = 1e-13  # of the mean deflection, relative to the deflection itself
+_PHASES = 48  # number of phases of a mesh period in the means
+_CONVERGED = 1e-13  # last step of the mean deflection over the deflection
 _ROUNDS = 60
 _TO_THE_END = np.array([15.0, -10.0, 3.0]) / 8.0
 """Parabola through values at 1/2, 3/2 and 5/2 slices from the end of the face, at the end."""
@@ -109,7 +109,7 @@ def face_load_factor(load: FaceLoad, even: FaceLoad) -> float:
     ----------
     load : FaceLoad
     even : FaceLoad
-        Of the same phases and about the same force, on flanks that approach evenly (`FaceContact.evenly`).
+        Load at the same phases and about the same force on flanks that approach evenly (`FaceContact.evenly`).
     """
     mean, reference = load.line_load.mean(axis=0), even.line_load.mean(axis=0)
     ratio = mean / np.where(reference > 0.0, reference, reference.mean()) * (reference.mean() / mean.mean())
@@ -128,7 +128,7 @@ class MeanContactState:
     loads : ndarray, shape (m,)
         Mean loads dPsi/dy [N, N m].
     stiffness : ndarray, shape (m, m)
-        Symmetric, positive semidefinite.
+        Hessian of Psi [N/m, N, N m], symmetric and positive semidefinite.
     force : float
         Mesh force F [N]; 0 where the flanks are apart.
     """
@@ -140,14 +140,14 @@ class MeanContactState:
 
 
 class FaceContact:
-    """Tooth contact of a gear pair by the approach of its flanks over the face.
+    """Tooth contact of a gear pair as a function of its flanks' approach over the face.
 
     Sound teeth without pitch deviations stand for all: the mean over a mesh period, not over the hunting period.
 
     Parameters
     ----------
     contact : ToothContact
-        With face slices that are not misaligned.
+        Contact law with face slices that are not misaligned.
     geometry : GearPairGeometry
     stations : ndarray, shape (j,)
         Stations of the approach from the middle of the face [m], two or more, ascending.
@@ -180,13 +180,13 @@ class FaceContact:
         """From the middle of the face [m], shape (j,)."""
         self.over_face = lagrange(stations, self.z)
         """N_j at the slices, shape (s, j)."""
-        # Of the last approach: mesh force and mean deflection, and slices in contact. The next search starts there.
+        # Mesh force, mean deflection and touching slices of the last approach, where the next search starts.
         self._last: tuple[float, float] | None = None
         self._touching: npt.NDArray[np.bool_] | None = None
 
     @property
     def tooth_contact(self) -> ToothContact:
-        """The contact of the loaded flanks, its slices not misaligned."""
+        """Contact law of the loaded flanks, with slices that are not misaligned."""
         return self._contact
 
     @property
@@ -230,7 +230,7 @@ class FaceContact:
         Parameters
         ----------
         force : float
-            Above 0 [N].
+            Mesh force, above 0 [N].
         shape : ndarray, shape (m,)
             g, the approach but for its mean over the face.
         phases : ndarray, shape (n,), optional
@@ -316,21 +316,21 @@ class FaceContact:
     def _load(
         self, prepared: _Prepared, force: float, shape: FloatArray, compression: FloatArray, loads: FaceLoads
     ) -> FaceLoad:
-        """Return the load of what `_balanced` found."""
+        """Return the load at the equilibrium of `_balanced`."""
         n = prepared.phases.size
         gap = prepared.gap - prepared.basis @ shape
-        # The work of the loads on slices and shared deflection of the bodies is that on their sum.
+        # Slice loads do work on the slices' own and on the bodies' shared deflection.
         deformation = np.where(loads.touching, compression[prepared.owner, None] - gap, 0.0)
         width, shared = self._faces.width, self._contact.shared_compliance
         energy = 0.5 * width * np.bincount(prepared.owner, (loads.line_load * deformation).sum(axis=1), n)
-        each = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
+        loads_of_slices = width * (loads.line_load[:, None] @ prepared.basis)[:, 0]
         line_loads = np.zeros((*prepared.positions.shape, self.z.size))
         line_loads[prepared.owner, prepared.column] = loads.line_load
         return FaceLoad(
             force=force,
             phases=prepared.phases,
             deflection=compression + shared * force,
-            loads=np.add.reduceat(each, prepared.first, axis=0),
+            loads=np.add.reduceat(loads_of_slices, prepared.first, axis=0),
             tangents=self._tangents(prepared, loads.touching),
             energy=np.asarray(energy + 0.5 * shared * force**2, dtype=np.float64),
             positions=prepared.positions,
@@ -373,8 +373,8 @@ class FaceContact:
         flat = np.where(touching, faces.flattening, 0.0)
         pushed = flat[:, :, None] * motions
         yielding = face_yield(faces, prepared.base, touching, pushed)
-        each = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
-        whole = np.add.reduceat(each, prepared.first, axis=0)
+        tangents_of_slices = faces.width * (pushed.swapaxes(1, 2) @ (motions - yielding))
+        whole = np.add.reduceat(tangents_of_slices, prepared.first, axis=0)
         by_shapes = whole[:, size:, :size]
         shared = faces.shared[: faces.shapes.shape[1], : faces.shapes.shape[1]]
         resisting = np.eye(len(shared)) + shared @ whole[:, size:, size:]

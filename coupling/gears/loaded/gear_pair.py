@@ -40,9 +40,9 @@ def equivalent_mass(
     GearError
         Unless all four are positive.
     """
-    given = (driver_inertia, driven_inertia, driver_base_radius, driven_base_radius)
-    if not all(math.isfinite(value) and value > 0.0 for value in given):
-        raise GearError(f"equivalent mass: inertias and base radii must be above 0, got {given}")
+    arguments = (driver_inertia, driven_inertia, driver_base_radius, driven_base_radius)
+    if not all(math.isfinite(value) and value > 0.0 for value in arguments):
+        raise GearError(f"equivalent mass: inertias and base radii must be above 0, got {arguments}")
     return (
         driver_inertia
         * driven_inertia
@@ -84,7 +84,7 @@ class GearPair:
     driver, driven : str
         Names of the gears.
     stiffness : StiffnessModel or str
-        Of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
+        Model of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
     damping_ratio : float
         Fraction of critical damping of the two gears rotating against each other.
     damping : float, optional
@@ -98,7 +98,7 @@ class GearPair:
         Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
         point, see :meth:`coupling.Machine.at_operating_point`.
     face_gap : tuple of float
-        Gap of the flanks over the face that comes with it [m], at the stations of
+        Gap of the flanks over the face that comes with the misalignment [m], at the stations of
         :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
     corner_contact : bool, optional
         Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
@@ -155,7 +155,7 @@ class GearPair:
         ----------
         geometry : GearPairGeometry
         sense : int
-            Of rotation of the driver about z: 1 or -1.
+            Sense of rotation of the driver about z: 1 or -1.
 
         Raises
         ------
@@ -201,18 +201,18 @@ class LoadedGearPair:
     Attributes
     ----------
     pair : GearPair
-        As specified.
+        Specification of the pair.
     geometry : GearPairGeometry
     model : StiffnessModel
-        Of its teeth.
+        Stiffness model of the teeth.
     contact : ToothContact
         Contact law with its damping.
     static : LoadedMesh
-        Over the first mesh period.
+        Static mesh over the first mesh period.
     hunting : LoadedMesh or None
-        Over the whole hunting period, where mesh periods differ by pitch deviations or damaged teeth.
+        Static mesh over the hunting period, where mesh periods differ by pitch deviations or damaged teeth.
     mesh_frequency : float or None
-        [Hz]; None where no speed is given.
+        Mesh frequency [Hz]; None where no speed is given.
     """
 
     pair: GearPair
@@ -256,7 +256,7 @@ def load_gear_pair(
     torque : float
         Mean torque that the pair takes from its driver [N m], of either sign.
     inertias : tuple of float
-        Polar inertia that rotates with the driver and with the driven gear [kg m²], for the damping ratio.
+        Polar inertias that rotate with the driver and with the driven gear [kg m²], for the damping ratio.
     speed : float, optional
         Signed speed of the driver [rad/s].
 
@@ -266,8 +266,8 @@ def load_gear_pair(
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
     """
     force = abs(torque) / geometry.driver.base_radius
-    given = pair.stiffness
-    model = stiffness_under_load(given, geometry, force) if isinstance(given, str) else given
+    stiffness = pair.stiffness
+    model = stiffness_under_load(stiffness, geometry, force) if isinstance(stiffness, str) else stiffness
     contact = tooth_contact(
         geometry,
         model,

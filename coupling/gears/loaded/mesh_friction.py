@@ -38,9 +38,9 @@ class MeshFriction:
     phases : ndarray, shape (n,)
         Mesh periods.
     force : ndarray, shape (n,)
-        Q on the driver, across the line of action in the direction in which its flanks move [N].
+        Force Q on the driver, across the line of action in the direction in which its flanks move [N].
     driver_moment, driven_moment : ndarray, shape (n,)
-        On the driver in the sense of its rotation, on the driven gear against its own [N m].
+        Moments on the driver in the sense of its rotation, and on the driven gear against its rotation [N m].
     loss : ndarray, shape (n,)
         Energy lost per radian of the driver's rotation [J/rad]: times the driver's speed, the power loss.
     efficiency : float
@@ -66,9 +66,9 @@ def mesh_friction(
     contact : ToothContact
         Contact law with which `mesh` was solved.
     mesh : LoadedMesh
-        With phases over whole mesh periods.
+        Loaded mesh at phases over whole mesh periods.
     coefficient : float
-        Of friction, mu.
+        Coefficient of friction, mu.
 
     Raises
     ------

@@ -42,11 +42,11 @@ class HarrisMap:
     Attributes
     ----------
     forces : ndarray, shape (f,)
-        Along the line of action [N].
+        Loads along the line of action [N].
     phases : ndarray, shape (n,)
         Mesh periods.
     transmission_error : ndarray, shape (f, n)
-        [m].
+        Transmission error [m].
     """
 
     forces: FloatArray
@@ -71,7 +71,7 @@ def harris_map(contact: ToothContact, forces: npt.ArrayLike, phases: npt.ArrayLi
     ----------
     contact : ToothContact
     forces : array_like, shape (f,)
-        [N], at least 0.
+        Mesh forces [N], at least 0.
     phases : array_like, shape (n,), or None
         Mesh periods; None for `mesh_period_phases` of 200 points.
 
@@ -107,7 +107,7 @@ _POINTS = 128
 _HIGHEST = 32
 """Highest multiple of the mesh frequency with a weight."""
 _LONGEST = 0.95
-"""Longest relief from the tip, in halves of the path of contact."""
+"""Longest relief from the tip, over half of the path of contact."""
 _DEEPEST = 3.0
 """Largest amount of relief, in mean deflections at the largest load."""
 
@@ -135,7 +135,7 @@ class WeightedHarmonics:
     Attributes
     ----------
     weights : mapping of int to float
-        w_n by n from 1; at least one above 0.
+        Weight w_n by harmonic n from 1; at least one above 0.
 
     Raises
     ------
@@ -167,17 +167,17 @@ class ReliefOptimum:
     Attributes
     ----------
     relief : TipRelief or None
-        By its length along the line of action; None where no relief of the search is better than none.
+        Optimal relief, by its length along the line of action; None where no relief of the search is an improvement.
     geometry : GearPairGeometry
-        The pair with it.
+        The pair with the relief.
     value : ndarray, shape (f,)
-        Objective with it, at each load.
+        Objective with the relief at each load.
     value_unmodified : ndarray, shape (f,)
-        Objective without any tip relief: its largest is never below that of `value`.
+        Objective without any tip relief at each load; its largest value is never below that of `value`.
     peak_to_peak : ndarray, shape (f,)
-        Transmission error with it at each load [m].
+        Peak-to-peak transmission error with the relief at each load [m].
     unmodified : ndarray, shape (f,)
-        Transmission error without any tip relief at each load [m].
+        Peak-to-peak transmission error without any tip relief at each load [m].
     amounts, lengths : ndarray, shapes (a,), (l,)
         Grid of the search [m].
     tried : ndarray, shape (a, l)
@@ -251,7 +251,7 @@ def optimal_tip_relief(
         require_finite("optimal relief: the load", force, minimum=0.0, strict=True)
     stiffness = _Known(model.pair_stiffness(geometry), shared_compliance(model, geometry))
     faces, searched_faces = (
-        None if one is None else slices_of_teeth(one, model, geometry) for one in (faces, searched_faces)
+        None if face is None else slices_of_teeth(face, model, geometry) for face in (faces, searched_faces)
     )
 
     target: ReliefAim = PeakToPeak() if aim is None else aim
@@ -293,18 +293,21 @@ def optimal_tip_relief(
         return worst(float(x[0]) * deepest, float(x[1]) * longest)
 
     start = np.array([amounts[row] / deepest, lengths[column] / longest])
-    found = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
-    relief: TipRelief | None = TipRelief(float(found.x[0] * deepest), length=float(found.x[1] * longest), shape=shape)
+    optimum = minimize(scaled, start, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-12, "maxfev": 200})
+    relief: TipRelief | None = TipRelief(
+        float(optimum.x[0] * deepest), length=float(optimum.x[1] * longest), shape=shape
+    )
     pair = with_relief(relief)
     contact = with_flanks_of(plain, pair)
     # The comparison uses all slices of the face; the search may use fewer.
     with_it, without = meshes(contact), meshes(plain)
     value, value_without = (
-        np.array([target.of(mesh, flanks) for mesh in each]) for each, flanks in ((with_it, contact), (without, plain))
+        np.array([target.of(mesh, flanks) for mesh in loaded])
+        for loaded, flanks in ((with_it, contact), (without, plain))
     )
     if not value.max() < value_without.max():
         relief, pair, with_it, value = None, bare, without, value_without
     swings, swings_without = (
-        np.array([mesh.peak_to_peak_transmission_error for mesh in each]) for each in (with_it, without)
+        np.array([mesh.peak_to_peak_transmission_error for mesh in loaded]) for loaded in (with_it, without)
     )
     return ReliefOptimum(relief, pair, value, value_without, swings, swings_without, amounts, lengths, tried)

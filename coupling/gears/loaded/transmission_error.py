@@ -50,7 +50,7 @@ class LoadedMesh:
     positions : ndarray, shape (n, m)
         Positions of the pairs along the path of contact [base pitches].
     pair_forces : ndarray, shape (n, m)
-        Force of each [N].
+        Force of each pair [N].
     tangent_stiffness : ndarray, shape (n,)
         Stiffness of the pairs in contact, dF/d delta [N/m].
     secant_stiffness : ndarray, shape (n,)
@@ -237,7 +237,7 @@ def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -
     ----------
     mesh : LoadedMesh
     count : int
-        Of harmonics, from the first.
+        Number of harmonics, from the first.
     periods : int
         Mesh periods that the phases cover.
 
@@ -261,7 +261,7 @@ def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -
 
 
 _AT_ONCE = 1000
-"""Phases solved together: more, with face slices, exceed the processor's cache."""
+"""Number of phases solved together: more, with face slices, exceed the processor's cache."""
 
 
 def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -> LoadedMesh:
@@ -271,7 +271,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
     ----------
     contact : ToothContact
     force : float
-        Along the line of action [N], at least 0.
+        Load along the line of action [N], at least 0.
     points : int
         Equally spaced phases of a mesh period, see `mesh_period_phases`.
 
@@ -283,7 +283,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
     Raises
     ------
     GearError, ContactAccuracyError
-        As `loaded_transmission_error` does.
+        See `loaded_transmission_error`.
     """
     period = mesh_period_phases(contact, points)
     first, which = _different_periods(contact)
@@ -313,12 +313,12 @@ def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
     """First mesh period of every variant, and the variant of each mesh period of the hunting period."""
     start, end = contact.contact_range
     entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
-    own = [
+    by_pair = [
         values[entered % values.size]
         for values in (contact.pitch_gaps, contact.pair_variants.astype(np.float64))
         if values.size
     ]
-    if not own:
+    if not by_pair:
         return np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)
-    _, first, which = np.unique(np.concatenate(own, axis=1), axis=0, return_index=True, return_inverse=True)
+    _, first, which = np.unique(np.concatenate(by_pair, axis=1), axis=0, return_index=True, return_inverse=True)
     return first, which.reshape(-1)

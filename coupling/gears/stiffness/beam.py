@@ -34,13 +34,13 @@ FloatArray = npt.NDArray[np.float64]
 PlaneState = Literal["plane-stress", "plane-strain"]
 
 ROOT_CIRCLE = math.pi / 2.0
-"""The foot where the trochoid meets the root circle, as a parameter of `fillet_points`."""
+"""Parameter of `fillet_points` of a foot where the trochoid meets the root circle [rad]."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 
 
 class BeamCompliance(NamedTuple):
-    """Parts of a beam's compliance [m/N], all of the shape of the radii asked for."""
+    """Parts of a beam's compliance [m/N], in the shape of the loads' radii."""
 
     bending: FloatArray
     shear: FloatArray
@@ -60,7 +60,7 @@ def beam_compliance(
     radius : ndarray
         Radii of the loaded points [m], from the form radius to the tip.
     foot : float
-        Where on the fillet the beam is held, as a parameter of `coupling.gears.geometry.profile.fillet_points` [rad].
+        Parameter of `coupling.gears.geometry.profile.fillet_points` at which the beam is clamped [rad].
     state : {"plane-stress", "plane-strain"}
 
     Returns
@@ -102,7 +102,7 @@ def tooth_sections(
     beta : ndarray, shape (..., 1)
         Load angles [rad].
     foot : float
-        Where on the fillet the beam is held [rad].
+        Parameter of the fillet at which the beam is clamped [rad].
     nodes, weights : ndarray, shape (n,)
         Quadrature on 0 ... 1, used on the fillet and on the flank.
 
@@ -111,7 +111,7 @@ def tooth_sections(
     points : ProfilePoints
         Sections of the fillet, then of the flank.
     climb : ndarray
-        Their weights in an integral over the height [m].
+        Weights of the sections in an integral over the height [m].
     """
     # On the flank the interval ends at the load, so the points differ from load to load.
     start = load_angle(gear, np.array(gear.form_radius))

@@ -51,7 +51,7 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
     gear : Gear
         A spur gear. A rim on a web counts as a body of the full width, which is stiffer in tilt.
     radius : float
-        Of the loaded points [m].
+        Radius of the loaded points [m].
     width : float
         Face width over the root radius.
     twists : bool
@@ -75,14 +75,14 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
     # Hermitian, as the tangential traction of the plane ring is a quarter wave behind the radial one.
     work = np.einsum("na,nb,ab,n->nab", waves.conj(), waves, np.array([[1.0, 1j], [-1j, 1.0]]), phase).real / math.pi
     long = work[:_WAVES]
-    found = np.einsum("nab,nmlab->ml", long, over_face[1 : long.shape[0] + 1])
-    found += np.eye(len(found)) * np.sum(work[_WAVES:] * stamp.flexibility[_WAVES:])
+    matrix = np.einsum("nab,nmlab->ml", long, over_face[1 : long.shape[0] + 1])
+    matrix += np.eye(len(matrix)) * np.sum(work[_WAVES:] * stamp.flexibility[_WAVES:])
     even = over_face[0].copy()
     if not twists:
         even[..., 1, 1] = 0.0
-    found += np.einsum("a,mlab,b->ml", uniform, even, uniform) / (2.0 * math.pi)
+    matrix += np.einsum("a,mlab,b->ml", uniform, even, uniform) / (2.0 * math.pi)
     # By reciprocity the transpose is the motion of the next tooth by a load on this one.
-    values, vectors = np.linalg.eigh(0.5 * (found + found.T)[1:, 1:] / found[0, 0])
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T)[1:, 1:] / matrix[0, 0])
     return np.asarray(vectors * np.maximum(values, 0.0) @ vectors.T)
 
 
@@ -102,13 +102,13 @@ def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float)
         Part p_m of the displacement under tractions ``p_l (cos n t, sin n t)``, from n = 0.
     """
     count = FACE_SHAPES + 1
-    found = np.zeros((_WAVES + 1, count, count, 2, 2))
+    flexibility = np.zeros((_WAVES + 1, count, count, 2, 2))
     n = np.arange(_WAVES + 1.0)[:, None, None]
     for parity in (0, 1):
         # Quadratic in n, so that three waves give the energy of all.
-        none, one, two = (_elastic_energy(inner, width, poisson_ratio, parity, wave) for wave in (0.0, 1.0, 2.0))
-        second = 0.5 * (two - 2.0 * one + none)
-        energy = none + n * (one - none - second) + n**2 * second
+        none, single, double = (_elastic_energy(inner, width, poisson_ratio, parity, wave) for wave in (0.0, 1.0, 2.0))
+        second = 0.5 * (double - 2.0 * single + none)
+        energy = none + n * (single - none - second) + n**2 * second
         shapes = np.arange(parity, count, 2)
         across = len(range(parity, _OVER_FACE, 2))
         load = np.zeros((energy.shape[1] // _OVER_RADIUS, 2, shapes.size))
@@ -118,9 +118,9 @@ def wave_flexibility_over_face(inner: float, width: float, poisson_ratio: float)
         load = np.repeat(load.reshape(len(load), -1), _OVER_RADIUS, axis=0)
         moved = load.T @ np.linalg.solve(energy, load[None])
         moved = moved.reshape(-1, 2, shapes.size, 2, shapes.size).transpose(0, 2, 4, 1, 3)
-        found[:, shapes[:, None], shapes] = moved
-    found.setflags(write=False)
-    return found
+        flexibility[:, shapes[:, None], shapes] = moved
+    flexibility.setflags(write=False)
+    return flexibility
 
 
 def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: int, n: float) -> FloatArray:
@@ -129,9 +129,9 @@ def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: in
     depth = math.log(1.0 / inner)
     radius = np.exp(-0.5 * depth * (1.0 - x))
     per_x = 0.5 * depth * radius
-    held = 0.5 * value * (1.0 + x)[:, None]
+    rotation = 0.5 * value * (1.0 + x)[:, None]
     rise = 0.5 * (slope * (1.0 + x)[:, None] + value) / per_x[:, None]
-    over = held / radius[:, None]
+    over = rotation / radius[:, None]
     _, z_weight, face, face_slope = _legendre(_OVER_FACE + 2, _OVER_FACE + 1)
     scale = np.sqrt(2.0 * np.arange(_OVER_FACE + 1) + 1.0)
     face, face_slope = face * scale, face_slope * scale * 2.0 / width
@@ -142,11 +142,11 @@ def _elastic_energy(inner: float, width: float, poisson_ratio: float, parity: in
     none, none_along = np.zeros_like(p_over), np.zeros((measure.size, q.shape[1] * _OVER_RADIUS))
     radial = np.hstack([p_rise, none, none_along])
     around = np.hstack([p_over, n * p_over, none_along])
-    axial = np.hstack([none, none, _products(q_slope, held)])
+    axial = np.hstack([none, none, _products(q_slope, rotation)])
     shears = (
         np.hstack([-n * p_over, p_rise - p_over, none_along]),
-        np.hstack([_products(p_slope, held), none, _products(q, rise)]),
-        np.hstack([none, _products(p_slope, held), -n * _products(q, over)]),
+        np.hstack([_products(p_slope, rotation), none, _products(q, rise)]),
+        np.hstack([none, _products(p_slope, rotation), -n * _products(q, over)]),
     )
     lame = poisson_ratio / (1.0 - 2.0 * poisson_ratio)
     strains = [(lame, radial + around + axial), (1.0, radial), (1.0, around), (1.0, axial)]

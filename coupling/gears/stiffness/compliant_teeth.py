@@ -55,7 +55,7 @@ from coupling.gears.stiffness.ring_body import neighbour_compliance
 
 FloatArray = npt.NDArray[np.float64]
 Compliance = Callable[..., FloatArray]
-"""From one array of positions or radii for each load to a compliance [m/N]; the shapes broadcast."""
+"""Function of one array of positions or radii for each load that gives a compliance [m/N]; the shapes broadcast."""
 
 
 def normal_section_gears(gear: Gear) -> tuple[tuple[Gear, float], ...]:
@@ -74,12 +74,12 @@ def transverse_compliance(gear: Gear, solve: Callable[[Gear], Compliance]) -> Co
     gear : Gear
         Spur or helical.
     solve : callable
-        From a spur gear to the compliance of its teeth [m/N] by the radii of the loads [m], one array for each load.
+        Maps a spur gear to its teeth's compliance [m/N] as a function of the radii of the loads [m].
 
     Returns
     -------
     callable
-        From transverse radii [m] of the same loads to ``c_n / cos(beta_b)`` [m/N].
+        Maps transverse radii [m] of the same loads to ``c_n / cos(beta_b)`` [m/N].
     """
     if gear.helix_angle == 0.0:
         return solve(gear)
@@ -95,7 +95,7 @@ def transverse_compliance(gear: Gear, solve: Callable[[Gear], Compliance]) -> Co
 
 
 def _spur_radius(gear: Gear, spur: Gear) -> Callable[[FloatArray], FloatArray]:
-    """From transverse radii to those at the same fraction of the spur gear's flank [m]."""
+    """Map of transverse radii to radii at the same fraction of the spur gear's flank [m]."""
     low, high = _reach(gear, np.array([gear.form_radius, gear.tip_radius]))
     foot, tip = _reach(spur, np.array([spur.form_radius, spur.tip_radius]))
 
@@ -116,7 +116,7 @@ def _spur(gear: Gear, teeth: int) -> Gear:
         gear,
         teeth=teeth,
         helix_angle=0.0,
-        # The same body under the teeth: bore and rim keep their share of the radius.
+        # The body under the teeth is scaled: bore and rim keep their share of the radius.
         bore=gear.bore * teeth / gear.teeth * math.cos(gear.helix_angle),
         pitch_deviations=(),
         faults=(),
@@ -144,9 +144,9 @@ class ToothCompliance:
     Attributes
     ----------
     bending, shear, axial, foundation : ndarray
-        Of the tooth as a beam, and of the body it stands on; all of the shape of the radii of the loads.
+        Compliance of the tooth as a beam, and of the body under it; arrays of the shape of the loads' radii.
     rim : ndarray
-        Additional compliance of a rim on a thinner web, over a body of the teeth's full width.
+        Additional compliance of a rim on a thinner web, compared with a body of the teeth's full width.
     """
 
     bending: FloatArray
@@ -162,7 +162,7 @@ class ToothCompliance:
 
 
 SolvedTooth = Callable[[FloatArray], ToothCompliance]
-"""One tooth, with all solved that does not depend on the load: from radii on its flank [m] to its compliance."""
+"""Compliance of one tooth as a function of radii on its flank [m], the part that is independent of them solved."""
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ class CompliantTeeth(ABC):
         """Solve one tooth of a spur gear for loads at any radius from the form circle to the tip."""
 
     def shared_body(self, gear: Gear) -> SharedBody | None:
-        """Body that neighbouring teeth share; None where each tooth stands on one of its own."""
+        """Body that neighbouring teeth share; None where each tooth has a separate body."""
         return None
 
     def tooth(self, gear: Gear, radius: npt.ArrayLike) -> ToothCompliance:
@@ -261,7 +261,7 @@ class CompliantTeeth(ABC):
         Returns
         -------
         ndarray, shape (m, m)
-            From m = 1 on; that under an even load is `shared_compliance`.
+            C_ml for m, l = 1, 2, ...; the compliance under an even load is `shared_compliance`.
         """
         total = np.zeros((FACE_SHAPES, FACE_SHAPES))
         middle = 0.5 * geometry.contact_ratio

@@ -42,11 +42,11 @@ class ToothCrack:
     Parameters
     ----------
     tooth : int
-        Its number from 0, as the teeth come into mesh.
+        Number of the tooth from 0, in the order in which the teeth come into mesh.
     depth : float
         Length of the crack [m].
     angle : float
-        Between the crack and the tooth's axis [rad].
+        Angle between the crack and the tooth's axis [rad].
     """
 
     tooth: int

@@ -13,7 +13,7 @@ half angle ``theta`` on the root circle (their Eq. 12 and Table 1):
 The ring is held at its bore, so the formula holds two things: the dent around the tooth, and the twist of
 the whole ring between bore and root circle, ``rb^2 (1/r_bore^2 - 1/r_root^2) / (4 pi G b)`` along the line
 of action, which grows as h^2 and is the reason why P does.  A gear in one piece with its shaft
-(``bore = 0``) has no such place to be held at, and its twist is the shaft's own: what is left is the dent,
+(``bore = 0``) is not held there, and its twist is that of the shaft: what is left is the dent,
 the formula less that twist in closed form.  The dent hardly depends on the bore (within 10 % over the whole
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
 
@@ -57,7 +57,7 @@ _SOLID_THICKNESS = 3.0
 
 
 def held_radius(gear: Gear) -> float | None:
-    """Radius at which the body is held [m]: the bore's, or the inside of a rim alone; None where there is neither."""
+    """Radius at which the body is held [m]: the bore or the inside of a rim without web; None for neither."""
     if gear.rim_inner_radius is not None and gear.web_thickness is None:
         return gear.rim_inner_radius
     return 0.5 * gear.bore if gear.bore > 0.0 else None
@@ -151,10 +151,10 @@ def _ring_twist(gear: Gear, thickness: float) -> float:
 
 def _thickness(gear: Gear) -> float:
     """Root radius over the radius of the held circle, h; the middle of the fitted range for a gear in one piece."""
-    held = held_radius(gear)
-    if held is None:
+    inner_radius = held_radius(gear)
+    if inner_radius is None:
         return _SOLID_THICKNESS
-    thickness = gear.root_circle_radius / held
+    thickness = gear.root_circle_radius / inner_radius
     nearest = min(max(thickness, THICKNESS_RANGE[0]), THICKNESS_RANGE[1])
     # Rounding may put an h of exactly 1.4 or 7 beyond the range.
     return nearest if math.isclose(thickness, nearest, rel_tol=1e-9) else thickness

@@ -46,19 +46,19 @@ def hertz_compliance(driver: Gear, driven: Gear) -> float:
 
 @dataclass(frozen=True, eq=False)
 class LineContact:
-    """Contact of two flanks at n places of their path, by Weber's law.
+    """Contact of two flanks at n positions along their path, by Weber's law.
 
     Attributes
     ----------
     curvature_radius : ndarray, shape (n,)
         Relative radius of curvature rho [m].
     depths : ndarray, shape (2, n)
-        From the surface to the axis of the driver's and of the driven gear's tooth, along the line of action [m].
+        Depths from the surface to the axis of the driver's and the driven gear's tooth, along the line of action [m].
     yielding : ndarray, shape (2,)
-        ``(1 - nu^2) / E`` of both [1/Pa].
+        Values ``(1 - nu^2) / E`` of both gears [1/Pa].
     poisson_ratios : ndarray, shape (2,)
     width : float
-        Of the face that both share [m].
+        Width of the common face [m].
     """
 
     curvature_radius: FloatArray

@@ -32,7 +32,7 @@ from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 
 _PER_MM_AND_UM = 1e9
-"""N/(mm um) in N/m per metre of face width."""
+"""Factor from N/(mm um) to N/m per metre of face width."""
 _STEEL = 206e9
 _LIGHT_LOAD = 100e3
 """100 N/mm: below this specific load the stiffness falls with its fourth root [N/m]."""
@@ -45,11 +45,11 @@ class Iso6336Values:
     Attributes
     ----------
     theoretical : float
-        c'_th, of the basic tooth shape.
+        Single stiffness c'_th of the basic tooth shape.
     single_pair : float
-        c', the largest stiffness of one pair.
+        Largest stiffness c' of one pair.
     mesh_mean : float
-        c_gamma_alpha, the mean over the mesh.
+        Mean stiffness c_gamma_alpha over the mesh.
     """
 
     theoretical: float

@@ -79,7 +79,7 @@ class SquareStiffness:
     value : float
         Stiffness of one pair [N/m].
     contact_ratio : float or None
-        In place of the geometry's, where a source prints the ratio but not the teeth.
+        Contact ratio in place of the geometry's, where a source prints the ratio but not the teeth.
     """
 
     name: ClassVar[str] = "square"
@@ -123,10 +123,10 @@ class TableStiffness:
     Parameters
     ----------
     position : ndarray, shape (n,)
-        In base pitches (mesh periods), from 0, increasing.  Ending at 1 the table is of the whole mesh;
+        Positions in base pitches (mesh periods), from 0, increasing.  Ending at 1 the table is of the whole mesh;
         ending at the contact ratio it is of one pair.
     stiffness : ndarray, shape (n,)
-        [N/m], positive.
+        Stiffness [N/m], positive.
     """
 
     name: ClassVar[str] = "table"

@@ -58,7 +58,7 @@ FloatArray = npt.NDArray[np.float64]
 _SHAPES = 8
 """Chebyshev polynomials in each traction: the compliance is within 1e-4 of its limit."""
 _WAVES_ACROSS = 60.0
-"""n theta of the last wave that is counted; those beyond act on a half plane and are summed in closed form."""
+"""Value n theta of the last wave that is summed; shorter waves act on a half plane and are summed in closed form."""
 
 _POINTS = 100
 """Points of quadrature on the arc, an even number, enough beyond `_WAVES_ACROSS` for all digits."""
@@ -75,7 +75,7 @@ class Annulus:
     inner, outer : float
         Radii, in root circle radii.
     width : float
-        In the units of the rim's.
+        Width, in the unit of the other rings' widths.
     """
 
     inner: float
@@ -90,9 +90,9 @@ class RootFlexibility:
     Attributes
     ----------
     lateral : ndarray, shape (2, 2)
-        Under (force across the tooth's axis, torque about the gear's centre over root radius).
+        Flexibility under (force across the tooth's axis, torque about the gear's centre over root radius).
     radial : float
-        Under a force along the tooth's axis.
+        Flexibility under a force along the tooth's axis.
     """
 
     lateral: FloatArray
@@ -108,9 +108,9 @@ class RootStamp:
     waves : ndarray of complex, shape (3, n, 2)
         ``int s e^{-i n t} dt`` of the radial and the tangential traction, n = 1, 2, ...
     uniform : ndarray, shape (3, 2)
-        The same for n = 0.
+        The integral for n = 0.
     flexibility : ndarray, shape (n, 2, 2)
-        As of `_wave_flexibility`.
+        Flexibility of each wave, see `_wave_flexibility`.
     even : ndarray, shape (2,)
         Breathing and twist: displacement under uniform tractions.
     own : RootFlexibility
@@ -131,11 +131,11 @@ def root_flexibility(
     Parameters
     ----------
     rings : tuple of Annulus
-        From the held circle outward, each beginning where the last ends; the last ends at the root circle, 1.
+        Rings from the held circle outward, each beginning where the last ends; the last ends at the root circle, 1.
     half_angle : float
-        Of the tooth on the root circle [rad].
+        Half angle of the tooth on the root circle [rad].
     poisson_ratio, kappa : float
-        Of the material, and Kolosov's constant.
+        Poisson's ratio of the material, and Kolosov's constant.
 
     Returns
     -------
@@ -154,7 +154,7 @@ def neighbour_flexibility(
     rings, half_angle, poisson_ratio, kappa
         As for `root_flexibility`.
     angle : float
-        From the middle of the first arc to that of the second [rad], counted in the sense of the force across.
+        Angle from the middle of the first arc to that of the second [rad], in the sense of the force across.
 
     Returns
     -------
@@ -211,8 +211,8 @@ def root_stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: flo
     scale = 1.0 + poisson_ratio  # E / (2 mu)
     least, sideways = _least_work(lateral, across)
     outward, upright = _least_work(radial, along)
-    held = np.asarray(scale * least, dtype=np.float64)
-    held.setflags(write=False)
+    lateral_flexibility = np.asarray(scale * least, dtype=np.float64)
+    lateral_flexibility.setflags(write=False)
     # Of even shapes e^{-i n t} leaves the cosine, of odd ones -i times the sine; across the axis the radial are odd.
     waves = np.array(
         [
@@ -227,7 +227,7 @@ def root_stamp(rings: tuple[Annulus, ...], half_angle: float, poisson_ratio: flo
         uniform=uniform,
         flexibility=flexibility,
         even=np.array([breathing, twist]),
-        own=RootFlexibility(lateral=held, radial=float(scale * outward[0, 0])),
+        own=RootFlexibility(lateral=lateral_flexibility, radial=float(scale * outward[0, 0])),
     )
 
 
@@ -267,8 +267,8 @@ def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], 
         inner_motion, inner_stress = _fields(ring.inner, ring, waves, kappa)
         motion, stress = _fields(ring.outer, ring, waves, kappa)
         ratio = 1.0 if inside is None else ring.width / inside.width
-        held = inner_motion - ratio * support @ inner_stress
-        conditions = np.concatenate([held, stress], axis=1)
+        support_conditions = inner_motion - ratio * support @ inner_stress
+        conditions = np.concatenate([support_conditions, stress], axis=1)
         loads = np.broadcast_to(np.vstack([np.zeros((2, 2)), np.eye(2)]), (waves.size, 4, 2))
         support = motion @ np.linalg.solve(conditions, loads)
     return support
@@ -293,7 +293,7 @@ def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: f
     overflows.
     """
     n = waves.astype(np.float64)
-    one, none = np.ones_like(n), np.zeros_like(n)
+    ones, zeros = np.ones_like(n), np.zeros_like(n)
     outward, inward = radius / ring.outer, ring.inner / radius
     grow, fade = outward**n, inward**n
     r = radius
@@ -301,15 +301,15 @@ def _fields(radius: float, ring: Annulus, waves: npt.NDArray[np.int64], kappa: f
         # z^0 is the rigid-body motion of the ring, and the resultant force of wave 1 needs a logarithm.
         log, inside = math.log(outward), inward**2
         columns = [
-            _potential(2.0 * one, grow * outward, grow * outward / r, kappa, 1.0),
+            _potential(2.0 * ones, grow * outward, grow * outward / r, kappa, 1.0),
             (
-                (2.0 * kappa * log - 1.0) * one,
-                -(2.0 * kappa * log + 1.0) * one,
-                (3.0 + kappa) / r * one,
-                (1.0 - kappa) / r * one,
+                (2.0 * kappa * log - 1.0) * ones,
+                -(2.0 * kappa * log + 1.0) * ones,
+                (3.0 + kappa) / r * ones,
+                (1.0 - kappa) / r * ones,
             ),
-            (-inside * one, -inside * one, 2.0 * inside / r * one, 2.0 * inside / r * one),
-            (one, -one, none, none),
+            (-inside * ones, -inside * ones, 2.0 * inside / r * ones, 2.0 * inside / r * ones),
+            (ones, -ones, zeros, zeros),
         ]
     else:
         columns = [
@@ -340,8 +340,10 @@ def _breathing(rings: tuple[Annulus, ...], kappa: float) -> float:
     support, width = 0.0, rings[0].width
     for ring in rings:
         a, b = ring.inner, ring.outer
-        held = np.array([(kappa - 1.0) * a, -1.0 / a]) - ring.width / width * support * np.array([2.0, a**-2])
-        amplitude = np.linalg.solve(np.array([held, [2.0, b**-2]]), np.array([0.0, 1.0]))
+        inner_condition = np.array([(kappa - 1.0) * a, -1.0 / a]) - ring.width / width * support * np.array(
+            [2.0, a**-2]
+        )
+        amplitude = np.linalg.solve(np.array([inner_condition, [2.0, b**-2]]), np.array([0.0, 1.0]))
         support, width = float(np.array([(kappa - 1.0) * b, -1.0 / b]) @ amplitude), ring.width
     return support
 
@@ -351,9 +353,9 @@ SOLID_HOLD = 1.0 / 3.0
 
 
 BodyCompliance = Callable[[FloatArray], FloatArray]
-"""From radii of loaded points [m] to the compliance of the body along the line of action [m/N], of the same shape."""
+"""Function of the radii of loaded points [m] that gives the body's compliance along the line of action [m/N]."""
 CrossCompliance = Callable[[FloatArray, FloatArray], FloatArray]
-"""From radii of the loaded points of two teeth [m] to the motion of one by a unit load on the other [m/N]."""
+"""Function of the radii of two teeth's loaded points [m]: motion of one tooth by a unit load on the other [m/N]."""
 
 
 def ring_compliance(gear: Gear, state: PlaneState = "plane-stress") -> BodyCompliance:
@@ -403,7 +405,7 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
     Returns
     -------
     callable
-        From radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
+        Maps radii [m] of the loads on a tooth and on the next one in the sense of the loads (shapes that broadcast) to
         the compliance.
     """
     rings = body_rings(gear) if twists else (Annulus(SOLID_HOLD, 1.0, gear.face_width),)
@@ -462,19 +464,19 @@ def body_rings(gear: Gear) -> tuple[Annulus, ...]:
     StiffnessModelError
         For a web that begins inside the bore's circle.
     """
-    held = _hold(gear)
+    hub = _hold(gear)
     if gear.rim_inner_radius is None or gear.web_thickness is None:
-        return (Annulus(held, 1.0, gear.face_width),)
+        return (Annulus(hub, 1.0, gear.face_width),)
     inside = gear.rim_inner_radius / gear.root_circle_radius
-    if inside <= held:
+    if inside <= hub:
         raise StiffnessModelError(
             f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
-            f"the circle where the body is held ({held * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
+            f"the circle where the body is held ({hub * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
         )
-    return Annulus(held, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width)
+    return Annulus(hub, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width)
 
 
 def _hold(gear: Gear) -> float:
     """Radius at which the body is held, in root circle radii."""
-    held = held_radius(gear)
-    return SOLID_HOLD if held is None else held / gear.root_circle_radius
+    radius = held_radius(gear)
+    return SOLID_HOLD if radius is None else radius / gear.root_circle_radius
