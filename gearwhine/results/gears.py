@@ -31,7 +31,7 @@ def _start(gear: Gear, relief: TipRelief) -> float:
 
 
 def _span(row: Any) -> dict[str, Any] | None:
-    # Not every gear can be measured in every way: a face too narrow, teeth too short.
+    # Some measurements are impossible on some gears: the face is too narrow or the teeth are too short.
     with suppress(GearError):
         span = span_measurement(row[1])
         return {"teeth": span.teeth, "length_m": span.length}
@@ -644,7 +644,7 @@ def _best_relief(pair: Document) -> list[str]:
         lines = [
             f"The relief of {_reliefs(pair)} leaves {as_given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
         ]
-        # At the least of the torques, any pair is quiet.
+        # Every pair is quiet at the lowest torque.
         if (quietest := pair["harris_map"]["quietest_torque_n_m"]) > pair["harris_map"]["torque_n_m"][0]:
             lines.append(f"  it is quietest near {quietest:.3g} N·m")
     else:

@@ -146,7 +146,7 @@ ORIGIN = (
     Quantity("seconds_when_solved", lambda solved: ABSENT if solved.source is None else solved.record.notes["seconds"]),
     Quantity("warnings", lambda solved: solved.warnings),
 )
-"""Where the modes come from, for every command that uses them."""
+"""Origin of the modes, for every command that uses them."""
 
 
 def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":

@@ -514,7 +514,7 @@ _MODAL = HistoryQuantity(
 class HistoryStream:
     """Histories of a transient, which are written piece by piece.
 
-    In single precision, seven digits, since there are many; times in double.
+    Histories have single precision, seven digits, since there are many; times have double precision.
     """
 
     solved: "SolvedTransient"
@@ -530,7 +530,7 @@ class HistoryStream:
         """Append the histories to a file that holds their coordinates, one piece at a time."""
         record = self.solved.record
         with h5netcdf.File(path, "a") as file:
-            # As xarray does for whatever else is in the file.
+            # As xarray does for the file's other variables.
             beside = {"coordinates": "speed"} if "speed" in file.variables else {}
             file.dimensions["time"] = record.samples
             times = file.create_variable("time", ("time",), "f8", fillvalue=np.nan)

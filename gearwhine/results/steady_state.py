@@ -64,7 +64,7 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
     return [
         {
             "name": name,
-            # Of different frequencies: their powers add.
+            # The frequencies differ, so their powers add.
             "rms_m_per_s2": float(np.hypot.reduce([one.sensor_rms[name] for one in motions])),
             "lines": _lines(
                 motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"

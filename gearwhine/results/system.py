@@ -333,8 +333,8 @@ CROSSING = (
 """Quantities of a crossing of the Campbell diagram; a row is the crossing and the speed of operation [rad/s]."""
 
 
-def _diagram(name: str, of: Any, unit: str, what: str) -> Quantity:
-    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, what)
+def _diagram(name: str, of: Any, unit: str, long_name: str) -> Quantity:
+    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name)
 
 
 CAMPBELL = (
