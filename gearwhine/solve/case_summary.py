@@ -36,10 +36,10 @@ class CheckedRotor:
     Attributes
     ----------
     given : Rotor
-        As the case has it.
+        Table of the rotor in the case.
     built : rotors.Rotor
     speed : float or None
-        [rad/s]; None without an operation.
+        Speed in operation [rad/s]; None without an operation.
     """
 
     given: Rotor
@@ -57,9 +57,9 @@ class CheckedPair:
     geometry : coupling.gears.GearPairGeometry
     misalignment : TakenMisalignment
     mesh_frequency : float or None
-        [Hz]; None without an operation.
+        Mesh frequency [Hz]; None without an operation.
     torque : float or None
-        On the driver [N m]; likewise.
+        Torque on the driver [N m]; None without an operation.
     """
 
     given: GearPair
@@ -82,13 +82,13 @@ class CheckedCase:
     ----------
     case : Case
     mesh : MeshPreview or None
-        Of the housing.
+        Mesh of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
     locations : tuple of coupling.machine.axial_location.AxialLocation
-        Of each rotor along its axis.
+        Axial location of each rotor.
     warnings : list of dict
-        As the documents have them.
+        Warnings, as in the documents.
     """
 
     case: Case
@@ -127,10 +127,10 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     locations = axial_locations(case)
     speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
     warnings += centrifugal_warnings(
-        (one.name, one.rolling, speeds[location.shaft])
+        (bearing.name, bearing.rolling, speeds[location.shaft])
         for location in locations
-        for one in location.bearings
-        if one.rolling is not None and location.shaft in speeds
+        for bearing in location.bearings
+        if bearing.rolling is not None and location.shaft in speeds
     )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
@@ -158,7 +158,7 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
     speeds = rotor_speeds(case) if case.operation is not None else {}
-    return tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
+    return tuple(CheckedRotor(entry, build_rotor(case, entry), speeds.get(entry.name)) for entry in case.rotor)
 
 
 def checked_pairs(case: Case) -> Iterator[CheckedPair]:

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_LEAST_RATIO = 1e-3  # of a line after a step to the line before it
-_LARGE_ERROR = 1.0  # of a level to first order [dB]
-_LARGE_ERROR_OF_SIGN = 0.3  # the same where the first order has the wrong sign [dB]
+_LEAST_RATIO = 1e-3  # least ratio of a line after a step to the line before it
+_LARGE_ERROR = 1.0  # large error of a level to first order [dB]
+_LARGE_ERROR_OF_SIGN = 0.3  # large error where the first order has the wrong sign [dB]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +42,8 @@ class Influence:
     lines : ndarray, shape (n_lines,)
         Changes of the lines by the step to first order: amplitudes of sensors [m/s²], then powers of the sound [W].
     stepped, reversed : ndarray, shape (n_lines,)
-        The same with the response solved again at the step, and at the reverse step; NaN where the reverse step would
-        take away a whole wall.
+        Changes of the lines with the response solved again at the step, and at the reverse step; NaN where the reverse
+        step would remove a whole wall.
     is_thickness : bool
         Whether the parameter adds and takes away material along the normal of a wall or a face.
     """
@@ -94,7 +94,7 @@ class LineChange:
     change, reverse : float
         Change of the value by the step and by the reverse step, the response solved again; NaN where there is none.
     line : Line or None
-        None of a sum.
+        Line; None of a sum.
     """
 
     value: float
@@ -116,7 +116,7 @@ class LineChange:
 
     @property
     def reverse_level(self) -> float | None:
-        """The same by the reverse step [dB]; None where there is none."""
+        """Change of its level by the reverse step, the response solved again [dB]; None without such a step."""
         return None if math.isnan(self.reverse) else self._level(self.reverse)
 
     @property
@@ -145,7 +145,7 @@ class LoadSensitivity:
     influences : tuple of Influence
         The largest change of a misalignment over the face first.
     density : ndarray, shape (n_pairs, n_nodes), or None
-        Misalignment by material added on the housing's surface, by its thickness and area [rad/m³].
+        Derivative of the misalignment by material added on the housing's surface, by thickness and area [rad/m³].
     note : str or None
         Why flat faces stand in place of walls.
     lines : SolvedLines or None
@@ -153,11 +153,11 @@ class LoadSensitivity:
     line : int
         Number of the sensor's line that is ranked and drawn.
     line_density : ndarray, shape (n_nodes,), or None
-        Of that line, its amplitude by material added on the surface [(m/s²)/m³].
+        Derivative of that line's amplitude by material added on the surface [(m/s²)/m³].
     sound_line : int or None
         Number of the sound's line that is ranked and drawn; None for the A-weighted sum of several.
     sound_density : ndarray, shape (n_nodes,), or None
-        Of that line or sum, its power by material added on the surface [W/m³].
+        Derivative of the power of that line or sum by material added on the surface [W/m³].
     """
 
     influences: tuple[Influence, ...]
