@@ -284,7 +284,7 @@ class _Mounted(Table):
         assert self.spacing is not None
         if self.arrangement == "tandem":
             pair = paired(row, "tandem", self.spacing)
-            return RollingBearing([one.facing(sense) for one in pair.rows], sense * self.preload, label)
+            return RollingBearing([row.facing(sense) for row in pair.rows], sense * self.preload, label)
         return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:

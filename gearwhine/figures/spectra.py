@@ -127,8 +127,8 @@ def draw_waterfall(
     spacing = _spacing(at[rows])
 
     harmonics = _mesh_harmonics(at[rows], meshes[rows], list(mesh_names), limit)
-    above = [one.label for one in harmonics if one.at_top]
-    beside = [one.label for one in harmonics if not one.at_top]
+    above = [harmonic.label for harmonic in harmonics if harmonic.at_top]
+    beside = [harmonic.label for harmonic in harmonics if not harmonic.at_top]
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [label.x / limit * width for label in above], width)
     tall = min(_LOWEST_PANEL + _ROW_HEIGHT * rows.size, _HIGHEST_PANEL)

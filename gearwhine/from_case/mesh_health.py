@@ -166,4 +166,6 @@ def noted_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
 
 def _warnings(defects: tuple[MeshDefect, ...]) -> list[dict[str, Any]]:
     """Mesh defects as warnings of the command's JSON."""
-    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in defects]
+    return [
+        warning(defect.name, defect.message, count=defect.count, place_m=defect.place.tolist()) for defect in defects
+    ]

@@ -266,7 +266,7 @@ def _is_plain_file(path: Path) -> bool:
 def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
     """Move a run's files to the output folder, and remove earlier drawings that it does not draw anew."""
     names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
-    stale = [] if replaced is None else [one for one in listed_files(folder, replaced) if one.suffix in _DRAWN]
+    stale = [] if replaced is None else [file for file in listed_files(folder, replaced) if file.suffix in _DRAWN]
     # The summary moves last: where it is new, all is new, and until then the old one lists the files to be removed.
     for name in sorted(names, key=lambda name: name.name == SUMMARY):
         if name.name == SUMMARY:

@@ -76,7 +76,7 @@ def _bolt(joint: "BuiltJoint") -> dict[str, Any]:
 
 
 def _names(key: str, table: str) -> Quantity:
-    return Quantity(key, lambda checked: [one.name for one in getattr(checked.case.housing, table)])
+    return Quantity(key, lambda checked: [member.name for member in getattr(checked.case.housing, table)])
 
 
 def _of_mesh(key: str, of: Any) -> Quantity:
@@ -310,9 +310,17 @@ CHECK = (
     Quantity("title", lambda checked: checked.case.title),
     _optional_part("housing", lambda checked: None if checked.mesh is None else checked, HOUSING),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
-    Rows("rotor_analysis", lambda checked: [(checked.case, one) for one in checked.case.rotor] or ABSENT, ANALYSIS),
+    Rows(
+        "rotor_analysis",
+        lambda checked: [(checked.case, analysis) for analysis in checked.case.rotor] or ABSENT,
+        ANALYSIS,
+    ),
     _optional("bearings", lambda checked: _bearings(checked.case) or None),
-    Rows("axial_location", lambda checked: [one for one in checked.locations if one.bearings] or ABSENT, LOCATION),
+    Rows(
+        "axial_location",
+        lambda checked: [location for location in checked.locations if location.bearings] or ABSENT,
+        LOCATION,
+    ),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
     _optional_part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
     _optional_part("transient", lambda checked: checked.case.transient, TRANSIENT),
@@ -370,7 +378,9 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(document.get("bearings", ())),
-        "location": [_location_line(one) for one in document.get("axial_location", ()) if _is_worth_a_line(one)],
+        "location": [
+            _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
+        ],
         "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
@@ -402,7 +412,7 @@ def _housing_summary(housing: Document) -> list[str]:
 def _bearing_summary(bearings: Sequence[Document]) -> list[str]:
     if not bearings:
         return []
-    on_ground = sum(one["seat"] == "ground" for one in bearings)
+    on_ground = sum(bearing["seat"] == "ground" for bearing in bearings)
     seated = len(bearings) - on_ground
     parts = [f"{seated} in seats of the housing"] * bool(seated) + [f"{on_ground} on the ground"] * bool(on_ground)
     return [", ".join(parts)]
@@ -427,8 +437,8 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
-        "location": [_location_line(one) for one in document.get("axial_location", ())],
-        "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
+        "location": [_location_line(location) for location in document.get("axial_location", ())],
+        "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
@@ -460,7 +470,7 @@ def _measured_lines(measured: Document) -> list[str]:
     """Return lines on the measured modes; for a file also on the content that was read."""
     lines = []
     if "frequencies_hz" in measured:
-        lines.append(", ".join(f"{one:.6g}" for one in measured["frequencies_hz"]) + " Hz")
+        lines.append(", ".join(f"{frequency:.6g}" for frequency in measured["frequencies_hz"]) + " Hz")
     if "points" in measured:
         kind = "" if "frequencies_hz" not in measured else f"; {'complex' if measured['complex'] else 'real'} shapes"
         size = " x ".join(f"{1e3 * side:.4g}" for side in measured["extent_m"])
@@ -501,13 +511,13 @@ def _housing_lines(housing: Document) -> list[str]:
     lines = [f"{shape}, {housing['material']}; {modes}"]
     lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):
-        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+        lines += [_bushing_line(kind[:-1], bushing) for bushing in housing[kind]]
     if housing.get("cover_bolts"):
         first, *others = housing["cover_bolts"]
         lines.append(_bushing_line("cover", first) + (f"; so {counted(len(others), 'more bolt')}" if others else ""))
     lines += [bore_line(bore) for bore in housing.get("bores", ())]
     if housing["masses"]:
-        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+        lines.append("masses: " + ", ".join(f"{mass['name']} {mass['mass_kg']:g} kg" for mass in housing["masses"]))
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
 
 
@@ -549,7 +559,9 @@ def _location_line(location: Document) -> str:
     """Return a rotor's arrangement of bearings, and which of them takes its thrust in which sense."""
     plus, minus = (
         [
-            f"{name} ({one}, {ARRANGEMENTS[one]})" if (one := location["rows"].get(name)) else name
+            f"{name} ({arrangement}, {ARRANGEMENTS[arrangement]})"
+            if (arrangement := location["rows"].get(name))
+            else name
             for name in location[key]
         ]
         for key in ("thrust_plus_z", "thrust_minus_z")

@@ -327,8 +327,8 @@ def _sound_proofs(document: Document) -> Iterator[Finding]:
     """Yield the power balance, the pressure inside the surface and the error of a known source, each at its worst."""
     points = document["points"] if document.get("command") == "sweep" else ()
     sounds = [_sound_of(document), *(point.get("sound", {}) for point in points)]
-    balances = [abs(one["power_balance_db"]) for one in sounds if one.get("power_balance_db") is not None]
-    leaks = [one["interior_pressure"] for one in sounds if one.get("interior_pressure") is not None]
+    balances = [abs(sound["power_balance_db"]) for sound in sounds if sound.get("power_balance_db") is not None]
+    leaks = [sound["interior_pressure"] for sound in sounds if sound.get("interior_pressure") is not None]
     if balances:
         yield Finding(
             f"Sound: powers through the surface and into the far field differ by at most {max(balances):.2f} dB.",
@@ -342,9 +342,9 @@ def _sound_proofs(document: Document) -> Iterator[Finding]:
             passed=max(leaks) < _LEAK,
             link=("section Sound", "section Sweep"),
         )
-    sources = [one for one in sounds if one.get("known_source_error") is not None]
+    sources = [sound for sound in sounds if sound.get("known_source_error") is not None]
     if sources:
-        worst_source = max(sources, key=lambda one: float(one["known_source_error"]))
+        worst_source = max(sources, key=lambda sound: float(sound["known_source_error"]))
         yield Finding(
             "Sound: the pressure of a known source inside is off by at most "
             f"{percent(worst_source['known_source_error'])} on the radiating surface, "

@@ -737,7 +737,7 @@ def _undamped(rotor: Document) -> Iterator[str | Table]:
         [None] * len(speeds) if margins is None else margins,
         strict=True,
     )
-    rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), one, strict=True)) for one in values]
+    rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), row, strict=True)) for row in values]
     reach = len(rows) if margins is None else sum(margin <= _REACH - 1.0 for margin in margins) + 1
     yield from table_of(_CRITICAL_COLUMNS, rows[: min(reach, _MOST)], "Undamped critical speeds")
     yield from _nearest(rows)
@@ -748,7 +748,7 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
     # Circular backward whirl takes no work from unbalance.
     excited = [row for row in rows if row["margin"] is not None and row["way"] >= -1.0 + _PLANAR]
     if excited:
-        row = min(excited, key=lambda one: (abs(one["margin"]), abs(one["speed_rpm"])))
+        row = min(excited, key=lambda crossing: (abs(crossing["margin"]), abs(crossing["speed_rpm"])))
         speed, margin = abs(row["speed_rpm"]), row["margin"]
         yield f"Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation"
 
@@ -774,7 +774,7 @@ def _weight(static: Document) -> Iterator[str | Table]:
     if static["bearings"] is None:
         yield f"No static deflection: {static['why_not']}"
         return
-    along = any(one["load_n"][2] for one in static["bearings"])
+    along = any(bearing["load_n"][2] for bearing in static["bearings"])
     columns = (
         Column("bearing carries", "name"),
         *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xyz" if along else "xy")),

@@ -134,7 +134,7 @@ def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float)
 def _largest_shares(parts: Iterable[tuple[str, float]], power: float) -> list[dict[str, Any]]:
     return [
         {"name": name, "share": part / power}
-        for name, part in sorted(parts, key=lambda one: -abs(one[1]))
+        for name, part in sorted(parts, key=lambda pair: -abs(pair[1]))
         if abs(part) > _LEAST_SHARE * power
     ]
 
@@ -461,7 +461,7 @@ def sound_document(solved: "SolvedSound") -> dict[str, Any]:
 
 def _parts(faces: Document) -> str:
     """Return parts of a power in words, the largest first."""
-    ordered = sorted(faces.items(), key=lambda one: -one[1])[:_LISTED]
+    ordered = sorted(faces.items(), key=lambda face: -face[1])[:_LISTED]
     return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
 
 

@@ -53,7 +53,7 @@ def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
     rows = []
     for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
-        lines = _lines(motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n")
+        lines = _lines(motions, [motion.histories.mesh_force[name] for motion in motions], "amplitude_n")
         rows.append((mesh, figures, number, lines, motion is None))
     return rows
 
@@ -65,9 +65,9 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
         {
             "name": name,
             # The frequencies differ, so their powers add.
-            "rms_m_per_s2": float(np.hypot.reduce([one.sensor_rms[name] for one in motions])),
+            "rms_m_per_s2": float(np.hypot.reduce([motion.sensor_rms[name] for motion in motions])),
             "lines": _lines(
-                motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"
+                motions, [motion.histories.sensor_acceleration[name] for motion in motions], "amplitude_m_per_s2"
             ),
         }
         for name in motions[0].histories.sensor_acceleration

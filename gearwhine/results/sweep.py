@@ -178,7 +178,7 @@ def _sound_columns(document: Document) -> tuple[Column, ...]:
         *_axes(document),
         Column("L_W [dB]", "sound.total_db", ".1f"),
         Column("L_WA [dB]", "sound.total_db_a", ".1f"),
-        *(Column(one.heading, partial(_loudest, one)) for one in columns_of(SWEPT_LINE)),
+        *(Column(quantity.heading, partial(_loudest, quantity)) for quantity in columns_of(SWEPT_LINE)),
     )
 
 

@@ -47,7 +47,7 @@ def _strained_most(row: Any) -> Any:
     if solved.modes.kinds[mode] == "rigid":
         return None
     shares = solved.modes.shares
-    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda one: one[1])
+    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda pair: pair[1])
     return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
 
 
@@ -207,12 +207,12 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
     return (
         Quantity("excitation", lambda row: row[0].excitation),
         Quantity("per", lambda row: row[0].unit),
-        Quantity("mesh_force_n", lambda row: {label: peaks(row, one) for label, one in row[0].mesh_force.items()}),
+        Quantity("mesh_force_n", lambda row: {label: peaks(row, force) for label, force in row[0].mesh_force.items()}),
         Quantity("bearing_force_n", along_axes(0, "xyz")),
         Quantity("bearing_moment_n_m", along_axes(3, "xy")),
         Quantity(
             "sensor_acceleration_m_per_s2",
-            lambda row: {label: peaks(row, one) for label, one in row[0].sensor_acceleration.items()},
+            lambda row: {label: peaks(row, signal) for label, signal in row[0].sensor_acceleration.items()},
         ),
         *curves(
             lambda response: response.sensor_acceleration,
@@ -362,8 +362,10 @@ CAMPBELL = (
             Quantity("where", lambda row: row[0].where[:, row[1]]),
         ),
     ),
-    Quantity("lines", lambda row: [{"name": one.name, "kind": one.kind, "order": one.order} for one in row[0].lines]),
-    Rows("crossings", lambda row: [(one, row[1]) for one in row[0].crossings], CROSSING, "system_crossing"),
+    Quantity(
+        "lines", lambda row: [{"name": line.name, "kind": line.kind, "order": line.order} for line in row[0].lines]
+    ),
+    Rows("crossings", lambda row: [(crossing, row[1]) for crossing in row[0].crossings], CROSSING, "system_crossing"),
     Quantity("unsettled", lambda row: row[0].unsettled),
 )
 """Quantities of the Campbell diagram; a row is the diagram and the speed of operation [rad/s]."""
@@ -373,7 +375,7 @@ def _unbalance(solved: "SolvedSystem") -> Any:
     if solved.unbalance_speeds is None:
         return ABSENT
     along = np.abs(solved.unbalance_speeds * RPM)
-    return [(one, along) for one in solved.unbalance]
+    return [(response, along) for response in solved.unbalance]
 
 
 SYSTEM = (
@@ -402,7 +404,7 @@ SYSTEM = (
     Part("stability", lambda solved: solved, STABILITY),
     Rows(
         "transmissibility",
-        lambda solved: [(one, one.frequencies / HERTZ) for one in solved.responses],
+        lambda solved: [(response, response.frequencies / HERTZ) for response in solved.responses],
         TRANSMISSIBILITY,
         "mesh_error",
     ),

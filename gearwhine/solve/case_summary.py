@@ -123,9 +123,11 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
-    warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
+    warnings += fit_warnings(
+        case, {rotor.given.name: rotor.built for rotor in rotors}, None if mesh is None else mesh.mesh
+    )
     locations = axial_locations(case)
-    speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
+    speeds = {rotor.given.name: rotor.speed for rotor in rotors if rotor.speed is not None}
     warnings += centrifugal_warnings(
         (bearing.name, bearing.rolling, speeds[location.shaft])
         for location in locations

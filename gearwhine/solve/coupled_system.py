@@ -241,7 +241,7 @@ def _over_speed(
         contact=mean,
         progress=lambda fraction: progress("coupled modes over speed", fraction),
     )
-    driven = list(dict.fromkeys(one.rotor for one in machine.loads.unbalances if one.moment != 0.0))
+    driven = list(dict.fromkeys(unbalance.rotor for unbalance in machine.loads.unbalances if unbalance.moment != 0.0))
     turning = np.linspace(speeds[0] or speeds[-1] / _UNBALANCE_STEPS, speeds[-1], _UNBALANCE_STEPS)
     unbalance = []
     for rotor in driven:

@@ -102,7 +102,9 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
         "housing": with_contents(written, files),
         "bearings": bearings,
         "attachment_orders": RESPONSE_ORDERS,
-        "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
+        "material": {
+            name: material.model_dump(mode="json") for name, material in case.material.items() if name in named
+        },
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
         "source": source_digest(*MODES_CODE),
     }

@@ -135,7 +135,7 @@ class SolvedLoad:
     @cached_property
     def shafts(self) -> tuple["DeflectedShaft", ...]:
         """Deflection of each shaft along it."""
-        return tuple(_deflected(one, self.machine) for one in self.point.shafts)
+        return tuple(_deflected(shaft, self.machine) for shaft in self.point.shafts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -414,7 +414,9 @@ def _tilt_limit(row: Row) -> tuple[float, str]:
 
 def _speed_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warn of bearings so fast that the centrifugal force of their elements matters."""
-    rolling = [(one.load.mounted, one.load.rolling) for one in solved.bearings if one.load.rolling is not None]
+    rolling = [
+        (bearing.load.mounted, bearing.load.rolling) for bearing in solved.bearings if bearing.load.rolling is not None
+    ]
     return centrifugal_warnings(
         [(mounted.bearing.name, state.bearing, solved.machine.speeds[mounted.rotor]) for mounted, state in rolling],
         {mounted.bearing.name: max(float(row.outer_load.max()) for row in state.rows) for mounted, state in rolling},

@@ -52,7 +52,7 @@ def _of_bearing(
     if bore is not None:
         yield from _on_shaft(label, bore, rotor, bearing.at, width or 0.0)
     seats = () if case.housing is None else case.housing.seat
-    seat = next((one for one in seats if one.name == bearing.seat), None)
+    seat = next((candidate for candidate in seats if candidate.name == bearing.seat), None)
     if seat is None:
         return
     if outside is not None and abs(outside - seat.diameter) > _FIT:
@@ -169,7 +169,7 @@ def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) ->
     if not segment_ends or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in segment_ends):
         return
     diameters = list(dict.fromkeys(diameter for ends in segment_ends for diameter in ends))
-    listed = " and ".join(_mm(one) for one in diameters)
+    listed = " and ".join(_mm(diameter) for diameter in diameters)
     yield warning(
         "part on shaft",
         f'{label}: its bore of {_mm(bore)} is not the diameter of rotor "{rotor.name}" at {_mm(at)}, {listed}',

@@ -101,7 +101,7 @@ def centrifugal_warnings(
     """
     warnings = []
     for name, bearing, speed in bearings:
-        row = max(bearing.rows, key=lambda one: one.pitch_diameter)
+        row = max(bearing.rows, key=lambda candidate: candidate.pitch_diameter)
         rpm = abs(speed) * 60.0 / _TWO_PI
         factor = rpm * 1e3 * row.pitch_diameter
         if factor <= FAST:

@@ -297,10 +297,10 @@ def solve_torsion(
     ratio = table.damping_ratio if settings.damping_ratio is None else settings.damping_ratio
     response = torsional_response(
         rotor,
-        [Torque(one.at, one.amplitude * np.exp(1j * one.phase)) for one in torques],
+        [Torque(torque.at, torque.amplitude * np.exp(1j * torque.phase)) for torque in torques],
         _frequencies(settings, modes, damped=ratio > 0.0),
-        springs=[AxisSpring(one.at, one.stiffness) for one in springs if one.stiffness > 0.0],
-        dashpots=[TorsionalDashpot(one.at, one.damping) for one in springs if one.damping > 0.0],
+        springs=[AxisSpring(spring.at, spring.stiffness) for spring in springs if spring.stiffness > 0.0],
+        dashpots=[TorsionalDashpot(spring.at, spring.damping) for spring in springs if spring.damping > 0.0],
         damping_ratio=ratio,
     )
     probes = _torsion_probes(settings, table, rotor)
@@ -334,7 +334,7 @@ def _torsion_probes(settings: TorsionalAnalysis, table: GivenRotor, rotor: Rotor
     if settings.probes:
         return [probe for probe in settings.probes if probe.rotor == table.name]
     places = {0.0: "left end", rotor.length: "right end"}
-    for number, torque in enumerate((one for one in settings.torques if one.rotor == table.name), start=1):
+    for number, torque in enumerate((entry for entry in settings.torques if entry.rotor == table.name), start=1):
         places[torque.at] = f"torque {number}"
     return [TorsionProbe(name=name, rotor=table.name, at=at) for at, name in sorted(places.items())]
 
@@ -500,7 +500,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
 def _constant_forces(case: Case, rotor: str) -> tuple[StaticForce, ...]:
     """Return the constant forces of the operation on a rotor; those of its gears are not among them."""
     forces = () if case.operation is None else case.operation.force
-    return tuple(StaticForce(one.at, one.x, one.y, one.z) for one in forces if one.rotor == rotor)
+    return tuple(StaticForce(force.at, force.x, force.y, force.z) for force in forces if force.rotor == rotor)
 
 
 def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:
@@ -534,7 +534,7 @@ def _crossings(campbell: Campbell, order: float = 1.0) -> Crossings:
     if campbell.speeds.size < 2:
         return "a Campbell diagram at one speed has no crossings; expected two or more different speeds"
     try:
-        return tuple(one for one in campbell.crossings(order) if one.axial_share <= MOSTLY_AXIAL)
+        return tuple(crossing for crossing in campbell.crossings(order) if crossing.axial_share <= MOSTLY_AXIAL)
     except IncompleteModesError as error:
         return str(error)
 

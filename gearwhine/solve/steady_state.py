@@ -176,10 +176,10 @@ class SolvedSteady:
         motions = self.motions if motion is None else (motion,)
         loads = []
         for name in motions[0].histories.bearing_load:
-            parts = [signal_parts(one.histories.bearing_load[name].T) for one in motions]
+            parts = [signal_parts(motion.histories.bearing_load[name].T) for motion in motions]
             # Each group's motion has the mean load; of different frequencies the powers add.
-            mean, rms = np.mean([one.mean for one in parts], axis=0), np.hypot.reduce([one.rms for one in parts])
-            loads.append((name, SignalParts(mean, rms, np.sum([one.peak for one in parts], axis=0))))
+            mean, rms = np.mean([part.mean for part in parts], axis=0), np.hypot.reduce([part.rms for part in parts])
+            loads.append((name, SignalParts(mean, rms, np.sum([part.peak for part in parts], axis=0))))
         return loads
 
     def superposition_warnings(self) -> list[dict[str, Any]]:
@@ -285,7 +285,7 @@ def solve_steady(
     progress("the motions at the speed of operation")
     reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
     responses = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
-    motions = tuple(_motion(case, machine, housing, speed, one) for one in responses)
+    motions = tuple(_motion(case, machine, housing, speed, response) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
     loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
     return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)

@@ -110,7 +110,9 @@ class SolvedTransient:
     @property
     def averages(self) -> int:
         """Number of stretches over which the spectra were averaged."""
-        return next((one.averages for one in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1)
+        return next(
+            (spectrum.averages for spectrum in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1
+        )
 
     def sensor_rms(self, sensor: str) -> float:
         """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""

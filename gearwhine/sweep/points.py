@@ -74,7 +74,7 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
     stems = file_stems([_described(keys, place) for place in grid])
     points, problems = list[Point](), dict[Problem, None]()
     for place, stem in zip(grid, stems, strict=True):
-        overrides = [one for key, index in zip(keys, place, strict=True) for one in key.overrides[index]]
+        overrides = [override for key, index in zip(keys, place, strict=True) for override in key.overrides[index]]
         try:
             case = load_case(source, [*settings, *overrides]).case
             require(case, "rotor", "operation", "transient", command="sweep")

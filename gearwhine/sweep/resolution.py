@@ -135,7 +135,7 @@ def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
 def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], speeds: Sequence[float]) -> str:
     """Return the option of the command for a sweep with further speeds [rpm]."""
     along, key = next((number, key) for number, key in enumerate(keys) if SPEED_KEY in key.keys)
-    texts = {one.point.texts[along]: _speed(one) for one in swept}
+    texts = {point.point.texts[along]: _speed(point) for point in swept}
     sign = -1.0 if max(texts.values()) < 0.0 else 1.0
     texts |= {f"{sign * speed:g} rpm": sign * speed for speed in speeds}
     return f"--over {key.key}='{','.join(sorted(texts, key=lambda text: texts[text]))}'"
@@ -207,9 +207,9 @@ class _End:
             [float(resonances.frequencies[mode]), harmonic * resonances.mesh_orders[mesh] * self.speed_rpm / 60.0]
         )
         rates = (resonances.mode_rates[mesh, mode], resonances.harmonic_rates[mesh, harmonic - 1])
-        if not all(np.any(one) for one in rates):
+        if not all(np.any(rate) for rate in rates):
             return 0.0
-        peak, line = (self.radiated(hertz, one) for hertz, one in zip(at.tolist(), rates, strict=True))
+        peak, line = (self.radiated(hertz, rate) for hertz, rate in zip(at.tolist(), rates, strict=True))
         even = self.response(output, mesh, at)
         return peak - line - float(even[0] - even[1])
 
@@ -264,8 +264,8 @@ def _between(
 def _apart(peaks: Iterable[MissedPeak]) -> Iterator[MissedPeak]:
     """Yield the peaks of a line, the one that rises most first, without those of modes within its half-power band."""
     separate: list[MissedPeak] = []
-    for peak in sorted(peaks, key=lambda one: -one.rise_db):
-        if all(abs(peak.speed_rpm - one.speed_rpm) > one.half_width_rpm for one in separate):
+    for peak in sorted(peaks, key=lambda missed: -missed.rise_db):
+        if all(abs(peak.speed_rpm - louder.speed_rpm) > louder.half_width_rpm for louder in separate):
             separate.append(peak)
             yield peak
 

@@ -194,15 +194,15 @@ def _reduced(
         document=document,
         orders=lines[:count] / turning_hz,
         sensor_spectra={name: spectrum.amplitude[:count] for name, spectrum in solved.sensor_spectra.items()},
-        force_spectra={name: solved.force_spectra[one].amplitude[:count] for name, one in pressed.items()},
+        force_spectra={name: solved.force_spectra[contact].amplitude[:count] for name, contact in pressed.items()},
         bearing_force_mean={name: force.mean(axis=0) for name, force in forces.items()},
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,
         window=spectra[0].window if spectra else "uniform",
         line_frequencies=frequencies,
         line_rates=rates,
-        line_names=tuple(one.name for one in names),
-        line_kinds=tuple(one.kind for one in names),
+        line_names=tuple(line.name for line in names),
+        line_kinds=tuple(line.kind for line in names),
         resonances=find_resonances(case, solved.machine, solved.trusted_limit),
     )
 

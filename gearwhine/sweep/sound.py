@@ -267,5 +267,5 @@ def _entry(hertz: float, power: float, efficiency: float, heard: Mapping[str, co
         "radiation_efficiency": efficiency,
     }
     if heard:
-        entry["microphones_db"] = {name: float(pressure_level(one)) for name, one in heard.items()}
+        entry["microphones_db"] = {name: float(pressure_level(pressure)) for name, pressure in heard.items()}
     return entry

@@ -256,7 +256,7 @@ def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]
             draw_system_campbell("Coupled modes over speed", solved.campbell, operating_speed=speed),
         )
     meshes = [frequency for frequency in mesh_frequencies(case) if frequency > 0.0] if case.gear_pair else []
-    pairs = [one.excitation.removeprefix("transmission error of ") for one in solved.responses]
+    pairs = [response.excitation.removeprefix("transmission error of ") for response in solved.responses]
     # An arrow is no letter of a file's name.
     named = [name.replace(" -> ", "-") for name in pairs]
     for stem, name, response in zip(file_stems(named, "transmissibility-"), pairs, solved.responses, strict=True):

@@ -196,7 +196,7 @@ def fragment(sections: Sequence[Section]) -> str:
     places = Places()
     places.add_sections("", sections, {})
     writer = Writer("", places, {}, {})
-    body = "".join(writer.chapter(one) if one.title else writer.content(one) for one in sections)
+    body = "".join(writer.chapter(section) if section.title else writer.content(section) for section in sections)
     return f'<div class="gearwhine"><style>{_FRAGMENT_STYLE}</style>\n{body}</div>'
 
 

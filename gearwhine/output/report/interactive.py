@@ -68,7 +68,7 @@ class Scripts:
     def curves(self, dataset: Any, section: Section) -> str:
         """Return frames for the curves that a section declares and a results file holds; keep their data."""
         try:
-            drawings = [one for declared in section.curves for one in _drawings(dataset, declared)]
+            drawings = [drawing for declared in section.curves for drawing in _drawings(dataset, declared)]
         except (OSError, ValueError):
             return ""
         frames = []

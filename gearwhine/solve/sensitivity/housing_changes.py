@@ -47,9 +47,9 @@ def housing_fields(
         housing.mesh,
         element_constants(parted, material, materials),
         housing.modes.displacement(point.housing, every),
-        np.array([housing.modes.displacement(one.housing, every) for one in adjoints]),
-        {one.name: one.force for one in point.bearings},
-        {bearing.name: np.array([one.force(bearing.name) for one in adjoints]) for bearing in point.bearings},
+        np.array([housing.modes.displacement(adjoint.housing, every) for adjoint in adjoints]),
+        {bearing.name: bearing.force for bearing in point.bearings},
+        {bearing.name: np.array([adjoint.force(bearing.name) for adjoint in adjoints]) for bearing in point.bearings},
         np.zeros(3) if gravity is None else np.array(gravity),
     )
 
@@ -112,7 +112,7 @@ def slopes_of(changes: Sequence[HousingChange]) -> FloatArray:
 
 def by_changes(fields: StaticSensitivity, changes: Sequence[HousingChange]) -> FloatArray:
     """Differentiate each outcome by the parameters of changes [outcome/SI], shape (n_adjoints, n_parameters)."""
-    by_coordinates = fields.by_parameters([one.rate for one in changes], [one.bearings for one in changes])
+    by_coordinates = fields.by_parameters([change.rate for change in changes], [change.bearings for change in changes])
     return np.asarray(by_coordinates / slopes_of(changes))
 
 
@@ -218,7 +218,7 @@ def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[st
     places = bearing_places(case)
     return (
         {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {one.name: sensor_port(mesh, one.build()).matrix for one in case.housing.sensor},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in case.housing.sensor},
     )
 
 

@@ -187,7 +187,7 @@ class LoadSensitivity:
     @property
     def sound_power(self) -> float:
         """Power that is ranked: of one line, or A-weighted of all [W]."""
-        return float(self.sound_weights @ [one.line.value for one in self.loudest_lines])
+        return float(self.sound_weights @ [loud_line.line.value for loud_line in self.loudest_lines])
 
     def sensor_changes(self, influence: Influence) -> list[LineChange]:
         """Pair the sensors' lines with their changes by the step of a parameter."""
@@ -201,7 +201,7 @@ class LoadSensitivity:
         """Change of the A-weighted power of the sound's lines together by the step of a parameter."""
         weights, changes = sound_weights(self.loudest_lines, None), self.sound_changes(influence)
         value, first_order, change, reverse = (
-            float(weights @ [getattr(one, attribute) for one in changes])
+            float(weights @ [getattr(change, attribute) for change in changes])
             for attribute in ("value", "first_order", "change", "reverse")
         )
         return LineChange(value, changes[0].decibels, first_order, change, reverse)
@@ -217,4 +217,4 @@ class LoadSensitivity:
 
 def sound_weights(lines: "Sequence[HarmonicSound]", chosen: int | None) -> FloatArray:
     """Weights of the sound's lines: one for a chosen line, else those of the frequency weighting A."""
-    return np.array([one.weighting if chosen is None else float(n == chosen) for n, one in enumerate(lines)])
+    return np.array([line.weighting if chosen is None else float(n == chosen) for n, line in enumerate(lines)])

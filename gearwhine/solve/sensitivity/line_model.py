@@ -69,7 +69,7 @@ class SolvedLines:
     @property
     def lines(self) -> tuple[Line, ...]:
         """Lines of the sensors, and then of the sound."""
-        return (*self.of_sensors, *(one.line for one in self.sound))
+        return (*self.of_sensors, *(sound.line for sound in self.sound))
 
     def cause(self, line: Line) -> str:
         """Return the mesh harmonics that drive a line, in words."""
@@ -184,10 +184,10 @@ def solve_lines(
     extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
-        ports = [one.matrix for one in housing.sensors.values()]
+        ports = [sensor.matrix for sensor in housing.sensors.values()]
         modes = extension.with_ports(modes, ports, orders=RESPONSE_ORDERS)
     about = machine.at_operating_point(point)
-    pairs = solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+    pairs = solve_gears(case, progress, {pair.names: pair.station_gap for pair in point.pairs})
     components = about.rotor_components(progress=progress)
     excitation = driving(case, components)
     misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
@@ -207,7 +207,7 @@ def solve_lines(
         return None
     progress("responses of the housing at the lines")
     exact = extension.with_harmonic_responses(modes, _housing_loads(first))
-    return solved(exact, [one.line.frequency for one in first.sound])
+    return solved(exact, [sound.line.frequency for sound in first.sound])
 
 
 def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "HousingRadiation | None":

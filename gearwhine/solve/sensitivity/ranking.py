@@ -307,7 +307,7 @@ def solve_load_sensitivity(
         changes, note = housing_changes(case, fields.mesh)
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
-    influences.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
+    influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
     )

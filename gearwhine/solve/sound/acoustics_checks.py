@@ -102,7 +102,7 @@ def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
 def microphones_of(case: Case, mesh: Mesh) -> tuple[dict[str, FloatArray], float | None]:
     """Positions of a case's microphones [m], and the area of the box that the last nine stand on [m²]."""
     assert case.acoustics is not None
-    microphones = {one.name: np.array(one.position) for one in case.acoustics.microphone}
+    microphones = {microphone.name: np.array(microphone.position) for microphone in case.acoustics.microphone}
     if case.acoustics.microphone_box is None:
         return microphones, None
     assert case.acoustics.floor is not None
@@ -270,7 +270,7 @@ def _surface_problems(case: Case, acoustics: Acoustics, mesh: Mesh) -> Iterator[
         )
         elements = BoundaryElements(surface, _medium(acoustics))
         # The box stands on the floor, so that its microphones cannot be checked.
-        positions = {one.name: positions[one.name] for one in acoustics.microphone}
+        positions = {microphone.name: positions[microphone.name] for microphone in acoustics.microphone}
     if is_size_known:
         try:
             elements.require_few()

@@ -111,8 +111,8 @@ def _candidates(model: LineModel, radiation: HousingRadiation, responses: Sequen
     """Return the responses of the most A-weighted power by an estimate."""
     if not responses:
         return []
-    hertz = np.array([one.frequency for one in responses]) / _TWO_PI
-    rates = np.array([1j * one.frequency * one.motion[model.housing] for one in responses]).T
+    hertz = np.array([response.frequency for response in responses]) / _TWO_PI
+    rates = np.array([1j * response.frequency * response.motion[model.housing] for response in responses]).T
     efficiency = pulsating_efficiency(hertz, radiation.area, radiation.medium.speed_of_sound)
     estimate = radiation.equivalent_power(rates) * efficiency * 10.0 ** (0.1 * a_weighting(hertz))
     order = np.argsort(-estimate, kind="stable")[:_CANDIDATES]

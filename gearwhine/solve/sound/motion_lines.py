@@ -176,13 +176,13 @@ def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]
     first = next(iter(spectra.values()))
     together = Spectrum(
         first.frequencies,
-        np.concatenate([one.amplitude for one in spectra.values()]),
-        np.concatenate([one.phase for one in spectra.values()]),
+        np.concatenate([spectrum.amplitude for spectrum in spectra.values()]),
+        np.concatenate([spectrum.phase for spectrum in spectra.values()]),
         first.window,
     )
     weights = [float(axis < _FORCES) for name in spectra for axis in axes[name]]
     tones = hann_tones(together, weights)
-    ends = np.cumsum([len(one.amplitude) for one in spectra.values()])[:-1]
+    ends = np.cumsum([len(spectrum.amplitude) for spectrum in spectra.values()])[:-1]
     parts = np.split(tones.amplitudes, ends)
     forces = {name: np.asarray(part.T) for name, part in zip(spectra, parts, strict=True)}
     return MotionLines(tones.frequencies, forces, _FOUND * first.spacing)
@@ -259,7 +259,9 @@ def left_out_lines(
     turning_hz = abs(machine.speeds[machine.leading_rotor]) / _TWO_PI
     for line in excitation_lines(machine, shaft_orders=(), mesh_harmonics=_HARMONICS):
         hertz = line.order * turning_hz
-        if hertz <= limit * (1.0 + 1e-9) or any(abs(one.frequency_hz - hertz) <= motion.tolerance for one in left_out):
+        if hertz <= limit * (1.0 + 1e-9) or any(
+            abs(line.frequency_hz - hertz) <= motion.tolerance for line in left_out
+        ):
             continue
         at_line = np.abs(motion.frequencies - hertz) <= motion.tolerance
         left_out.append(

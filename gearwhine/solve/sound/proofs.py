@@ -47,7 +47,7 @@ def known_source_at(sound: RadiatedSound, places: FloatArray) -> FloatArray | No
 
 
 def _is_closed(sound: RadiatedSound) -> bool:
-    return any(isinstance(one, SoundField) and not one.baffled for one in sound.fields)
+    return any(isinstance(field, SoundField) and not field.baffled for field in sound.fields)
 
 
 def doubts(sound: RadiatedSound, source: str) -> list[dict[str, Any]]:
@@ -73,7 +73,7 @@ def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[
     errors : mapping of str to float
         Relative error of known sources at each microphone; the largest is reported.
     """
-    name = max(errors, key=lambda one: errors[one], default=None)
+    name = max(errors, key=lambda source: errors[source], default=None)
     if name is None or not SOURCE_HEARD < errors[name] < np.inf:
         return []
     message = (
@@ -91,11 +91,13 @@ def gathered(warnings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     warnings : sequence of dict
         Warnings of any kind; those of other kinds stay as they are.
     """
-    merged = [one for one in warnings if one["name"] not in _GATHERED]
+    merged = [entry for entry in warnings if entry["name"] not in _GATHERED]
     for name in _GATHERED:
-        alike = [one for one in warnings if one["name"] == name]
+        alike = [entry for entry in warnings if entry["name"] == name]
         if alike:
-            worst_entry = max(alike, key=lambda one: np.inf if one["relative"] is None else float(one["relative"]))
+            worst_entry = max(
+                alike, key=lambda entry: np.inf if entry["relative"] is None else float(entry["relative"])
+            )
             others = len(alike) - 1
             more = f" ({others} more {'is' if others == 1 else 'are'} doubtful, too)" if others else ""
             merged.append(worst_entry | {"message": worst_entry["message"] + more, "count": len(alike)})

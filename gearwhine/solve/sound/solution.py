@@ -249,19 +249,19 @@ class SolvedSound:
     @property
     def power_balance_db(self) -> float | None:
         """Power balance of the line or mode where it is worst, of those that count [dB]; None of an estimate."""
-        balances = [one.power_balance_db for one in self._counted if one.power_balance_db is not None]
+        balances = [sound.power_balance_db for sound in self._counted if sound.power_balance_db is not None]
         return max(balances, key=abs, default=None)
 
     @property
     def interior_pressure(self) -> float | None:
         """Pressure inside, of the line or mode where it is largest, of those that count; None without an inside."""
-        pressures = [one.interior_pressure for one in self._counted if one.interior_pressure is not None]
+        pressures = [sound.interior_pressure for sound in self._counted if sound.interior_pressure is not None]
         return max(pressures, default=None)
 
     @property
     def known_source(self) -> SourceError | None:
         """Error of known sources, of the line or mode where it is largest, of those that count; None without one."""
-        errors = [one.known_source for one in self._counted if one.known_source is not None]
+        errors = [sound.known_source for sound in self._counted if sound.known_source is not None]
         return max(errors, key=lambda error: error.largest, default=None)
 
     @property
