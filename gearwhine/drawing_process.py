@@ -1,8 +1,8 @@
 """Drawing process: VTK in a process of its own, so that its crash is reported and the command goes on.
 
-The process is named folders, one a line, and finds in each plain data: a file of arrays (``.npz``, without pickled
-objects) and a file of JSON. It answers in lines of JSON: what it draws now, and at last the names of the files, or what
-went wrong.
+The process reads the names of folders, one a line, and in each folder plain data: a file of arrays (``.npz``, without
+pickled objects) and a file of JSON. It answers in lines of JSON: its progress, and at last the names of the files, or
+the error.
 """
 
 import json
@@ -65,7 +65,7 @@ def draw_in_process(
     RendererUnavailableError
         Where no library draws without a display, or the drawing process dies.
     EncoderUnavailableError
-        Where MP4 is asked for and nothing encodes it.
+        Where MP4 is asked for and no encoder is available.
     """
     task = {
         "folder": str(folder),
@@ -75,14 +75,14 @@ def draw_in_process(
         "sheet": sheet,
         "shapes": [{key: getattr(shape, key) for key in _CAPTIONS} for shape in shapes],
     }
-    with one_process(), tempfile.TemporaryDirectory() as desk:
+    with one_process(), tempfile.TemporaryDirectory() as task_folder:
         arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
         arrays |= {f"values_{i}": shape.values for i, shape in enumerate(shapes) if shape.values is not None}
-        np.savez(Path(desk) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
-        (Path(desk) / "task.json").write_text(json.dumps(task), encoding="utf-8")
+        np.savez(Path(task_folder) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
+        (Path(task_folder) / "task.json").write_text(json.dumps(task), encoding="utf-8")
         process = _kept.get()
         assert process is not None
-        answer = process.answer(desk, progress)
+        answer = process.answer(task_folder, progress)
         if "failed" in answer:
             kind = {error.__name__: error for error in _ERRORS}[answer["failed"]]
             raise kind(answer["message"])
@@ -101,11 +101,11 @@ class _DrawingProcess:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the process: all that it was asked is on file, or is not wanted any more."""
+        """End the process: its pictures are on file, or no longer wanted."""
         self._end()
 
-    def answer(self, desk: str, progress: Progress) -> dict[str, Any]:
-        """Have the task on a desk done.
+    def answer(self, folder: str, progress: Progress) -> dict[str, Any]:
+        """Have the process draw the task in a folder.
 
         Raises
         ------
@@ -120,16 +120,16 @@ class _DrawingProcess:
         assert process.stdin is not None
         assert process.stdout is not None
         with suppress(BrokenPipeError):  # of one that has died: it has no answer, and its last words are told
-            process.stdin.write(json.dumps(desk) + "\n")
+            process.stdin.write(json.dumps(folder) + "\n")
             process.stdin.flush()
-        found = _follow(process.stdout, progress)
-        if not found:
+        reply = _follow(process.stdout, progress)
+        if not reply:
             code = process.wait()
             troubles.seek(0)
-            said = troubles.read()
+            errors = troubles.read()
             self._end()
-            raise RendererUnavailableError(_how_it_died(code, said))
-        return found
+            raise RendererUnavailableError(_how_it_died(code, errors))
+        return reply
 
     def _start(self) -> None:
         self._troubles = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115 - closed by _end
@@ -146,7 +146,7 @@ class _DrawingProcess:
         process, troubles = self._process, self._troubles
         self._process = self._troubles = None
         if process is not None:
-            # Not asked to end by itself: to close its window takes longer than to draw a shape.
+            # The process is killed: closing its window takes longer than drawing a shape.
             process.kill()
             process.wait()
             for pipe in (process.stdin, process.stdout):
@@ -178,8 +178,8 @@ def _how_it_died(code: int, troubles: str) -> str:
     how = f"ended with exit code {code}"
     if code < 0:
         how = f"was ended by signal {-code} ({signal.strsignal(-code)})"
-    said = [line for line in troubles.splitlines() if line.strip()]
-    last = f"; its last words: {said[-1].strip()[:300]}" if said else ""
+    lines = [line for line in troubles.splitlines() if line.strip()]
+    last = f"; its last words: {lines[-1].strip()[:300]}" if lines else ""
     return (
         f"the renderer {how}{last}\n"
         "Pictures need a working EGL or OSMesa: on Debian or Ubuntu sudo apt-get install libegl1 libegl-mesa0 libgl1; "
@@ -199,7 +199,7 @@ def _tell(document: dict[str, Any]) -> None:
 
 
 def _draw(desk: Path) -> list[str]:
-    """Do the task that lies on the desk."""
+    """Draw the task in a folder."""
     from housing.pictures.images import animate_shapes, render_shapes, render_sheet
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))

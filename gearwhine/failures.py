@@ -2,7 +2,7 @@
 
 
 class PartlyFailedError(RuntimeError):
-    """Some of the work failed; what was done is on file, and the message says how much is missing."""
+    """Some of the work failed; finished parts are on file, and the message gives the number of missing ones."""
 
 
 class WorkersError(RuntimeError):
@@ -10,7 +10,7 @@ class WorkersError(RuntimeError):
 
 
 def explain(error: Exception) -> tuple[int, str | None]:
-    """Exit code and message of a failure; no message where nobody foresaw it and a traceback is due.
+    """Return exit code and message of a failure; an unexpected one has no message and needs a traceback.
 
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
@@ -32,9 +32,9 @@ def explain(error: Exception) -> tuple[int, str | None]:
 
     if isinstance(error, CaseError):
         count = len(error.problems)
-        asked = all(problem.key.startswith(("--", "report")) for problem in error.problems)
-        what = "what is asked for" if asked else "the case"
-        head = f"{what} cannot be used as it stands" if count == 1 else f"{count} problems in {what}"
+        by_option = all(problem.key.startswith(("--", "report")) for problem in error.problems)
+        subject = "what is asked for" if by_option else "the case"
+        head = f"{subject} cannot be used as it stands" if count == 1 else f"{count} problems in {subject}"
         return 2, head + ":\n" + "\n".join(f"  {problem}" for problem in error.problems)
     if isinstance(error, CouplingError | GearError | HousingError | GeometryError | RotorError):
         return 2, str(error)

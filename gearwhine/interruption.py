@@ -14,7 +14,7 @@ T = TypeVar("T")
 _NUMBERS = (signal.SIGINT, signal.SIGTERM)
 
 _AGAIN = 0.05
-"""After how long an interruption that had to wait comes again [s]."""
+"""Delay after which a deferred interruption is raised again [s]."""
 
 _IMPORTING = "<frozen importlib._bootstrap>"
 
@@ -45,7 +45,7 @@ def interruptible() -> Iterator[None]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold back what interrupts the main thread until the block ends.
+    """Defer interruptions of the main thread until the block ends.
 
     For calls of libraries with threads of their own: an interruption that strikes between the taking of a lock and the
     block that gives it back leaves those threads waiting for ever.
@@ -53,56 +53,56 @@ def uninterrupted() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    held: list[int] = []
+    waiting: list[int] = []
     before = {number: signal.getsignal(number) for number in _NUMBERS}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:
-            signal.signal(number, lambda late, _: held.append(late))
+            signal.signal(number, lambda late, _: waiting.append(late))
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-        if held:
-            signal.raise_signal(held[0])
+        if waiting:
+            signal.raise_signal(waiting[0])
 
 
 def each_from_thread(items: Iterable[T]) -> Iterator[T]:
-    """Give what an iterable gives, worked out on a thread of its own where no interruption strikes.
+    """Yield the items of an iterable, which are computed on a thread of their own without interruptions.
 
     The thread that takes the items waits for them where an interruption is safe. An iterable that is left before its
     end goes on until it ends by itself.
     """
-    given: SimpleQueue[tuple[list[T], BaseException | None]] = SimpleQueue()
+    queue: SimpleQueue[tuple[list[T], BaseException | None]] = SimpleQueue()
 
     def work() -> None:
         try:
             for item in items:
-                given.put(([item], None))
+                queue.put(([item], None))
         except BaseException as error:
-            given.put(([], error))
+            queue.put(([], error))
         else:
-            given.put(([], None))
+            queue.put(([], None))
 
     with uninterrupted():
         threading.Thread(target=work, daemon=True).start()
     while True:
-        found, error = given.get()
+        batch, error = queue.get()
         if error is not None:
             raise error
-        if not found:
+        if not batch:
             return
-        yield found[0]
+        yield batch[0]
 
 
 def in_thread(work: Callable[[], T]) -> T:
     """Return the result of a call on a thread of its own; see :func:`each_from_thread`."""
-    (found,) = each_from_thread(work() for _ in range(1))
-    return found
+    (result,) = each_from_thread(work() for _ in range(1))
+    return result
 
 
 _raised: list[int] = []
-"""Interruptions raised so far: what is half built when one strikes falls apart with troubles of its own."""
+"""Interruptions raised so far; objects that are half built at one raise further errors."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -33,28 +33,28 @@ FloatArray = npt.NDArray[np.float64]
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _PER_MM_DM2 = 10.0  # µrad by mm dm², in one rad/m³
-_SHOWN_PART = 0.98  # of a surface's points, by which the scale of a density ends: it grows beyond bounds in sharp edges
+_SHOWN_PART = 0.98  # quantile of a density that ends its scale, since densities are unbounded in sharp edges
 _DECADES = 1.0 / np.log(10.0)  # decades of a relative change
 _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
 _DOMINANT = 8
-_OPPOSITE = {"iso": "iso-opposite"}  # the other side of a view, for what both sides have
-_MOVING_LINES, _MOVING_MODES = 6, 60  # shapes of a report that move, at most
-_BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # of all their models, compressed and in base64
-_TRIANGLES = 1500, 10000  # of each, at least and at most
+_OPPOSITE = {"iso": "iso-opposite"}  # opposite view, for pictures of both sides
+_MOVING_LINES, _MOVING_MODES = 6, 60  # largest numbers of operating shapes and modes that move in a report
+_BYTES, _BYTES_OF_TRIANGLE = 4e6, 20.0  # size of all their models, and of a triangle, compressed and in base64
+_TRIANGLES = 1500, 10000  # least and largest number of triangles of a model
 
 
 def check_request(
     case: Case, which: str | None, mode_format: ModeFormat, lines: Sequence[float], *, measured: bool
 ) -> None:
-    """Refuse what cannot be drawn before anything is solved.
+    """Refuse requests that cannot be drawn, before anything is solved.
 
     Raises
     ------
     CaseError
         For numbers of modes that are none, lines as models or below zero, or measured shapes without a survey.
     housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
-        Where nothing here draws or encodes.
+        Where no renderer or encoder is available.
     """
     if which not in (None, "dominant", "all"):
         parse_numbers(str(which), None)
@@ -99,11 +99,11 @@ def draw_modes(
     ----------
     housing : SolvedHousing
     comparison : Comparison or None
-        With measured modes; those paired with one count as the dominant ones and say so in the picture.
+        Comparison with measured modes; modes with a measured partner count as the dominant ones, as the picture notes.
     which : str
         ``dominant``, ``all``, or numbers as :func:`parse_numbers` reads them.
     view : str
-        From where to look at pictures and films.
+        Direction of view of pictures and films.
     mode_format : {"png", "glb", "gif", "mp4"}
         A picture of each mode and one sheet of all; or a model, or a film, of each.
     place : path
@@ -187,7 +187,7 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
     Parameters
     ----------
     folder : path
-        Empty is the list where it holds no modes of a housing that can be read.
+        Results folder; the list is empty where it holds no readable modes of a housing.
     """
     from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
     from housing.errors import ModeFileError
@@ -204,7 +204,9 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
     shapes = [operating_shape_of_line(line, record.modes, surface) for line in lines]
     shapes += drawn_modes(surface, record.modes, range(1, min(len(record.modes.shapes), _MOVING_MODES) + 1))
     triangles = int(np.clip(_BYTES / (_BYTES_OF_TRIANGLE * len(shapes)), *_TRIANGLES))
-    return [MovingShape(one.name, one.title, one.note, light_model(surface, one, triangles)) for one in shapes]
+    return [
+        MovingShape(shape.name, shape.title, shape.note, light_model(surface, shape, triangles)) for shape in shapes
+    ]
 
 
 def draw_load_pictures(
@@ -212,7 +214,7 @@ def draw_load_pictures(
 ) -> list[dict[str, Any]]:
     """Draw a housing at an operating point, and its sensitivity where that is known; return warnings.
 
-    Without a renderer numbers and figures are there, and a warning says so.
+    Without a renderer a warning says that pictures are missing; numbers and figures remain.
     """
     from gearwhine.drawing_process import one_process
     from housing.errors import RendererUnavailableError
@@ -238,16 +240,16 @@ def draw_deflection(
     ----------
     housing : SolvedHousing
     coordinates : ndarray, shape (n_modes + n_residual,)
-        Of its modes and its residual modes.
+        Coordinates of its modes and its residual modes.
     view : str
-        From where to look.
+        Direction of view.
     place : path
     progress : callable
 
     Raises
     ------
     housing.errors.RendererUnavailableError
-        Where nothing here draws.
+        Where no renderer is available.
     """
     from gearwhine.drawing_process import draw_in_process
     from housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
@@ -276,16 +278,16 @@ def draw_sensitivity(
     ----------
     housing : SolvedHousing
     solved : SolvedLoad
-        In this housing, with its sensitivity.
+        Operating point in this housing, with its sensitivity.
     view : str
-        From where to look.
+        Direction of view.
     place : path
     progress : callable
 
     Raises
     ------
     housing.errors.RendererUnavailableError
-        Where nothing here draws.
+        Where no renderer is available.
     """
     from gearwhine.drawing_process import draw_in_process
     from gearwhine.figures.style import shortened
@@ -337,17 +339,17 @@ def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -
         now = f"{line.value:.3g} m/s²"
         yield _level_shape("load-sensitivity-line", title, now, sensitivity.lines.field(line.motion)[nodes], values)
     if sensitivity.sound_density is not None:
-        powers = sensitivity.sound_weights * [one.line.value for one in sensitivity.loudest_lines]
+        powers = sensitivity.sound_weights * [loud.line.value for loud in sensitivity.loudest_lines]
         line = sensitivity.loudest_lines[int(np.argmax(powers))].line
         level, values = (
             float(power_level(powers.sum())),
             10.0 * _DECADES / powers.sum() * sensitivity.sound_density[nodes],
         )
         if sensitivity.sound_line is None:
-            what, now = f"{len(powers)} loudest lines", f"{level:.1f} dB(A)"
+            subject, now = f"{len(powers)} loudest lines", f"{level:.1f} dB(A)"
         else:
-            what, now = f"Sound at {line.frequency / _TWO_PI:.0f} Hz", f"{level:.1f} dB"
-        title = f"{what}: sound power level by added material"
+            subject, now = f"Sound at {line.frequency / _TWO_PI:.0f} Hz", f"{level:.1f} dB"
+        title = f"{subject}: sound power level by added material"
         yield _level_shape("load-sensitivity-sound", title, now, sensitivity.lines.field(line.motion)[nodes], values)
 
 
@@ -429,15 +431,15 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
 
     every = at_points(np.sum([line.sound.intensity for line in lines], axis=0))
     power = sum(line.sound.power for line in lines)
-    drawn = [("sound-faces-all", "Sound intensity, all lines", every, power)]
+    entries = [("sound-faces-all", "Sound intensity, all lines", every, power)]
     for line in loudest:
         name, title = f"sound-faces-{line.frequency_hz:.1f}Hz", f"Sound intensity at {line.frequency_hz:.0f} Hz"
-        drawn.append((name, title, at_points(line.sound.intensity), line.sound.power))
-    ends = [float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in drawn]
+        entries.append((name, title, at_points(line.sound.intensity), line.sound.power))
+    ends = [float(np.quantile(np.abs(values), _SHOWN_PART)) for *_, values, _ in entries]
     if min(ends) == 0.0:
         return []
     units = ((1.0, "W"), (1e3, "mW"), (1e6, "µW"), (1e9, "nW"))
-    factor, unit = next((one for one in units if one[0] * ends[0] >= 1.0), units[-1])
+    factor, unit = next((scale for scale in units if scale[0] * ends[0] >= 1.0), units[-1])
     beyond = f"{100.0 * (1.0 - _SHOWN_PART):.2g} % lie beyond the scale."
     return [
         DrawnShape(
@@ -449,7 +451,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
             factor * end,
             factor * values,
         )
-        for (name, title, values, power), end in zip(drawn, ends, strict=True)
+        for (name, title, values, power), end in zip(entries, ends, strict=True)
     ]
 
 
@@ -477,22 +479,22 @@ def draw_measured(
     if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
         raise CaseError([Problem("measured.file", UNSAID, "measured shapes of which some are like the model's")])
     geometry, of_model = survey.geometry, mapped_shapes(housing, survey)
-    drawn = []
+    shape_pairs = []
     for pair in comparison.pairs:
         model = of_model[pair.mode - 1]
         laid = laid_over(measured.shapes[pair.measured_mode - 1], model)
         likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
-        drawn.append(
+        shape_pairs.append(
             ShapePair(
                 f"{pair.measured / _TWO_PI:.0f} Hz measured, mode {pair.mode} at {pair.model / _TWO_PI:.0f} Hz "
                 f"({pair.error_percent:+.1f} %{likeness})",
                 point_motions(geometry, laid),
-                # What was not measured is left out of both.
+                # Directions that are not measured are left out of both.
                 point_motions(geometry, np.where(np.isfinite(laid), model, np.nan)),
             )
         )
     title = f"Measured and model shapes: {case.title}"
-    figure = draw_measured_shapes(title, geometry.positions, wireframe(geometry), drawn, viewing_direction(view))
+    figure = draw_measured_shapes(title, geometry.positions, wireframe(geometry), shape_pairs, viewing_direction(view))
     return [save(figure, place / "measured-and-model.png")]
 
 

@@ -45,15 +45,15 @@ def case_html(case: Case) -> str:
     """Return the machine of a case, as the first page of a report has it."""
     from gearwhine.results.first_page import machine_section
 
-    found = machine_section(case)
-    return fragment([Section(case.title or found.title, found.content)])
+    section = machine_section(case)
+    return fragment([Section(case.title or section.title, section.content)])
 
 
 def result_html(command: str, title: str, document: dict[str, Any]) -> str:
     """Return the warnings and chapters of a command's document, as the report has them."""
     from gearwhine.results import chapters_of
 
-    warnings = tuple(Finding(str(one["message"]), passed=False) for one in document["warnings"])
+    warnings = tuple(Finding(str(entry["message"]), passed=False) for entry in document["warnings"])
     head = Section("", (f"gearwhine {command}: {title}", *warnings))
     return fragment([head, *chapters_of(document | {"command": command})])
 
@@ -68,8 +68,8 @@ def machine_html(machine: Machine) -> str:
             "speed_rpm": machine.speeds[shaft.name] * RPM,
             "length_mm": _MM * shaft.rotor.length,
             "mass_kg": float(shaft.rotor.mass),
-            "bearings": ", ".join(one.bearing.name for one in machine.bearings if one.rotor == shaft.name),
-            "gears": ", ".join(one.gear.name for one in machine.gears if one.shaft == shaft.name),
+            "bearings": ", ".join(mounted.bearing.name for mounted in machine.bearings if mounted.rotor == shaft.name),
+            "gears": ", ".join(entry.gear.name for entry in machine.gears if entry.shaft == shaft.name),
         }
         for shaft in machine.shafts
     ]

@@ -9,11 +9,11 @@ from contextlib import contextmanager
 from typing import Protocol, TypeVar
 
 Item = TypeVar("Item")
-Found = TypeVar("Found")
+Solution = TypeVar("Solution")
 
 _THREADS = 2
 _OFTEN = 30.0  # seconds between reports of long work
-_WORTH_SAYING = 5.0  # seconds left, from which on they are shown
+_WORTH_SAYING = 5.0  # least time left that is shown [s]
 
 
 class Progress(Protocol):
@@ -31,25 +31,25 @@ def silent(message: str, fraction: float | None = None) -> None:
 
 
 def in_order(
-    solve: Callable[[Item], Found], items: Sequence[Item], what: str, progress: Progress = silent
-) -> tuple[Found, ...]:
+    solve: Callable[[Item], Solution], items: Sequence[Item], message: str, progress: Progress = silent
+) -> tuple[Solution, ...]:
     """Solve for each item on two threads under the progress; the results are in the order of the items.
 
     Parameters
     ----------
     solve : callable
-        Of one item; it releases the interpreter in its long work.
+        Solution of one item; it releases the interpreter in its long work.
     items : sequence
-    what : str
+    message : str
         The work in words.
     progress : callable
     """
-    found: list[Found] = []
+    results: list[Solution] = []
     with ThreadPoolExecutor(_THREADS) as pool:
-        for one in pool.map(solve, items):
-            found.append(one)
-            progress(what, len(found) / len(items))
-    return tuple(found)
+        for result in pool.map(solve, items):
+            results.append(result)
+            progress(message, len(results) / len(items))
+    return tuple(results)
 
 
 @contextmanager
@@ -58,11 +58,11 @@ def shown(*, quiet: bool) -> Iterator[Progress]:
     if quiet:
         yield silent
     elif sys.stderr.isatty():
-        with _live() as progress, _with_compilation(progress) as both:
-            yield both
+        with _live() as progress, _with_compilation(progress) as combined:
+            yield combined
     else:
-        with _with_compilation(_lines()) as both:
-            yield both
+        with _with_compilation(_lines()) as combined:
+            yield combined
 
 
 _COMPILER = "rotors.numerics.compiled"  # named, not imported: with numba it takes longer than many a command
@@ -125,11 +125,11 @@ def _live() -> Iterator[Progress]:
 
 def _lines() -> Progress:
     start = time.perf_counter()
-    last, printed, said = "", 0, start
+    last, printed, reported = "", 0, start
     begun = (start, 0.0)
 
     def progress(message: str, fraction: float | None = None) -> None:
-        nonlocal last, printed, said, begun
+        nonlocal last, printed, reported, begun
         tenths = 0 if fraction is None else int(10 * fraction)
         now = time.perf_counter()
         news = message != last and _work(message) == _work(last)
@@ -138,9 +138,9 @@ def _lines() -> Progress:
                 # Work that goes on from where it was left does not begin at 0.
                 begun = (now, fraction or 0.0)
             last, printed = message, 0
-        elif (tenths <= printed or tenths % 5) and (fraction is None or now - said < _OFTEN):
+        elif (tenths <= printed or tenths % 5) and (fraction is None or now - reported < _OFTEN):
             return
-        printed, said = tenths, now
+        printed, reported = tenths, now
         part = ""
         if fraction is not None and fraction >= 0.005 and not news:
             part = f" {100 * fraction:.0f} %{_time_left(begun, now, fraction)}"

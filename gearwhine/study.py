@@ -40,10 +40,10 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     Parameters
     ----------
     source : str or path
-        A case file (TOML), or the name of a bundled case.
+        Case file (TOML), or name of a bundled case.
     changes : mapping or sequence of str
         Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
-        such as ``"housing.box.mesh_size=20 mm"``. An empty text takes a key out.
+        such as ``"housing.box.mesh_size=20 mm"``. An empty text removes a key.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
     Parameters
     ----------
     folder : path
-        Where relative file names start.
+        Folder in which relative file names start.
     **tables
         The tables of a case: dictionaries with the keys of a case file, or the classes of :mod:`gearwhine.case`.
         Quantities are numbers in SI or texts with units.
@@ -94,7 +94,7 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
 
 @dataclass(frozen=True)
 class _Origin:
-    """What a study's case is read from: a file or a bundled case, or tables; and changes of its keys."""
+    """Source of a study's case: a file or a bundled case, or tables; and changes of its keys."""
 
     file: str | None = None
     tables: Mapping[str, object] = field(default_factory=dict)
@@ -122,9 +122,9 @@ class Study:
     Attributes
     ----------
     case : Case
-        Checked, in SI.
+        Checked case, in SI.
     warnings : tuple of str
-        Allowed but unlikely choices in the case.
+        Allowed but implausible choices in the case.
     progress : callable
         Receives the progress of long work in words; silent by default.
     """
@@ -163,26 +163,26 @@ class Study:
             With everything that is wrong.
         """
         origin = replace(self._origin, changes=(*self._origin.changes, *_texts(changes)))
-        other = Study(origin, self.progress)
-        if self.case.housing is not None and other.case.housing is not None:
+        study = Study(origin, self.progress)
+        if self.case.housing is not None and study.case.housing is not None:
             from gearwhine.solve.housing_modes import housing_key
 
-            if housing_key(self.case) == housing_key(other.case):
-                other._kept = self._kept
-        return other
+            if housing_key(self.case) == housing_key(study.case):
+                study._kept = self._kept
+        return study
 
     @property
     def housing(self) -> SolvedHousing | None:
         """The solved housing, which the first call meshes and solves; None in a case without one."""
-        return self._solved_housing(heard=False)
+        return self._solved_housing(with_sound=False)
 
-    def _solved_housing(self, *, heard: bool) -> SolvedHousing | None:
+    def _solved_housing(self, *, with_sound: bool) -> SolvedHousing | None:
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         if self._kept.solved is None and self.case.housing is not None:
             from gearwhine.solve.housing_modes import solve_housing
             from gearwhine.solve.sound import check_before_modes
 
-            before = check_before_modes(self.case) if heard else None
+            before = check_before_modes(self.case) if with_sound else None
             self._kept.solved = solve_housing(self.case, self.progress, before=before)
         return self._kept.solved
 
@@ -296,7 +296,7 @@ class Study:
             sensitivity=sensitivity,
             line=line,
             rigid_seats=rigid_seats,
-            housing=None if rigid_seats else self._solved_housing(heard=sensitivity or line is not None),
+            housing=None if rigid_seats else self._solved_housing(with_sound=sensitivity or line is not None),
             progress=self.progress,
         )
 
@@ -341,7 +341,7 @@ class Study:
         """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`."""
         from gearwhine.analyses import machine
 
-        return machine.sound(self.case, housing=self._solved_housing(heard=True), progress=self.progress)
+        return machine.sound(self.case, housing=self._solved_housing(with_sound=True), progress=self.progress)
 
     def simulate(self) -> Result[RunSolution]:
         """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
@@ -353,7 +353,7 @@ class Study:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
         from gearwhine.analyses import run
 
-        return run.run(self.case, housing=self._solved_housing(heard=True), pictures=False, progress=self.progress)
+        return run.run(self.case, housing=self._solved_housing(with_sound=True), pictures=False, progress=self.progress)
 
     def sweep(
         self,
@@ -370,16 +370,16 @@ class Study:
         over : sequence of str
             Values of keys, such as ``"operation.torque=10 N*m:100 N*m:10"``, beside the speeds of `[sweep]`.
         folder : path
-            Where the points are stored; those that it holds already are not done again.
+            Folder of the points; those that it holds already are not solved again.
         workers : int, optional
             Number of processes; as many as cores by default.
         fresh : bool
-            Whether to do all points anew.
+            Whether to solve all points anew.
 
         Raises
         ------
         CaseError
-            Where a key cannot be swept, or the case was not read from a file or a bundled case.
+            Where a key cannot be swept, or the case is not read from a file or a bundled case.
         """
         from gearwhine.analyses import machine
         from gearwhine.case import CaseError, Problem

@@ -28,9 +28,9 @@ _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
 )
 _FIND_SCHEDULER = "10s"
-# Longer than a process takes to start on the slowest machine; without an end, one that never comes is waited for.
+# Longer than a process takes to start on the slowest machine; after it, a missing worker is an error.
 _WORKERS_COME = 300.0  # seconds
-# What is still open then ends with this process.
+# Whatever is still open after this time ends with this process.
 _CLOSES = 10.0  # seconds
 
 
@@ -46,18 +46,18 @@ def connected(
     """Yield a client of the workers; those started here end with the block, whatever ends it.
 
     They are not waited for here, but by :func:`await_workers`. Workers of our own die with this process even where it
-    is killed. A worker that dies is replaced, and what it was at is done again.
+    is killed. A worker that dies is replaced, and its task is done again.
 
     Parameters
     ----------
-    workers
+    workers : int
         Number of processes to start.
-    scheduler
+    scheduler : str or None
         Address of a cluster that runs already, whose workers are used in place of our own.
-    place
-        In which Dask keeps files while it runs.
-    plugins
-        Of each worker of our own, as it starts.
+    place : path
+        Folder in which Dask stores files while it runs.
+    plugins : sequence of WorkerPlugin
+        Plugins of each worker of our own, as it starts.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def await_workers(client: Client, workers: int) -> None:
 def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
-    others = set(multiprocessing.active_children())
+    earlier = set(multiprocessing.active_children())
     with ExitStack() as ended:
         try:
             with uninterrupted(), _without_ctrl_c():
@@ -123,7 +123,7 @@ def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) 
                     dashboard_address="127.0.0.1:0",
                     scheduler_kwargs={"dashboard": False},
                 )
-                ended.callback(_end, cluster, others)
+                ended.callback(_end, cluster, earlier)
         except (OSError, RuntimeError, TimeoutError) as error:
             raise WorkersError(f"the workers did not start: {error}") from error
         with uninterrupted():
@@ -139,14 +139,14 @@ def _close(client: Client) -> None:
         client.close(timeout=_CLOSES)
 
 
-def _end(cluster: LocalCluster, others: set[BaseProcess]) -> None:
-    """End a cluster of our own with its workers: all processes started from this one but the others."""
-    # What they hold has been handed back or is not wanted, and waiting for them to end takes seconds; those that are
-    # starting still, the cluster does not know yet.
+def _end(cluster: LocalCluster, earlier: set[BaseProcess]) -> None:
+    """End a cluster of our own with its workers: all processes started from this one except earlier ones."""
+    # Their results are back or not wanted, and waiting for them to end takes seconds. The cluster does not know of
+    # workers that are still starting.
     with uninterrupted(), suppress(TimeoutError):
         for nanny in cluster.workers.values():
             nanny.auto_restart = False
-        for process in set(multiprocessing.active_children()) - others:
+        for process in set(multiprocessing.active_children()) - earlier:
             process.kill()
         cluster.close(timeout=_CLOSES)
 

@@ -26,7 +26,7 @@ def check(case: Case, *, progress: Progress = silent) -> Result[CheckedCase]:
     ----------
     case : Case
     progress : callable
-        Told where the file of a geometry is read.
+        Receives the step in words where the file of a geometry is read.
 
     Raises
     ------
@@ -56,14 +56,14 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     """Copy a bundled case into a folder, with the files that it reads; none of their names may stand there yet."""
-    known = ", ".join(bundled_cases())
+    names = ", ".join(bundled_cases())
     sources = bundled_files(name) if name is not None else ()
     if not sources:
-        raise CaseError([Problem("examples copy", name, f"one of: {known}")])
-    taken = [str(folder / source.name) for source in sources if (folder / source.name).exists()]
-    if taken:
+        raise CaseError([Problem("examples copy", name, f"one of: {names}")])
+    existing = [str(folder / source.name) for source in sources if (folder / source.name).exists()]
+    if existing:
         expected = "a place where no file of that name stands yet"
-        raise CaseError([Problem("examples copy", target, expected) for target in taken])
+        raise CaseError([Problem("examples copy", target, expected) for target in existing])
     with staging(folder) as place:
         for source in sources:
             (place / source.name).write_bytes(source.read_bytes())
@@ -78,9 +78,9 @@ def write_report(
     Parameters
     ----------
     folder : path
-        With results of one command or several.
+        Folder with results of one command or several.
     case : Case, optional
-        By default that of the newest result.
+        Case of the results; by default that of the newest one.
     interactive : bool
         Whether shapes move, curves can be zoomed and tables be sorted: ``report-interactive.html`` in place of
         ``report.html``, which has no script.
@@ -111,9 +111,9 @@ def _stored_case(folder: Path) -> Case | None:
     """Return the case of the newest result in a folder; None where it, or a file that it names, cannot be read."""
     from gearwhine.output.store import stored_results
 
-    for own, _ in stored_results(folder)[:1]:
+    for place, _ in stored_results(folder)[:1]:
         try:
-            return load_case(folder / own / "case.toml").case
+            return load_case(folder / place / "case.toml").case
         except (CaseError, OSError):
             return None
     return None
@@ -135,9 +135,9 @@ def export_results(
     Parameters
     ----------
     folder : path
-        With results of one command or several.
+        Folder with results of one command or several.
     case : Case, optional
-        Gives the positions of the sensors; by default that of the newest result.
+        Case with the positions of the sensors; by default that of the newest result.
     formats : sequence of {"csv", "uff", "wav"}
         Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors
         and sound pressures of the microphones as sound.
@@ -150,13 +150,13 @@ def export_results(
     Returns
     -------
     dict
-        ``tables``, ``universal_files`` and ``sounds``, each a list of files with what they hold.
+        ``tables``, ``universal_files`` and ``sounds``, each a list of files with their contents.
 
     Raises
     ------
     CaseError
         Where the folder holds no results, or nothing that can be written in any of these formats, or the length is
-        none.
+        outside its range.
     """
     from gearwhine.output import export
     from gearwhine.output.store import stored_results
@@ -172,15 +172,15 @@ def export_results(
         expected = f"a length of sound files from 0 to {export.LONGEST_SOUND:g} s"
         raise CaseError([Problem("export --seconds", length, expected)])
     with staging(folder) as place:
-        own = place / _EXPORTS
-        own.mkdir()
+        exports = place / _EXPORTS
+        exports.mkdir()
         if "csv" in formats:
-            document["tables"] = export.write_tables(folder, chapters_of, own)
+            document["tables"] = export.write_tables(folder, chapters_of, exports)
         if "uff" in formats:
-            document["universal_files"] = export.write_universal_files(folder, own, _sensors(case), signals)
+            document["universal_files"] = export.write_universal_files(folder, exports, _sensors(case), signals)
         if "wav" in formats:
-            document["sounds"] = export.write_sounds(folder, own, seconds=length)
-        files = sorted(path.relative_to(place).as_posix() for path in own.iterdir())
+            document["sounds"] = export.write_sounds(folder, exports, seconds=length)
+        files = sorted(path.relative_to(place).as_posix() for path in exports.iterdir())
         if not files:
             expected = f"results with what can be written as {', '.join(formats)}"
             how = "run the case with [transient], and with sensors, or with [acoustics] and microphones"
@@ -208,7 +208,7 @@ def _either(row: Document, quantity: str) -> float:
 
 
 def export_sections(document: Document) -> tuple[Section, ...]:
-    """Return what was exported, as tables."""
+    """Return the exported files as tables."""
     sounds = (
         Column("file", "file"),
         Column("sensor or microphone", lambda row: str(row.get("sensor", row.get("microphone")))),

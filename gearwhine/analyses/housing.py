@@ -59,14 +59,14 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
 
     progress("meshing the housing")
     remarks: list[str] = []
-    made = build_mesh(case, remarks.append)
-    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, made)
-    warnings += mesh_health.resolution_warnings(case, made, case.housing.frequency_limit if case.housing else None)
+    meshed = build_mesh(case, remarks.append)
+    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, meshed)
+    warnings += mesh_health.resolution_warnings(case, meshed, case.housing.frequency_limit if case.housing else None)
 
     def files(place: Path, *, pictures: bool) -> None:
-        write_mesh(made, place / f"mesh.{suffix}")
+        write_mesh(meshed, place / f"mesh.{suffix}")
 
-    return Result("mesh", case, made, mesh_document(made, warnings), _files=files)
+    return Result("mesh", case, meshed, mesh_document(meshed, warnings), _files=files)
 
 
 def modes(
@@ -84,13 +84,13 @@ def modes(
     ----------
     case : Case
     detail : bool
-        Also effective masses, what each support holds, and which modes carry the bearings' forces.
+        Whether to report effective masses, supports, and the modes that carry the bearings' forces as well.
     housing : SolvedHousing, optional
-        Where it is solved already.
+        Solved housing, where it exists already.
     folder : path, optional
-        A results folder, whose modes of the same housing are read in place of solving.
+        Results folder, whose modes of the same housing are read in place of solving.
     fresh : bool
-        Solve also where they are.
+        Whether to solve the modes even where they are cached.
     progress : callable
 
     Raises
@@ -129,7 +129,7 @@ def compare(
     Parameters
     ----------
     case : Case
-        With `[measured]`.
+        Case with `[measured]`.
     housing, folder, fresh, progress
         As :func:`modes`.
 
@@ -189,16 +189,16 @@ def survey(
     ----------
     case : Case
     sensors : int
-        How many, each along the normal of the surface.
+        Number of sensors, each along the normal of the surface.
     modes : int, optional
-        For how many of the lowest modes; all that are known by default.
+        Number of the lowest modes to separate; by default all that are known.
     housing, folder, fresh, progress
         As :func:`modes`.
 
     Raises
     ------
     CaseError
-        Where so many sensors cannot tell so many modes apart.
+        Where the sensors cannot separate the modes.
     """
     from gearwhine.results.survey import plan_document
 
@@ -221,7 +221,7 @@ def update(
     ----------
     case : Case
     null : int
-        Number of random sets of frequencies that are fitted too: how often the fit would be as good of nothing.
+        Number of random sets of frequencies that are fitted as well, as a test of the null hypothesis.
     held_back : bool
         Whether to fit without each measured mode in turn, and predict that one.
     progress : callable
@@ -288,7 +288,7 @@ def render(
     CaseError
         Where something is asked for that cannot be drawn.
     housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
-        Where nothing here draws or encodes.
+        Where no renderer or encoder is available.
     """
     modes = modes or (None if lines or measured else "dominant")
     check_request(case, modes, mode_format, lines, measured=measured)

@@ -61,9 +61,9 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     """
     solved = solve_rotors(case, progress)
     document = rotors_document(solved)
-    for one in solved:
-        fast = [(name, state.bearing, one.operation or 0.0) for name, state in one.rolling.items()]
-        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in one.rolling.items()}
+    for rotor in solved:
+        fast = [(name, state.bearing, rotor.operation or 0.0) for name, state in rotor.rolling.items()]
+        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in rotor.rolling.items()}
         add_warnings(document, centrifugal_warnings(fast, loads))
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
@@ -94,7 +94,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     ----------
     case : Case
     folder : path, optional
-        A results folder, whose housing modes are read where a tip relief aims at a sensor.
+        Results folder, whose housing modes are read where a tip relief aims at a sensor.
     progress : callable
 
     Raises
@@ -146,14 +146,14 @@ def operating_point(
     ----------
     case : Case
     over_torque : bool
-        Whether to find it from 10 to 150 % of the torque as well.
+        Whether to solve for the equilibria from 10 to 150 % of the torque as well.
     sensitivity : bool
         Whether to rank walls, bearing stiffness and positions by their influence on gear pairs, on sensors' lines and,
         of a case with acoustics, on the sound power of the loudest lines.
     line : str, optional
-        The line that is ranked and drawn, a sensor's name or with its frequency, ``roof@1377``, or a line of the sound,
-        ``sound@1377``; by default the highest, and the A-weighted sound power of the loudest together. It asks for the
-        sensitivity too.
+        Line that is ranked and drawn: a sensor's name, also with its frequency, ``roof@1377``, or a line of the sound,
+        ``sound@1377``; by default the highest, and the A-weighted sound power of the loudest together. It implies
+        ``sensitivity``.
     rigid_seats : bool
         Whether to leave the housing out and hold the bearings in rigid seats, as in a case without one.
     housing, folder, fresh, progress
@@ -240,7 +240,7 @@ def system(
     require_machine(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    load, told = find_load(case, housing, progress)
+    load, warnings_of_load = find_load(case, housing, progress)
     point = None if load is None else load.point
     solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
@@ -257,7 +257,7 @@ def system(
     document = system_document(solved)
     if load is not None:
         document["load"] = load_part(load)
-    add_warnings(document, [*unstable_modes_warnings(solved.stability), *told])
+    add_warnings(document, [*unstable_modes_warnings(solved.stability), *warnings_of_load])
     error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
@@ -302,7 +302,7 @@ def steady(
     down : bool
         Whether to follow it from the highest speed downwards.
     points : int
-        Of the curve where it runs straight.
+        Number of points on a straight curve.
     exact : bool
         Whether to solve the common period of all excitations however long it is.
     housing, folder, fresh, progress
@@ -319,7 +319,7 @@ def steady(
     require_machine(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    load, told = find_load(case, housing, progress)
+    load, warnings_of_load = find_load(case, housing, progress)
     point = None if load is None else load.point
     solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
     solved = solve_steady(
@@ -335,7 +335,7 @@ def steady(
     document = steady_document(case.title, solved)
     if load is not None:
         document["load"] = load_part(load)
-    add_warnings(document, [*machine_warnings(machine), *told])
+    add_warnings(document, [*machine_warnings(machine), *warnings_of_load])
     error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
@@ -371,8 +371,8 @@ def sound(
     Parameters
     ----------
     case : Case
-        With `[housing]`; without `[acoustics]` boundary elements in free air are taken. Without rotors and an operation
-        the sound is that of the modes alone.
+        Case with `[housing]`; without `[acoustics]` boundary elements in free air are taken. Without rotors and an
+        operation the sound is that of the modes alone.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -396,18 +396,18 @@ def sound(
     elif (refuse := check_before_modes(case)) is not None:
         refuse(case, housing.mesh)
     machine, motion = None, None
-    told: list[dict[str, Any]] = []
+    further_warnings: list[dict[str, Any]] = []
     steady = case.model_copy(update={"transient": None})
-    if case.rotor and case.operation is not None and not (told := left_out_warnings(steady)):
+    if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
         require_machine(case)
-        load, told = find_load(case, housing, progress)
+        load, further_warnings = find_load(case, housing, progress)
         point = None if load is None else load.point
         _, _, machine = solve_machine(case, progress, housing=housing, point=point)
         steady_state = solve_steady(case, machine, housing, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))
     solved = solve_sound(case, housing, motion, machine, progress)
     document = {"title": case.title} | sound_document(solved)
-    add_warnings(document, [*solved.warnings(), *told])
+    add_warnings(document, [*solved.warnings(), *further_warnings])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_sound
@@ -449,17 +449,17 @@ def sweep(
     ----------
     case : Case
     source : (str, sequence of str)
-        What the case was read from: the name, and the changes of its keys.
+        Name from which the case is read, and the changes of its keys.
     over : sequence of str
         Values of keys, such as ``operation.torque=10 N*m:100 N*m:10``; beside the speeds of `[sweep]`.
     folder : path
-        Where the points are stored; those that it holds already are not done again.
+        Folder of the points; those that it holds already are not solved again.
     workers : int, optional
         Number of processes; as many as cores by default.
     scheduler : str, optional
         Address of a running Dask scheduler, whose workers are used instead.
     fresh : bool
-        Whether to do all points anew.
+        Whether to solve all points anew.
     progress : callable
 
     Raises
@@ -476,16 +476,18 @@ def sweep(
     points = sweep_points(*source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
-    told: list[dict[str, Any]] = []
+    sound_warnings: list[dict[str, Any]] = []
     housing, radiated = None, None
     if case.acoustics is not None and case.housing is not None:
         from gearwhine.sweep.sound import add_sound
 
-        told, housing, radiated = add_sound(case, keys, swept, solve_housing(case, progress, folder=folder), progress)
+        sound_warnings, housing, radiated = add_sound(
+            case, keys, swept, solve_housing(case, progress, folder=folder), progress
+        )
     peaks = missed_peaks(keys, swept, radiated)
     dataset = collected_sweep(case, keys, swept, peaks)
     document = {"title": case.title} | sweep_document(keys, swept, peaks)
-    add_warnings(document, told)
+    add_warnings(document, sound_warnings)
     document["workers"] = count if scheduler is None else None
     document["seconds"] = {"total": time.perf_counter() - start}
 

@@ -63,9 +63,9 @@ class Result(Generic[Solved]):
     command : str
         Name of the analysis.
     case : Case
-        That was analysed.
+        Case that is analysed.
     solved
-        The library's own objects: solved housing, rotors, gear pairs, coupled modes, motion.
+        Objects of the library: solved housing, rotors, gear pairs, coupled modes, motion.
     document : dict
         Numbers and texts as the command prints them with ``--json``; units stand in the keys.
     """
@@ -104,8 +104,8 @@ class Result(Generic[Solved]):
             return xr.Dataset(attrs={"title": self.case.title})
         from gearwhine.output.dataset import LabelledArrays
 
-        found = self._arrays()
-        return found.dataset() if isinstance(found, LabelledArrays) else found
+        arrays = self._arrays()
+        return arrays.dataset() if isinstance(arrays, LabelledArrays) else arrays
 
     @property
     def warnings(self) -> list[str]:
@@ -135,10 +135,10 @@ class Result(Generic[Solved]):
             Where there is no figure of that name; the message lists those there are.
         """
         names = []
-        for each, figure in self.figures():
-            if name in (None, each):
+        for figure_name, figure in self.figures():
+            if name in (None, figure_name):
                 return figure
-            names.append(each)
+            names.append(figure_name)
         listed = ", ".join(names) or "none"
         raise KeyError(f"no figure {name!r} of {self.command!r}; there are: {listed}")
 
@@ -152,16 +152,16 @@ class Result(Generic[Solved]):
         Parameters
         ----------
         folder : path
-            Made where it does not exist.
+            Results folder, which is made where it does not exist.
         pictures : bool
-            Whether to draw.
+            Whether to draw pictures.
         progress : callable
-            Told in words what happens next.
+            Receives the next step in words.
 
         Returns
         -------
         list of str
-            The files that stand there now, relative to the folder.
+            Files of the result, relative to the folder.
 
         Raises
         ------
@@ -209,26 +209,26 @@ class Result(Generic[Solved]):
             self.document.update(folder=str(folder), files=files)
         return list(self.document["files"])
 
-    def _write_data(self, place: Path, kept: Variables) -> None:
+    def _write_data(self, place: Path, kept_arrays: Variables) -> None:
         if self._arrays is None:
             return
         from gearwhine.output.dataset import LabelledArrays
 
-        found = self._arrays()
-        if isinstance(found, LabelledArrays):
-            replace(found, variables={**found.variables, **kept}).write(place / self._data_file)
+        arrays = self._arrays()
+        if isinstance(arrays, LabelledArrays):
+            replace(arrays, variables={**arrays.variables, **kept_arrays}).write(place / self._data_file)
         else:
-            found.to_netcdf(place / self._data_file, engine="h5netcdf")
+            arrays.to_netcdf(place / self._data_file, engine="h5netcdf")
 
 
 def _proofs(value: Any, path: str) -> Iterator[tuple[str, Any]]:
     if isinstance(value, Mapping):
         for key, inner in value.items():
-            here = f"{path}.{key}" if path else str(key)
+            inner_path = f"{path}.{key}" if path else str(key)
             if key in _PROOFS:
-                yield here, inner
+                yield inner_path, inner
             else:
-                yield from _proofs(inner, here)
+                yield from _proofs(inner, inner_path)
     elif isinstance(value, list) and path in _LISTED:
         for number, inner in enumerate(value):
             yield from _proofs(inner, f"{path}[{number}]")

@@ -76,14 +76,14 @@ def run(
     ----------
     case : Case
     housing : SolvedHousing, optional
-        Where it is solved already.
+        Solved housing, where it exists already.
     folder : path, optional
-        A results folder: modes of the same housing cached there are read, and the blocks of the transient are stored
-        there, so that a run that dies goes on from there when it is started again.
+        Results folder: modes of the same housing cached there are read, and the blocks of the transient are stored
+        there, so that a run that dies continues from there when it is started again.
     fresh : bool
         Whether to begin anew where there is such a folder.
     pictures : bool
-        Whether modes will be drawn: where no renderer is found, that is said before the work.
+        Whether modes are to be drawn: a missing renderer then raises before the work.
     until_written : ExitStack, optional
         Closed by the caller when the results are written; the blocks of the transient are stored until then.
     progress : callable
@@ -93,7 +93,7 @@ def run(
     CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
         Where the case cannot be solved as it stands.
     housing.errors.RendererUnavailableError
-        Where modes are to be drawn and nothing here draws.
+        Where modes are to be drawn and no renderer is available.
     """
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
@@ -116,7 +116,7 @@ def run(
     timed("housing", begin)
     begin = time.perf_counter()
     part = None if housing is None or not (case.rotor and case.operation) else reduce_housing(case, housing, progress)
-    load, told = find_load(case, part, progress)
+    load, warnings_of_load = find_load(case, part, progress)
     point = None if load is None else load.point
     timed("load", begin)
     begin = time.perf_counter()
@@ -147,10 +147,10 @@ def run(
         timed("system", begin)
         if load is not None:
             document["load"] = load_part(load)
-        add_warnings(document, told)
+        add_warnings(document, warnings_of_load)
         if case.transient is not None:
             if folder is not None and housing is not None and not housing.source_holds:
-                # Now, not with the results: who goes on with a long transient need not solve them again.
+                # Modes are cached before the results, so that a resumed long transient need not solve them again.
                 with staging(folder) as place:
                     write_mode_cache(place, housing)
                 housing = replace(housing, source=folder / MODE_CACHE_FILE, source_holds=True)
@@ -163,7 +163,7 @@ def run(
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
-            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=told))
+            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
             add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = solve_run_signature(case, transient)
             add_warnings(document, run_signature_warnings(case, transient))
@@ -238,7 +238,7 @@ def simulate(
     Parameters
     ----------
     case : Case
-        With `[transient]`.
+        Case with `[transient]`.
     housing, folder, progress
         As :func:`run`.
 
@@ -251,8 +251,8 @@ def simulate(
     """
     require(case, "rotor", "operation", "transient", command="simulate")
     only = case.model_copy(update={"measured": None})
-    found = run(only, housing=housing, folder=folder, pictures=False, progress=progress)
-    return replace(found, command="simulate", case=case)
+    result = run(only, housing=housing, folder=folder, pictures=False, progress=progress)
+    return replace(result, command="simulate", case=case)
 
 
 def run_into(
@@ -342,8 +342,8 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
         yield from figures.draw_system(case, solved.system)
     if solved.transient is not None:
         progress("drawing the motion")
-        found = solved.transient, solved.signature, solved.housing, solved.comparison
-        yield from figures.draw_transient(case, *found)
+        parts_of_motion = solved.transient, solved.signature, solved.housing, solved.comparison
+        yield from figures.draw_transient(case, *parts_of_motion)
     if solved.run_signature is not None:
         yield from figures.draw_run(case, solved.run_signature, solved.housing)
     if solved.sound is not None:

@@ -10,11 +10,11 @@ Public names:
   :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`RotorAnalysis`,
   :class:`Measured`, :class:`Update`. The tables within these stand in the modules of their topics.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
-- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- what follows
-  without solving anything.
-- :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- at which speeds a rotor is looked at.
-- :func:`swept_keys` -- the keys that a sweep goes through, each a :class:`SweptKey` with its values.
-- :func:`require` -- the error for what a command needs and a case lacks.
+- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- quantities that
+  follow without a solution.
+- :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- speeds at which a rotor is analysed.
+- :func:`swept_keys` -- the keys of a sweep, each a :class:`SweptKey` with its values.
+- :func:`require` -- the error for tables that a command needs and a case lacks.
 - :func:`bundled_cases` -- the examples that ship with the package.
 
 Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.

@@ -45,7 +45,8 @@ if TYPE_CHECKING:
     from rotors.rolling_bearings import RollingBearing, Row
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
-# As `rotors.rolling_bearings.catalogue` has it, and a test holds: a case is read without numpy, which that room takes.
+# The types of `rotors.rolling_bearings.catalogue`, as a test verifies: a case is read without numpy, which that room
+# imports.
 CatalogueType = Literal[
     "deep-groove",
     "angular-contact",
@@ -250,7 +251,7 @@ class _Mounted(Table):
 
     @property
     def width(self) -> float:
-        """Of the bearing, as far as the places of its rows follow from it [m]."""
+        """Width of the bearing, where the places of its rows follow from it, else 0 [m]."""
         return 0.0
 
     def build_row(self) -> Row:
@@ -283,7 +284,7 @@ class _Mounted(Table):
         assert self.spacing is not None
         if self.arrangement == "tandem":
             pair = paired(row, "tandem", self.spacing)
-            return RollingBearing([one.facing(sense) for one in pair.rows], sense * self.preload, label)
+            return RollingBearing([row.facing(sense) for row in pair.rows], sense * self.preload, label)
         return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:
@@ -461,7 +462,7 @@ class RollingCatalogue(_Mounted):
 
     @property
     def width(self) -> float:
-        """Of the bearing [m]."""
+        """Width of the bearing [m]."""
         return self.catalogue.width
 
     def build_row(self) -> Row:
@@ -469,7 +470,7 @@ class RollingCatalogue(_Mounted):
         from rotors.rolling_bearings import catalogue_row
 
         size = self.catalogue
-        # The ratings of a pair say nothing certain of a single row.
+        # The ratings of a pair do not determine those of a single row.
         single = self.arrangement == "single"
         return catalogue_row(
             size.type,

@@ -199,7 +199,7 @@ class Box(Table):
 
     @property
     def stands_out(self) -> float:
-        """How far the highest outside rib or flange stands out of the walls [m]."""
+        """Height of the highest outside rib or flange over the walls [m]."""
         heights = [rib.height for rib in self.ribs if rib.side == "outside"]
         if self.cover is not None and self.cover.flange is not None and self.cover.flange.side == "outside":
             heights.append(self.cover.flange.width)

@@ -1,7 +1,7 @@
 """Checks of a case's housing: one geometry, a box whose parts fit, fixtures and sensors in their places.
 
-The box of a case is built as an object of `meshes`, and what does not fit is yielded as findings. Seats, supports,
-sensors and masses are held against it.
+The box of a case is built as an object of `meshes`, and parts that do not fit are yielded as findings. Seats, supports,
+sensors and masses are checked against it.
 """
 
 from __future__ import annotations
@@ -59,14 +59,13 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
 
 
 def box_findings(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Finding]:
-    """Yield what does not fit among the parts of a box.
+    """Yield parts of a box that do not fit each other.
 
     Parameters
     ----------
-    box
-        The box.
-    seats
-        Its seats, each with its place in the case.
+    box : Box
+    seats : sequence of (int, Seat)
+        Seats of the box, each with its place in the case.
     """
     from meshes import GeometryError, check_mesh_size
     from meshes.box.geometry import BoxMisfitError
@@ -92,7 +91,7 @@ def box_findings(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Findin
 
 
 def wall_volume(box: Box) -> float:
-    """Material of the plain walls [m³], without bores and without what is added to them."""
+    """Return the volume of the plain walls [m³], without bores and other parts."""
     walls, (x, y, z) = box.walls, box.size
     inside = (x - walls.left - walls.right) * (y - walls.bottom - walls.top) * (z - walls.back - walls.front)
     return x * y * z - inside
@@ -103,7 +102,7 @@ _SLACK = 1e-9
 
 
 def check_housing_form(draft: Draft) -> Iterator[Finding]:
-    """Yield choices that are not made exactly once: the geometry, and how many modes."""
+    """Yield choices that are not made exactly once: the geometry, and the number of modes."""
     housing = draft.document.get("housing")
     if not isinstance(housing, Mapping):
         return
@@ -122,7 +121,7 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
 
 
 def check_box(draft: Draft) -> Iterator[Finding]:
-    """Yield what does not fit a box: its walls and parts, seats, supports and sensors."""
+    """Yield findings on a box: its walls and parts, seats, supports and sensors."""
     box = draft.box
     if box is None:
         return
@@ -132,25 +131,25 @@ def check_box(draft: Draft) -> Iterator[Finding]:
     for location, patch in _patches(draft):
         yield from _check_patch(box, location, patch, boss)
     for index, sensor in draft.sensors:
-        found = list(_check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss))
-        yield from found or _check_in_bore(draft, box, ("housing", "sensor", index, "position"), sensor.position)
+        findings = list(_check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss))
+        yield from findings or _check_in_bore(draft, box, ("housing", "sensor", index, "position"), sensor.position)
     for index, mass in draft.masses:
         if mass.position is not None:
             yield from _check_on_surface(box, ("housing", "mass", index, "position"), mass.position, boss)
 
 
 def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
-    """Yield all that is fastened to one patch, with its place in the case."""
+    """Yield all fixtures on one patch, with their places in the case."""
     for kind, entries in (("support", draft.supports), ("mount", draft.mounts), ("mass", draft.masses)):
         for index, entry in entries:
             yield ("housing", kind, index), entry
 
 
 def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
-    """Yield surfaces that the box does not have, under supports and whatever else is fastened to it."""
+    """Yield surfaces that the box does not have, under supports and other fixtures."""
     seats = draft.names("housing", "seat")
-    known = (*box.surfaces, *seats)
-    listed = [name for name in known if not name.startswith("bolt-")]
+    surfaces = (*box.surfaces, *seats)
+    listed = [name for name in surfaces if not name.startswith("bolt-")]
     named: list[tuple[Location, str | None]] = [
         ((*place, "surface"), patch.surface) for place, patch in _patches(draft)
     ]
@@ -158,11 +157,11 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
         for end, surface in enumerate(joint.surfaces or ()):
             named.append((("housing", "joint", index, "surfaces", end), surface))
     for location, name in named:
-        if name is not None and name not in known:
+        if name is not None and name not in surfaces:
             feet = "" if box.feet is not None else "; it has no feet"
-            bolts = ", bolt-1-cover …" if len(listed) < len(known) else ""
+            bolts = ", bolt-1-cover …" if len(listed) < len(surfaces) else ""
             expected = f"a surface of the box ({', '.join(listed)}{bolts}{feet})"
-            yield Finding(location, expected + did_you_mean(name, known))
+            yield Finding(location, expected + did_you_mean(name, surfaces))
 
 
 def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterator[Finding]:

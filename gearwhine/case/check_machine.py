@@ -71,7 +71,7 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
 def _analysed(
     draft: Draft,
 ) -> Iterator[tuple[tuple[str, str], Sequence[Probe | HarmonicTorque | TorsionSpring | TorsionProbe]]]:
-    """Yield what an analysis of rotors puts on their stations, with its keys."""
+    """Yield the entries that analyses of rotors place at stations, with their keys."""
     if draft.analysis is None:
         return
     yield ("unbalance_response", "probes"), draft.analysis.unbalance_response.probes
@@ -128,7 +128,7 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
         yield Finding(("bearing", index, "at"), expected)
 
 
-_ROUNDING = 1e-9  # what a printed speed may miss of the one it stands for
+_ROUNDING = 1e-9  # relative rounding of printed speeds
 _RPM = 30.0 / pi
 
 
@@ -160,16 +160,16 @@ def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
         if not isinstance(table, RadialStiffness | RadialDamping):
             continue
         for key in ("xx", "yy", "xy", "yx"):
-            given = getattr(table, key)
-            if not isinstance(given, tuple):
+            coefficients = getattr(table, key)
+            if not isinstance(coefficients, tuple):
                 continue
             tabled = True
             count = 0 if bearing.speeds is None else len(bearing.speeds)
             if bearing.speeds is None:
                 expected = "one value, or with this list the key 'speeds' of the bearing"
                 yield Finding(("bearing", index, kind, key), expected)
-            elif len(given) != count:
-                expected = f"one value for each of the {count} speeds (there are {len(given)})"
+            elif len(coefficients) != count:
+                expected = f"one value for each of the {count} speeds (there are {len(coefficients)})"
                 yield Finding(("bearing", index, kind, key), expected)
     if bearing.speeds is not None and not tabled:
         yield Finding(("bearing", index, "speeds"), "a list for each of these speeds in 'stiffness' or 'damping'")
@@ -195,8 +195,8 @@ def _named_speeds(draft: Draft) -> list[float]:
         speeds += draft.transient.run.line[1]
     speeds += draft.sweep.speeds if draft.sweep is not None else ()
     if draft.analysis is not None:
-        for given in (draft.analysis.speed, draft.analysis.unbalance_response.speed):
-            speeds += () if given is None else listed(given)
+        for range_or_list in (draft.analysis.speed, draft.analysis.unbalance_response.speed):
+            speeds += () if range_or_list is None else listed(range_or_list)
     return speeds
 
 
@@ -245,7 +245,7 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
 
 
 def _check_pair(
-    draft: Draft, index: int, pair: GearPair, given: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
+    draft: Draft, index: int, pair: GearPair, tables: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
     from coupling.gears import GearError, GearPairGeometry
@@ -254,20 +254,20 @@ def _check_pair(
     try:
         GearPairGeometry(*gears)
     except GearError as error:
-        # Not for their distance, which is the one without backlash.
+        # The error is not one of the distance, which is that without backlash.
         yield Finding(("gear_pair", index), f"gears that can mesh; {error}", UNSAID)
         return
     distance = pair.centre_distance
-    if given[0].rotor is not None and shaft_of(given[0]) == shaft_of(given[1]):
-        yield Finding(("gear_pair", index, "driven"), f'a gear on another rotor than "{shaft_of(given[0])}"')
+    if tables[0].rotor is not None and shaft_of(tables[0]) == shaft_of(tables[1]):
+        yield Finding(("gear_pair", index, "driven"), f'a gear on another rotor than "{shaft_of(tables[0])}"')
         return
-    rotors = draft.rotor(given[0].rotor), draft.rotor(given[1].rotor)
+    rotors = draft.rotor(tables[0].rotor), draft.rotor(tables[1].rotor)
     if rotors[0] is not None and rotors[1] is not None:
         apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {millimetres(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
-        shift = rotors[0].start + (given[0].at or 0.0) - rotors[1].start - (given[1].at or 0.0)
+        shift = rotors[0].start + (tables[0].at or 0.0) - rotors[1].start - (tables[1].at or 0.0)
         reach = 0.5 * min(gear.face_width for gear in gears)
         if abs(shift) > reach + LARGEST_OFFSET:
             expected = (
@@ -296,19 +296,19 @@ def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
     sizes = ((gear.tooth_module, gear.pressure_angle, gear.helix_angle) for gear in (driver, driven))
     unequal = mismatched_sizes(*sizes)
     if "helix_angle" in unequal:
-        size, shown = "equal helix angle and opposite hands", [f"{angle:+g} deg" for angle in helices]
+        size, values = "equal helix angle and opposite hands", [f"{angle:+g} deg" for angle in helices]
     elif "pressure_angle" in unequal:
-        size, shown = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
+        size, values = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
     elif "module" in unequal:
-        size, shown = "one module", [millimetres(module) for module in modules]
+        size, values = "one module", [millimetres(module) for module in modules]
     else:
         return
-    expected = f'gears of {size}; "{driver.name}" has {shown[0]}, "{driven.name}" {shown[1]}'
+    expected = f'gears of {size}; "{driver.name}" has {values[0]}, "{driven.name}" {values[1]}'
     yield Finding(("gear_pair", index, "driven"), expected)
 
 
 def _check_model(draft: Draft, index: int, pair: GearPair, gear: Gear) -> Iterator[Finding]:
-    """Yield what the pair's stiffness model needs of a gear and does not find."""
+    """Yield data that the pair's stiffness model needs of a gear that lacks them."""
     model = pair.stiffness.model
     if model in ("constant", "square", "table"):
         return
@@ -327,7 +327,7 @@ LARGEST_RATIO = 1e12
 
 
 def check_running(draft: Draft) -> Iterator[Finding]:
-    """Yield what keeps a case from running as it says."""
+    """Yield findings that keep a case from running as it is given."""
     document, operation = draft.document, draft.operation
     if all(document.get(key, []) == [] for key in ("housing", "rotor", "gear", "gear_pair")):
         yield Finding((), "at least one of [housing], [[rotor]] and [[gear_pair]]", UNSAID)
@@ -345,7 +345,7 @@ def check_running(draft: Draft) -> Iterator[Finding]:
     yield from _check_run(draft, operation)
     yield from _check_method(draft, operation)
     if draft.broken & {"rotor", "gear", "gear_pair"} or not turning:
-        return  # half a train does not say which shafts it turns
+        return  # an incomplete train does not define the shafts that it turns
     yield from _check_stations(draft, operation)
     yield from _check_train(draft, operation)
 
@@ -372,13 +372,13 @@ def _check_run(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield what exact integration, where it is asked for, does not cover."""
-    given = draft.transient
-    if given is None or given.method != "exact":
+    """Yield parts of the case that exact integration, where it is asked for, does not cover."""
+    transient = draft.transient
+    if transient is None or transient.method != "exact":
         return
     unknown = [f"friction between the teeth (gear_pair[{i}])" for i, pair in draft.gear_pairs if pair.friction > 0.0]
     unknown += [f"a bearing's own law (bearing[{i}])" for i, bearing in draft.bearings if bearing.follows_own_law]
-    unknown += ["a speed that varies (transient.run)"] * (given.run is not None)
+    unknown += ["a speed that varies (transient.run)"] * (transient.run is not None)
     torques = [operation.over_time, *(output.over_time for output in operation.output)]
     unknown += ["a torque given over time"] * any(torque is not None for torque in torques)
     if unknown:
@@ -386,7 +386,7 @@ def _check_method(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_stations(draft: Draft, operation: Operation) -> Iterator[Finding]:
-    """Yield torques and forces that are put on a rotor beyond its end."""
+    """Yield torques and forces beyond the end of their rotor."""
     for place, force in enumerate(operation.force):
         rotor = draft.rotor(force.rotor)
         if rotor is not None:
@@ -440,14 +440,14 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 
 def _check_balance(operation: Operation, train: GearTrain) -> Iterator[Finding]:
-    """Yield outputs that, through the gears, take another power than comes in."""
+    """Yield outputs that, through the gears, take another power than the input."""
     from coupling.machine.gear_train import is_balanced, output_torque
 
-    taken = output_torque(train, [output.build() for output in operation.output])
-    if not is_balanced(operation.torque, taken):
+    delivered = output_torque(train, [output.build() for output in operation.output])
+    if not is_balanced(operation.torque, delivered):
         expected = (
             f"outputs that balance the input torque of {operation.torque:g} N*m; through the tooth ratios they "
-            f"amount to {taken:g} N*m"
+            f"amount to {delivered:g} N*m"
         )
         yield Finding(("operation", "output"), expected, [f"{output.torque:g} N*m" for output in operation.output])
 
@@ -459,12 +459,12 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     from coupling.machine.gear_train import imbalances_of_shafts
 
     kind = "rotor" if draft.rotors else "gear"
-    for one in imbalances_of_shafts(operation.torque, [output.build() for output in operation.output]):
+    for imbalance in imbalances_of_shafts(operation.torque, [output.build() for output in operation.output]):
         expected = (
-            f'torques that balance on {kind} "{one.shaft}", as no gear pair leads to or from it; it takes in '
-            f"{one.entering:g} N*m and gives out {one.leaving:g} N*m"
+            f'torques that balance on {kind} "{imbalance.shaft}", as no gear pair leads to or from it; it takes in '
+            f"{imbalance.entering:g} N*m and gives out {imbalance.leaving:g} N*m"
         )
-        yield Finding(("operation", "output", one.output), expected, UNSAID)
+        yield Finding(("operation", "output", imbalance.output), expected, UNSAID)
 
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:

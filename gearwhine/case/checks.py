@@ -73,7 +73,7 @@ def check_names(draft: Draft) -> Iterator[Finding]:
 
 
 def _check_materials(draft: Draft) -> Iterator[Finding]:
-    """Yield materials that are referred to and not there, and those that a solid cannot be of."""
+    """Yield materials that are referred to but missing, and those that a solid cannot have."""
     table = draft.document.get("material")
     materials = [name for name in table if isinstance(name, str)] if isinstance(table, Mapping) else []
     housing = draft.document.get("housing")
@@ -111,8 +111,8 @@ def _check_unique(draft: Draft) -> Iterator[Finding]:
         for index, entry in draft.raw_entries(*keys):
             name = entry.get("name")
             if isinstance(name, str) and first.setdefault(name, index) != index:
-                taken = key_of((*keys, first[name]))
-                yield Finding((*keys, index, "name"), f"a name of its own ({taken} has this one)")
+                first_use = key_of((*keys, first[name]))
+                yield Finding((*keys, index, "name"), f"a name of its own ({first_use} has this one)")
 
 
 ORIGINS = ("published", "nominal", "found")
@@ -134,16 +134,16 @@ def check_provenance(draft: Draft) -> Iterator[Finding]:
 def without_changed(
     document: dict[str, Any], before: Mapping[str, Any], changed: Collection[Location]
 ) -> dict[str, Any]:
-    """Return a document without the provenance of values that overrides have changed or taken away.
+    """Return a document without the provenance of values that overrides change or remove.
 
-    A number that came from the command line is not the published one. Entries that an override has itself set stay.
+    A number from the command line is not the published one. Entries that an override itself sets stay.
 
     Parameters
     ----------
-    document, before
+    document, before : mapping
         The case with and without the overrides.
-    changed
-        The locations that they have set.
+    changed : collection of locations
+        Locations that the overrides set.
     """
     table = document.get("provenance")
     if not isinstance(table, dict) or ("provenance",) in changed:
@@ -175,7 +175,7 @@ def _inside(outer: object, step: str) -> list[object]:
 
 
 def check(draft: Draft) -> Iterator[Finding]:
-    """Yield everything that does not go together in what could be read of a case."""
+    """Yield all findings across the readable tables of a case."""
     yield from check_names(draft)
     yield from check_housing_form(draft)
     yield from check_box(draft)
@@ -188,20 +188,24 @@ def check(draft: Draft) -> Iterator[Finding]:
 
 
 def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
-    """Return the axial location of each rotor by its bearings; a bearing that cannot be built holds nothing."""
+    """Return the axial location of each rotor by its bearings; a bearing that cannot be built carries no thrust."""
     from coupling.machine.axial_location import AxialLocation, AxialSupport
 
-    found = []
+    locations = []
     for rotor in case.rotor:
-        given = [bearing for bearing in case.bearing if bearing.rotor == rotor.name]
-        names = {bearing.name for bearing in given}
-        supports = [_axial_support(bearing) for bearing in given]
-        for own in rotor.saved.bearings if rotor.saved is not None else ():
-            held = own.stiffness.shape[-1] == 5 and own.stiffness[..., 2, 2].min() > 0.0
-            if own.name not in names:
-                supports.append(AxialSupport(own.name, own.at, frozenset((1, -1)) if held else frozenset()))
-        found.append(AxialLocation(rotor.name, supports))
-    return tuple(found)
+        bearings = [bearing for bearing in case.bearing if bearing.rotor == rotor.name]
+        names = {bearing.name for bearing in bearings}
+        supports = [_axial_support(bearing) for bearing in bearings]
+        for saved_bearing in rotor.saved.bearings if rotor.saved is not None else ():
+            carries_thrust = saved_bearing.stiffness.shape[-1] == 5 and saved_bearing.stiffness[..., 2, 2].min() > 0.0
+            if saved_bearing.name not in names:
+                supports.append(
+                    AxialSupport(
+                        saved_bearing.name, saved_bearing.at, frozenset((1, -1)) if carries_thrust else frozenset()
+                    )
+                )
+        locations.append(AxialLocation(rotor.name, supports))
+    return tuple(locations)
 
 
 def _axial_support(bearing: Bearing) -> AxialSupport:
@@ -215,42 +219,44 @@ def _axial_support(bearing: Bearing) -> AxialSupport:
         except RotorError:  # which every command that builds it refuses
             return AxialSupport(bearing.name, bearing.at, frozenset())
         return AxialSupport(bearing.name, bearing.at, rolling.thrust_senses, rolling)
-    held = isinstance(stiffness, MatrixStiffness) and stiffness.matrix[2][2] > 0.0
-    return AxialSupport(bearing.name, bearing.at, frozenset((1, -1)) if held else frozenset())
+    carries_thrust = isinstance(stiffness, MatrixStiffness) and stiffness.matrix[2][2] > 0.0
+    return AxialSupport(bearing.name, bearing.at, frozenset((1, -1)) if carries_thrust else frozenset())
 
 
 def warnings_of(case: Case) -> tuple[str, ...]:
-    """Return what is allowed in a sound case but likely not meant, a sentence each."""
-    found = []
+    """Return a sentence on each choice in a valid case that is allowed but implausible."""
+    warnings = []
     housing = case.housing
     if housing is not None and case.transient is not None and not housing.sensor:
-        found.append("[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing")
+        warnings.append("[housing] has no [[housing.sensor]]: the transient will show no acceleration of the housing")
     if housing is not None and case.rotor and all(bearing.grounded for bearing in case.bearing):
-        found.append("no bearing stands in a seat of [housing]: rotors and housing do not feel each other")
+        warnings.append("no bearing stands in a seat of [housing]: rotors and housing do not feel each other")
     if housing is not None and not housing.support and not housing.mount:
-        found.append("[housing] has no [[housing.support]] and no [[housing.mount]]: it floats freely")
+        warnings.append("[housing] has no [[housing.support]] and no [[housing.mount]]: it floats freely")
     elif housing is not None and not (any(s.holds for s in housing.support) or any(m.holds for m in housing.mount)):
-        found.append("[housing] stands on dashpots alone: it is not held and creeps away under load")
+        warnings.append("[housing] stands on dashpots alone: it is not held and creeps away under load")
     if case.operation is not None and case.operation.torque > 0.0 and not case.gear_pair and not case.operation.output:
-        found.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
+        warnings.append("operation.torque has nothing to work against: there are no gear pairs and no outputs")
     for bearing in case.bearing:
         if bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
-            found.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
+            warnings.append(f'bearing "{bearing.name}": its pedestal has no mass: `rotors` alone takes it')
     for rotor in case.rotor:
-        given = [rotor.shear_coefficient, *(getattr(part, "shear_coefficient", None) for part in rotor.segments)]
-        above = [value for value in given if isinstance(value, float) and value > 1.0]
+        coefficients = [rotor.shear_coefficient, *(getattr(part, "shear_coefficient", None) for part in rotor.segments)]
+        above = [value for value in coefficients if isinstance(value, float) and value > 1.0]
         if above:
-            told = f"a shear coefficient of {above[0]:g}, above 1"
-            found.append(f'rotor "{rotor.name}": {told}: round sections have 0.5 to 0.93; is its reciprocal meant?')
+            stated = f"a shear coefficient of {above[0]:g}, above 1"
+            warnings.append(
+                f'rotor "{rotor.name}": {stated}: round sections have 0.5 to 0.93; is its reciprocal meant?'
+            )
         if rotor.saved is not None:
-            found += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
-        held = rotor.saved is not None and rotor.saved.bearings
-        if not held and not any(bearing.rotor == rotor.name for bearing in case.bearing):
-            found.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
-    found += _seat_warnings(case)
+            warnings += [f'rotor "{rotor.name}": {remark}' for remark in rotor.saved.warnings]
+        has_own_bearings = rotor.saved is not None and rotor.saved.bearings
+        if not has_own_bearings and not any(bearing.rotor == rotor.name for bearing in case.bearing):
+            warnings.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
+    warnings += _seat_warnings(case)
     if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
-        found += [text for location in axial_locations(case) for text in location.warnings]
-    return tuple(found)
+        warnings += [text for location in axial_locations(case) for text in location.warnings]
+    return tuple(warnings)
 
 
 def _seat_warnings(case: Case) -> list[str]:

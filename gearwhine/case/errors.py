@@ -12,17 +12,17 @@ Location = tuple[str | int, ...]
 
 
 class _Nothing:
-    """The value of a key that is not there."""
+    """Value of a missing key."""
 
     def __repr__(self) -> str:
         return "nothing"
 
 
 NOTHING = _Nothing()
-"""Stands for the value of a key that is missing."""
+"""Value of a missing key."""
 
 UNSAID = object()
-"""Stands for a value that a message had better leave out: a whole entry, or how two entries lie."""
+"""Value that a message leaves out: a whole entry, or the relation of two entries."""
 
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = 80
@@ -54,9 +54,9 @@ def key_of(location: Location) -> str:
     return text or "the case"
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the nearest known word, or nothing."""
-    near = get_close_matches(word, list(known), n=1, cutoff=0.6)
+def did_you_mean(word: str, candidates: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest candidate, or nothing."""
+    near = get_close_matches(word, list(candidates), n=1, cutoff=0.6)
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
@@ -69,17 +69,17 @@ class Problem:
 
     Attributes
     ----------
-    key
+    key : str
         Key path, such as ``rotor[0].segments[1].length``.
     value
-        Value there: ``NOTHING`` where the key is missing, ``UNSAID`` where no one value is at fault.
-    expected
+        Value there: ``NOTHING`` where the key is missing, ``UNSAID`` where no single value is at fault.
+    expected : str
         Expected value, to be read after "expected".
-    label
-        The entry the key belongs to by its own name, such as ``rotor "input"``; empty where it has none.
-    source
-        The file, or the ``--set`` that brought the value in.
-    note
+    label : str
+        Name of the entry of the key, such as ``rotor "input"``; empty where it has none.
+    source : str
+        The file, or the ``--set`` that gives the value.
+    note : str
         Dimension of the value, where it is not obvious, such as ``mass``.
     """
 
@@ -118,8 +118,8 @@ class CaseError(ValueError):
 
     Attributes
     ----------
-    problems
-        Everything that is wrong.
+    problems : tuple of Problem
+        All problems of the case.
     """
 
     def __init__(self, problems: Iterable[Problem]) -> None:
@@ -132,15 +132,15 @@ LOOK_UP = _Nothing()
 
 @dataclass(frozen=True)
 class Finding:
-    """Something wrong at a place, before it is put in the words of a `Problem`.
+    """An error at a location, before it is written as a `Problem`.
 
     Attributes
     ----------
-    location
-        Where; what stands there is looked up in the case unless `value` says otherwise.
-    expected
+    location : Location
+        Location of the error; its value is looked up in the case unless `value` is given.
+    expected : str
         Expected value.
-    note
+    note : str
         Dimension of the value, where it is not obvious.
     """
 
@@ -151,7 +151,7 @@ class Finding:
 
 
 def look_up(document: object, location: Location) -> object:
-    """Return what stands at a location of nested tables and lists; ``NOTHING`` where there is nothing.
+    """Return the value at a location of nested tables and lists; ``NOTHING`` where there is none.
 
     A table that stands for a list of one is its first entry.
     """

@@ -40,11 +40,11 @@ def wrong(expected: str, *at: str | int, note: str = "") -> PydanticCustomError:
 
     Parameters
     ----------
-    expected
+    expected : str
         Expected value.
-    at
+    *at : str or int
         Steps that lead on to the key at fault.
-    note
+    note : str
         Dimension of the value, where it is not obvious.
     """
     return PydanticCustomError("case", "{expected}", {"expected": expected, "at": at, "note": note})
@@ -56,12 +56,12 @@ class Quantity:
 
     Attributes
     ----------
-    dimension
+    dimension : Dimension
         Physical dimension.
-    above, below
-        Limits that the value must not touch, in SI.
-    at_least, at_most
-        Limits that the value may touch, in SI.
+    above, below : float, optional
+        Limits that the value must not touch [SI].
+    at_least, at_most : float, optional
+        Limits that the value may touch [SI].
     """
 
     dimension: Dimension
@@ -97,7 +97,7 @@ class Quantity:
         if abs(number) > dimension.largest:
             hint = hint_of_millimetres(value) if dimension is units.LENGTH else ""
             raise wrong(f"{dimension.name} of at most {self._plainly(dimension.largest)}{hint}")
-        # Elsewhere a little is as good as none, and rounding leaves little.
+        # Elsewhere a tiny value counts as zero, since rounding leaves such values.
         if self.above == 0.0 and number < dimension.smallest:
             raise wrong(f"{dimension.name} of at least {self._plainly(dimension.smallest)}")
         return number
@@ -192,7 +192,7 @@ class _NameRule:
 
 @dataclass(frozen=True)
 class _FileRule:
-    """Validates a file: found from the case file's folder (the validation context), and there."""
+    """Validates a file: its name is relative to the case file's folder (the validation context), and it exists."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         writer = core_schema.plain_serializer_function_ser_schema(str, when_used="json")
@@ -243,7 +243,7 @@ class Table(BaseModel):
     """A table of the case file: frozen, and strict about its keys."""
 
     later: ClassVar[frozenset[str]] = frozenset()
-    """Keys that are known to be missing so far."""
+    """Keys that a later version has."""
 
     # Tables within others are built as parts of these: by themselves they would take a third of the import.
     model_config = ConfigDict(
@@ -308,9 +308,13 @@ class OverSpeed:
         """Expected value, in words."""
         return self.each.expected
 
-    def write(self, given: Coefficient) -> str | float | list[str | float]:
+    def write(self, coefficient: Coefficient) -> str | float | list[str | float]:
         """Return the quantity, or each of the list, as text with its unit."""
-        return [self.each.write(number) for number in given] if isinstance(given, tuple) else self.each.write(given)
+        return (
+            [self.each.write(number) for number in coefficient]
+            if isinstance(coefficient, tuple)
+            else self.each.write(coefficient)
+        )
 
     def validate(self, value: object) -> Coefficient:
         """Return the quantity or quantities in SI, or raise pydantic's error with what was expected and where."""

@@ -41,8 +41,8 @@ InertiaProduct = Annotated[float, Quantity(units.INERTIA)]
 Six = tuple[float, float, float, float, float, float]
 Tensor = tuple[Point, Point, Point]
 
-_LEAST_SINE = 1e-6  # of the angle between two axes
-_ROUNDING = 1e-9  # what typed moments of inertia of a thin body may miss of a real one's
+_LEAST_SINE = 1e-6  # least sine of the angle between two axes
+_ROUNDING = 1e-9  # relative rounding of typed moments of inertia, which matters for a thin body
 
 
 class Springs(Table):
@@ -153,10 +153,10 @@ class Bushing(Table):
 
     @model_validator(mode="after")
     def _holds(self) -> Bushing:
-        given = [table for table in (self.stiffness, self.damping) if table is not None]
-        if not any(value for table in given for value in amounts(table)):
+        tables = [table for table in (self.stiffness, self.damping) if table is not None]
+        if not any(value for table in tables for value in amounts(table)):
             raise wrong("a stiffness or a damping above 0 in at least one motion")
-        if len({_form(table) for table in given}) > 1:
+        if len({_form(table) for table in tables}) > 1:
             raise wrong("the keys of 'stiffness': axial, shear, tilting, torsional, or x, y, z, rx, ry, rz", "damping")
         if self.knows_one_axis:
             if self.axis is None:
@@ -192,8 +192,8 @@ class Bushing(Table):
             along = [Axial() if table is None else Axial(*amounts(table)) for table in tables]
             return BuiltBushing.along(unit_vector(self.axis), *along)
         stiffness, damping = (_six(table) for table in tables)
-        own = self.own_axes
-        return BuiltBushing(stiffness, damping, GLOBAL_AXES if own is None else axes_along(*own))
+        axes = self.own_axes
+        return BuiltBushing(stiffness, damping, GLOBAL_AXES if axes is None else axes_along(*axes))
 
 
 def _six(table: SixSprings | SixDashpots | AxialSprings | AxialDashpots | None) -> Six:
@@ -291,7 +291,7 @@ class InertiaTensor(Table):
 
     @model_validator(mode="after")
     def _of_a_body(self) -> InertiaTensor:
-        # ∫ r rᵀ dm = ½ tr(I) - I has no negative principal minor, else there is no such body.
+        # ∫ r rᵀ dm = ½ tr(I) - I of a body has no negative principal minor.
         # In parts of the largest entry, so that no product overflows.
         entries = (self.xx, self.yy, self.zz, self.xy, self.xz, self.yz)
         largest = max(abs(entry) for entry in entries) or 1.0

@@ -232,8 +232,8 @@ class Fault(Table):
 
         kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
         needed, optional = _KEYS_OF_FAULTS[self.kind]
-        made: BuiltFault = kinds[self.kind](**{key: getattr(self, key) for key in (*needed, *optional)})
-        return made
+        fault: BuiltFault = kinds[self.kind](**{key: getattr(self, key) for key in (*needed, *optional)})
+        return fault
 
 
 PressureAngle = Annotated[float, Quantity(units.ANGLE, at_least=math.radians(10.0), at_most=math.radians(35.0))]
@@ -344,8 +344,8 @@ class Gear(Table):
 
     @field_validator("fault", mode="before")
     @classmethod
-    def _one_or_more(cls, given: object) -> object:
-        return [given] if isinstance(given, dict) else given
+    def _one_or_more(cls, value: object) -> object:
+        return [value] if isinstance(value, dict) else value
 
     @model_validator(mode="after")
     def _consistent(self) -> Gear:
@@ -363,10 +363,10 @@ class Gear(Table):
         for number, fault in enumerate(self.fault):
             if fault.tooth is not None and fault.tooth >= self.teeth:
                 raise wrong(f"a tooth from 0 to {self.teeth - 1}", "fault", number, "tooth")
-        given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
-        if any(given) and not all(given):
+        is_given = [value is not None for value in (self.mass, self.polar_inertia, self.diametral_inertia)]
+        if any(is_given) and not all(is_given):
             raise wrong("all of 'mass', 'polar_inertia' and 'diametral_inertia', or none of them")
-        if self.base_radius is not None and self.face_width is None and not all(given):
+        if self.base_radius is not None and self.face_width is None and not all(is_given):
             raise wrong("a face width, or all of 'mass', 'polar_inertia' and 'diametral_inertia'")
         if (self.rotor is None) != (self.at is None):
             raise wrong("'rotor' and 'at' together, or neither in a case without rotors")
@@ -397,7 +397,7 @@ class Gear(Table):
     def build(self, material: Material | None = None) -> BuiltGear:
         """Build the gear, of a material or by default of steel.
 
-        A gear known by its base radius alone has the module that gives it, and a nominal width where none is given.
+        A gear known by its base radius alone has the module of that radius, and a nominal width where none is given.
 
         Raises
         ------
@@ -498,7 +498,7 @@ class ReliefAim(Table):
     @property
     def weights(self) -> dict[int, float]:
         """Weight by multiple of the mesh frequency."""
-        return {int(key): weight for key, weight in sorted(self.harmonics.items(), key=lambda one: int(one[0]))}
+        return {int(key): weight for key, weight in sorted(self.harmonics.items(), key=lambda item: int(item[0]))}
 
 
 class GearPair(Table):
@@ -545,7 +545,7 @@ class GearPair(Table):
 
 
 def shaft_of(gear: Gear) -> str:
-    """Return the name of what a gear turns with: its rotor; the gear itself in a case without rotors."""
+    """Return the name of a gear's shaft: its rotor, or the gear itself in a case without rotors."""
     return gear.rotor if gear.rotor is not None else gear.name
 
 

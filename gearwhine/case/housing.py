@@ -88,7 +88,7 @@ class Material(Table):
 
     @model_validator(mode="after")
     def _shears(self) -> Material:
-        # What the formulas of shear coefficients take for Poisson's ratio is E / 2G - 1.
+        # The formulas of shear coefficients take Poisson's ratio to be E / 2G - 1.
         low, high = self.youngs_modulus / 3.0, self.youngs_modulus / 2.0 * _STIFFEST_SHEAR
         if self.own_shear_modulus is not None and not low <= self.own_shear_modulus <= high:
             expected = f"a shear modulus from {low:.4g} to {high:.4g} Pa, of a material of this Young's modulus"

@@ -88,7 +88,7 @@ def findings_of(error: ValidationError) -> Iterator[Finding]:
 
 
 def _expected(detail: ErrorDetails, context: dict[str, Any]) -> str:
-    """Say what pydantic expected where it found something else."""
+    """Return what pydantic expects at an error."""
     kind = detail["type"]
     if kind == "case":
         return str(context["expected"])
@@ -116,15 +116,15 @@ _FIELD_WORDS = {
 
 
 def _unknown_key(key: str, tables: tuple[type[Table], ...]) -> str:
-    """Say what could stand instead of a key that is not known."""
+    """Return a hint on keys in place of an unknown one."""
     if any(key in table.later for table in tables):
         return "no such key yet: it comes in a later version"
-    known = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
-    if key in known:  # of another of the forms that this table may have
+    keys = sorted({info.alias or name for table in tables for name, info in table.model_fields.items()})
+    if key in keys:  # of another of the forms that this table may have
         return "no such key beside those here: it belongs to another form of this table"
-    if (elsewhere := _FIELD_WORDS.get(key)) is not None and elsewhere.split(".")[0] in known:
+    if (elsewhere := _FIELD_WORDS.get(key)) is not None and elsewhere.split(".")[0] in keys:
         return f"no such key; did you mean {elsewhere!r}?"
-    return "no such key" + (did_you_mean(key, known) or f" (known here: {', '.join(known)})")
+    return "no such key" + (did_you_mean(key, keys) or f" (known here: {', '.join(keys)})")
 
 
 def _meaning_of(location: Location) -> tuple[tuple[type[Table], ...], tuple[Any, ...]]:
@@ -152,7 +152,7 @@ def _parts(annotation: Any) -> Iterator[Any]:
 
 
 def _describe(meaning: tuple[Any, ...], location: Location) -> str:
-    """Say what kind of value belongs where there is none."""
+    """Return the kind of value that a missing key needs."""
     inside_list = bool(location) and isinstance(location[-1], int)
     for part in meaning:
         if isinstance(part, (Quantity, OverSpeed, Whole)):
@@ -175,14 +175,14 @@ LARGEST_FILE = 20_000_000
 
 @dataclass(frozen=True)
 class LoadedCase:
-    """A case as it was read.
+    """A case as it is read.
 
     Attributes
     ----------
-    case
-        Checked, in SI.
-    warnings
-        Allowed but unlikely choices, a sentence each.
+    case : Case
+        Checked case, in SI.
+    warnings : tuple of str
+        Allowed but implausible choices, a sentence each.
     """
 
     case: Case
@@ -194,11 +194,11 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
 
     Parameters
     ----------
-    source
-        A case file, or the name of a bundled case. A file of that name goes before a bundled case.
-    overrides
-        Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`; they end what `[provenance]` says of
-        the values they change.
+    source : str or path
+        Case file, or name of a bundled case. A file of that name precedes a bundled case.
+    overrides : sequence of str
+        Changes such as ``"housing.box.wall=10 mm"``, see `apply_overrides`; they remove `[provenance]` of the values
+        that they change.
 
     Raises
     ------
@@ -216,14 +216,14 @@ def changed_case(
 
     Parameters
     ----------
-    written
-        As TOML gives it.
-    overrides
+    written : dict
+        The case as TOML gives it.
+    overrides : sequence of str
         As of :func:`load_case`.
-    folder
-        Where relative file names start.
-    source
-        The file's name, for messages.
+    folder : path
+        Folder in which relative file names start.
+    source : str
+        Name of the file, for messages.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def changed_case(
     def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
         try:
             return case_document(parse_case(document, folder=folder))
-        except CaseError:  # which a later change may mend
+        except CaseError:  # a later change may correct it
             return document
 
     document, sources = apply_overrides(written, overrides, resolved)
@@ -254,14 +254,14 @@ def parse_case(
 
     Parameters
     ----------
-    document
+    document : mapping
         The case as a dictionary.
-    folder
-        Where relative file names start.
-    source
-        The file's name, for messages.
-    sources
-        Where single values came from another place: from location to a name for that place.
+    folder : path
+        Folder in which relative file names start.
+    source : str
+        Name of the file, for messages.
+    sources : mapping of location to str, optional
+        Names of the sources of single values that are not from the file.
 
     Raises
     ------
@@ -287,7 +287,7 @@ def parse_case(
 def _in_words(
     findings: Iterable[Finding], document: object, source: str, sources: Mapping[Location, str]
 ) -> list[Problem]:
-    """Put findings in words, each once."""
+    """Return findings as problems, each once."""
     problems: dict[Problem, None] = {}
     for finding in findings:
         within = [place for place in sources if finding.location[: len(place)] == place]
@@ -320,7 +320,7 @@ def _read(source: str | os.PathLike[str]) -> tuple[Path, bytes]:
 
 
 def _parse(content: bytes, source: str) -> dict[str, Any]:
-    """Parse TOML text, naming line and column of what is not."""
+    """Parse TOML text; an error names its line and column."""
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -365,9 +365,9 @@ def _too_deep(source: str) -> CaseError:
 
 
 def _place_of(message: str, text: str) -> tuple[str, str]:
-    """Split a TOML error into its line and column, and what is wrong."""
-    found = re.search(r" \(at line (\d+), column (\d+)\)$", message)
-    if found is not None:
-        return f"line {found[1]}, column {found[2]}", message[: found.start()]
+    """Split a TOML error into its line and column, and its message."""
+    match = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+    if match is not None:
+        return f"line {match[1]}, column {match[2]}", message[: match.start()]
     lines = text.split("\n")
     return f"line {len(lines)}, column {len(lines[-1]) + 1}", message.removesuffix(" (at end of document)")

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Content:
-    """Content of a file when it was read: two cases are equal where its bytes are."""
+    """Content of a file at the time of reading; two cases are equal where its bytes are equal."""
 
     digest: str
     survey: SurveyData = field(compare=False)
@@ -134,12 +134,12 @@ class Measured(Table):
         return self._read()
 
     def _ascending(self) -> Measured:
-        given = self.frequencies or ()
-        for index in range(1, len(given)):
-            if given[index] <= given[index - 1]:
+        frequencies = self.frequencies or ()
+        for index in range(1, len(frequencies)):
+            if frequencies[index] <= frequencies[index - 1]:
                 raise wrong("a frequency above the one before it", "frequencies", index)
-        if self.damping_ratios is not None and len(self.damping_ratios) != len(given):
-            raise wrong(f"a ratio for each of the {len(given)} frequencies", "damping_ratios")
+        if self.damping_ratios is not None and len(self.damping_ratios) != len(frequencies):
+            raise wrong(f"a ratio for each of the {len(frequencies)} frequencies", "damping_ratios")
         return self
 
     def _read(self) -> Measured:
@@ -212,8 +212,13 @@ class UpdateParameter(Table):
 
     @model_validator(mode="after")
     def _of_one_kind(self) -> UpdateParameter:
-        given = [("range", self.range[0]), ("range", self.range[1]), ("nominal", self.nominal), ("spread", self.spread)]
-        if len({units.kind_of(value) for _, value in given if value is not None}) > 1:
+        entries = [
+            ("range", self.range[0]),
+            ("range", self.range[1]),
+            ("nominal", self.nominal),
+            ("spread", self.spread),
+        ]
+        if len({units.kind_of(value) for _, value in entries if value is not None}) > 1:
             raise wrong("range, nominal and spread that measure the same", "range")
         low, high = self.bounds
         if not low < high:
@@ -233,7 +238,7 @@ class UpdateParameter(Table):
 
     @property
     def unit(self) -> str:
-        """In which unit it is written; empty for plain numbers."""
+        """Unit in which it is written; empty for plain numbers."""
         parts = units.split_quantity(self.range[0]) if isinstance(self.range[0], str) else None
         return parts[1] if parts is not None else ""
 

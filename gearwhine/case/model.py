@@ -120,8 +120,8 @@ class Case(Table):
     def finds_misalignment(self, pair: GearPair) -> bool:
         """Whether the misalignment of a gear pair follows from the machine's operating point.
 
-        Where the case says nothing it does if a torque loads the flanks and the load of a bearing follows, too; else
-        it is 0.
+        By default it does if a torque loads the flanks and the load of a bearing follows from that point, too; else it
+        is 0.
         """
         if pair.misalignment is None:
             loaded = self.operation is not None and self.operation.torque != 0.0
@@ -134,8 +134,10 @@ class Case(Table):
         operation = self.operation
         if operation is None or not self.rotor or not self.bearing:
             return False
-        rolling = [one.stiffness.rolling for one in self.bearing if isinstance(one.stiffness, RollingStiffness)]
-        preloaded = any(one.pressed or one.mounting is not None for one in rolling)
+        rolling = [
+            bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
+        ]
+        preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:
@@ -159,12 +161,12 @@ class Draft:
 
     Attributes
     ----------
-    document
-        The nested tables and lists of the case file.
-    broken
-        Top-level tables in which something could not be read; what they lack proves nothing.
+    document : mapping
+        Nested tables and lists of the case file.
+    broken : frozenset of str
+        Top-level tables that are readable in parts only; a missing entry in them proves nothing.
     box, operation, transient, sweep, analysis, acoustics
-        None where there is none or it could not be read.
+        Tables; None where one is missing or cannot be read.
     """
 
     document: Mapping[str, Any]
@@ -240,13 +242,13 @@ _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
 
 
 def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
-    """Return a sound case as a draft; `document` is what it was read from."""
+    """Return a valid case as a draft; `document` is its source."""
 
     def at(keys: tuple[str, ...]) -> Any:
-        found: Any = case
+        value: Any = case
         for key in keys:
-            found = getattr(found, key, None)
-        return found
+            value = getattr(value, key, None)
+        return value
 
     tables = {name: at(keys) for name, (_, keys) in _DRAFT_TABLES.items()}
     lists: dict[str, Any] = {name: tuple(enumerate(at(keys) or ())) for name, (_, keys) in _DRAFT_LISTS.items()}
@@ -254,7 +256,7 @@ def draft_of_case(case: Case, document: Mapping[str, Any]) -> Draft:
 
 
 def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], context: Mapping[str, Any]) -> Draft:
-    """Read what can be read of a document in which something is wrong, entry by entry."""
+    """Read the valid entries of a document with errors, one by one."""
 
     def entries(kind: type[AnyTable], keys: tuple[str, ...]) -> Entries[AnyTable]:
         raw = look_up(document, keys)
@@ -269,7 +271,7 @@ def draft_of_document(document: Mapping[str, Any], broken: frozenset[str], conte
 
 
 def _read(kind: type[AnyTable], raw: object, context: Mapping[str, Any]) -> AnyTable | None:
-    """Read one table; None where it is not sound."""
+    """Read one table; None where it is not valid."""
     if not isinstance(raw, Mapping):
         return None
     try:
@@ -299,11 +301,10 @@ def require(case: Case, *tables: str, command: str) -> None:
 
     Parameters
     ----------
-    case
-        The case.
-    tables
+    case : Case
+    *tables : str
         Keys of the top level, such as ``"housing"``.
-    command
+    command : str
         Command that needs them, for the message.
 
     Raises
@@ -317,9 +318,9 @@ def require(case: Case, *tables: str, command: str) -> None:
 
 
 def _lacking(table: str, command: str) -> Problem:
-    shown = f"[[{table}]]" if table in _LISTS else f"[{table}]"
+    table_name = f"[[{table}]]" if table in _LISTS else f"[{table}]"
     purpose = _PURPOSES.get(table, "its table")
-    return Problem(table, NOTHING, f"{purpose}: '{command}' needs {shown}, which this case does not have")
+    return Problem(table, NOTHING, f"{purpose}: '{command}' needs {table_name}, which this case does not have")
 
 
 def case_document(case: Case) -> dict[str, Any]:

@@ -127,9 +127,9 @@ class Run(Table):
     @model_validator(mode="after")
     def _one_form(self) -> Run:
         if not (self.times or self.speeds):
-            for key, value, what in (("from", self.start, "a speed to start from"), ("time", self.time, "a time")):
+            for key, value, expected in (("from", self.start, "a speed to start from"), ("time", self.time, "a time")):
                 if value is None:
-                    raise wrong(f"{what}, or a table of 'times' and 'speeds'", key)
+                    raise wrong(f"{expected}, or a table of 'times' and 'speeds'", key)
             if self.to == 0.0 == self.start:
                 raise wrong("a speed other than zero at one end", "to")
             return self
@@ -150,7 +150,7 @@ class Run(Table):
 
     @property
     def duration(self) -> float:
-        """[s]."""
+        """Duration of the run [s]."""
         return self.times[-1] if self.time is None else self.time
 
     @property
@@ -164,10 +164,10 @@ class Run(Table):
         return (0.0, self.duration), (self.start, self.to)
 
 
-def _check_table(key: str, places: tuple[float, ...], other: str, values: tuple[float, ...]) -> None:
+def _check_table(key: str, places: tuple[float, ...], other_key: str, values: tuple[float, ...]) -> None:
     """Raise for a table that does not ascend, or whose lists differ in length."""
     if len(values) != len(places):
-        raise wrong(f"one value for each entry of '{key}', {len(places)} (there are {len(values)})", other)
+        raise wrong(f"one value for each entry of '{key}', {len(places)} (there are {len(values)})", other_key)
     if any(after <= before for before, after in pairwise(places)):
         raise wrong("entries that ascend", key)
 
@@ -202,7 +202,7 @@ class BaseHarmonic(Table):
 
     @property
     def amplitudes(self) -> tuple[float, ...]:
-        """x, y, z, rx, ry, rz."""
+        """Amplitudes of x, y, z, rx, ry, rz."""
         return tuple(getattr(self, name) for name in COMPONENTS)
 
 
@@ -253,7 +253,7 @@ class Base(Table):
     @property
     def tilts(self) -> bool:
         """Whether it turns about x or y."""
-        rows = [one.amplitudes for one in self.harmonic]
+        rows = [harmonic.amplitudes for harmonic in self.harmonic]
         turning = any(row[3] or row[4] for row in rows)
         return turning or (self.over_time is not None and any(map(any, self.over_time.rows[3:5])))
 
@@ -266,8 +266,10 @@ class Base(Table):
         from coupling.machine.loads import BaseHistory as BuiltHistory
 
         parts: list[BuiltHarmonic | BuiltHistory] = [
-            BuiltHarmonic(2.0 * math.pi * one.frequency, np.array(one.amplitudes) * np.exp(1j * one.phase))
-            for one in self.harmonic
+            BuiltHarmonic(
+                2.0 * math.pi * harmonic.frequency, np.array(harmonic.amplitudes) * np.exp(1j * harmonic.phase)
+            )
+            for harmonic in self.harmonic
         ]
         if self.over_time is not None:
             parts.append(BuiltHistory(np.array(self.over_time.time), np.array(self.over_time.rows).T))
@@ -387,8 +389,8 @@ class Transient(Table):
         if self.discard >= self.revolutions:
             raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
         if self.revolutions - self.discard < _SHORTEST_RECORD:
-            told = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
-            raise wrong(told, "revolutions")
+            expected = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
+            raise wrong(expected, "revolutions")
         return self
 
 

@@ -15,7 +15,7 @@ _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))"""
 
 
 def parse_key_path(text: str) -> tuple[str, ...] | None:
-    """Split a key path such as ``rotor.input.segments[1].length``; names that hold dots stand in quotes.
+    """Split a key path such as ``rotor.input.segments[1].length``; names with dots stand in quotes.
 
     Returns
     -------
@@ -47,25 +47,26 @@ def apply_overrides(
 ) -> tuple[dict[str, Any], dict[Location, str]]:
     """Apply ``key.path=value`` texts to a copy of a document, in order.
 
-    A value is written as in TOML; what is not TOML (``10 mm``, ``lumped``) stands for itself as text. An empty
-    value takes the key away. Keys that are not yet there are added; whether they may be is for the models to say. One
-    thickness of all walls of a box is written out for each of them where a path leads to one of them. A step ``*``
-    stands for every entry of a list or a table, and leaves out those that have not the key, as written or by default;
-    where no entry of a list has it, all get it.
+    A value is written as in TOML; other text (``10 mm``, ``lumped``) stands for itself. An empty value removes the key.
+    Missing keys are added; the models decide whether they are allowed. One thickness of all walls of a box is written
+    out for each of them where a path leads to one of them. A step ``*`` stands for every entry of a list or a table,
+    and leaves out entries without the key, as written or by default; where no entry of a list has it, all get it.
 
     Parameters
     ----------
-    document
-        As written.
-    overrides
-        Texts.
-    resolved
-        Makes of a document one with its defaults written out, for what ``*`` stands for.
+    document : dict
+        The case as written.
+    overrides : iterable of str
+        Texts ``key.path=value``.
+    resolved : callable
+        Returns a document with its defaults written out, in which ``*`` is expanded.
 
     Returns
     -------
-    document, sources
-        The changed copy, and from each changed location to the text that changed it.
+    document : dict
+        The changed copy.
+    sources : dict of location to str
+        Text that changes each location.
 
     Raises
     ------
@@ -81,7 +82,7 @@ def apply_overrides(
             continue
         try:
             value = _read_value(value_text.strip())
-            # What is by default alone cannot be taken away.
+            # A default cannot be removed.
             document = _written_out(document, steps)
             whole = resolved(document) if "*" in steps and value is not NOTHING else document
             places = [
@@ -100,9 +101,11 @@ _WALL = ("housing", "box", "wall")
 
 
 def _written_out(document: dict[str, Any], steps: tuple[str, ...]) -> dict[str, Any]:
-    """Return a document in which a path to one wall of a box finds it where one number stands for all walls."""
+    """Return a document with a thickness for each wall of a box, where a path leads to one of them."""
     box = look_up(document, _WALL[:-1])
-    leads = len(steps) == len(_WALL) + 1 and all(step in (own, "*") for step, own in zip(steps, _WALL, strict=False))
+    leads = len(steps) == len(_WALL) + 1 and all(
+        step in (wall_step, "*") for step, wall_step in zip(steps, _WALL, strict=False)
+    )
     if leads and isinstance(box, dict) and isinstance(box.get("wall"), (int, float, str)):
         box["wall"] = wall_by_face(box["wall"])
     return document
@@ -114,19 +117,19 @@ class _LeadsNowhereError(Exception):
 
 
 def _expanded(document: Any, steps: tuple[str, ...], resolved: Any, value: Any) -> list[tuple[str, ...]]:
-    """Expand the wildcards of a path to the paths in a document or once it is resolved; a plain path gives itself."""
+    """Expand the wildcards of a path to the paths in a document or in the resolved one; a plain path gives itself."""
     if "*" not in steps:
         return [steps]
-    places = [place for known in (resolved, document) for place in matching_places(known, steps)]
+    places = [place for searched in (resolved, document) for place in matching_places(searched, steps)]
     if not places and value is not NOTHING:
         # A key that no entry of a list has, such as a relief where no gear has one, is a new one for all of them.
         after = len(steps) - steps[::-1].index("*")
         entries = [place for place in matching_places(document, steps[:after]) if isinstance(place[-1], int)]
         places = [(*place, *steps[after:]) for place in entries if steps[after:]]
-    found = list(dict.fromkeys(tuple(str(step) for step in place) for place in places))
-    if not found:
+    paths = list(dict.fromkeys(tuple(str(step) for step in place) for place in places))
+    if not paths:
         raise _LeadsNowhereError((), ".".join(steps), "a path with * that some entries of the case have")
-    return found
+    return paths
 
 
 def matching_places(document: object, steps: Sequence[str], place: Location = ()) -> Iterator[Location]:
@@ -135,18 +138,18 @@ def matching_places(document: object, steps: Sequence[str], place: Location = ()
         yield place
         return
     step, *rest = steps
-    here = look_up(document, place)
-    if isinstance(here, Mapping):
-        for key in here if step == "*" else [step] if step in here else []:
+    value = look_up(document, place)
+    if isinstance(value, Mapping):
+        for key in value if step == "*" else [step] if step in value else []:
             yield from matching_places(document, rest, (*place, key))
-    elif isinstance(here, list):
-        found = place_in_list(here, step)
-        for number in range(len(here)) if step == "*" else [] if found is None else [found]:
+    elif isinstance(value, list):
+        index = place_in_list(value, step)
+        for number in range(len(value)) if step == "*" else [] if index is None else [index]:
             yield from matching_places(document, rest, (*place, number))
 
 
 def _read_value(text: str) -> Any:
-    """Read a TOML value; text that is none stands for itself. ``NOTHING`` for an empty text."""
+    """Read a TOML value; other text stands for itself. ``NOTHING`` for an empty text."""
     if not text:
         return NOTHING
     try:
@@ -157,34 +160,34 @@ def _read_value(text: str) -> Any:
 
 
 def _set(document: dict[str, Any], steps: tuple[str, ...], value: Any) -> list[Location]:
-    """Set one value in place; return where, after the tables made on the way."""
-    made: list[Location] = []
-    here: Any = document
+    """Set one value in place; return its location, after those of the tables that are created for it."""
+    created: list[Location] = []
+    node: Any = document
     location: Location = ()
     for depth, step in enumerate(steps):
         last = depth == len(steps) - 1
-        if isinstance(here, list):
-            index = place_in_list(here, step)
+        if isinstance(node, list):
+            index = place_in_list(node, step)
             if index is None:
-                names = [entry["name"] for entry in here if isinstance(entry, dict) and "name" in entry]
-                known = f" or one of {', '.join(map(repr, names))}" if names else ""
-                expected = f"a place from 0 to {len(here) - 1}{known}{did_you_mean(step, map(str, names))}"
+                names = [entry["name"] for entry in node if isinstance(entry, dict) and "name" in entry]
+                alternatives = f" or one of {', '.join(map(repr, names))}" if names else ""
+                expected = f"a place from 0 to {len(node) - 1}{alternatives}{did_you_mean(step, map(str, names))}"
                 raise _LeadsNowhereError(location, step, expected)
             key: str | int = index
-        elif isinstance(here, dict):
+        elif isinstance(node, dict):
             key = step
-            if key not in here and last and value is NOTHING:
-                raise _LeadsNowhereError(location, step, f"a key to take away{did_you_mean(step, map(str, here))}")
-            if key not in here and not last:
-                here[key] = {}
-                made.append((*location, key))
+            if key not in node and last and value is NOTHING:
+                raise _LeadsNowhereError(location, step, f"a key to take away{did_you_mean(step, map(str, node))}")
+            if key not in node and not last:
+                node[key] = {}
+                created.append((*location, key))
         else:
             raise _LeadsNowhereError(location, step, f"no further key: {key_of(location)} is a value, not a table")
         location = (*location, key)
         if not last:
-            here = here[key]
+            node = node[key]
         elif value is NOTHING:
-            del here[key]
+            del node[key]
         else:
-            here[key] = value
-    return [*made, location]
+            node[key] = value
+    return [*created, location]

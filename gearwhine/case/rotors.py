@@ -59,8 +59,8 @@ if TYPE_CHECKING:
     from rotors.ross.reading import RossModel
 
 _MOST_SHEAR = 1.5
-"""Coefficients of sections that bend softer than they shear are above 1, hardly ever by more; its reciprocal is meant
-where one is."""
+"""Largest shear coefficient: sections that bend softer than they shear have little more than 1; for a larger one its
+reciprocal is meant."""
 
 
 @dataclass(frozen=True)
@@ -236,9 +236,9 @@ class RoundDisc(Table):
         return BuiltDisc.from_dimensions(self.at, self.width, self.diameter, self.bore, density)
 
 
-def _named(own: str | None, rotor: Rotor) -> str:
+def _named(part_material: str | None, rotor: Rotor) -> str:
     """Name of a part's material: its own, else its rotor's."""
-    name = own or rotor.material
+    name = part_material or rotor.material
     assert name is not None
     return name
 
@@ -331,9 +331,9 @@ class Rotor(Table):
     @model_validator(mode="after")
     def _described(self) -> Rotor:
         if self.file is None:
-            for key, what in (("material", "the name of a material"), ("segments", "a list")):
+            for key, expected in (("material", "the name of a material"), ("segments", "a list")):
                 if not getattr(self, key):
-                    raise wrong(f"{what}, or a rotor's file instead", key)
+                    raise wrong(f"{expected}, or a rotor's file instead", key)
             return self
         for key in _OF_THE_SHAFT:
             if key in self.model_fields_set:
@@ -387,7 +387,7 @@ class Rotor(Table):
         """Build the unbalances."""
         from rotors import Unbalance as BuiltUnbalance
 
-        return [BuiltUnbalance(one.at, one.moment, one.phase) for one in self.unbalance]
+        return [BuiltUnbalance(entry.at, entry.moment, entry.phase) for entry in self.unbalance]
 
     def build_bow(self) -> BuiltBow | None:
         """Build the residual bow; None for a straight shaft."""

@@ -38,10 +38,10 @@ def rotor_speeds(case: Case, speed: float | None = None) -> dict[str, float]:
 
     Parameters
     ----------
-    case
-        With gear pairs; without, every rotor turns at the same speed.
-    speed
-        Of the first driver's rotor [rad/s]; None: that of `[operation]`.
+    case : Case
+        Case with gear pairs; without them every rotor turns at the same speed.
+    speed : float, optional
+        Speed of the first driver's rotor [rad/s]; by default that of `[operation]`.
 
     Raises
     ------
@@ -66,10 +66,10 @@ def applied_torques(case: Case, torque: float | None = None) -> tuple[Torque, ..
 
     Parameters
     ----------
-    case
-        With an `[operation]`.
-    torque
-        Input torque [N m], which the outputs take in their proportions; None: the torque of `[operation]`.
+    case : Case
+        Case with an `[operation]`.
+    torque : float, optional
+        Input torque [N m], which the outputs take in their proportions; by default that of `[operation]`.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def _speed(case: Case, speed: float | None = None) -> float:
 
 
 BEYOND_OPERATION = 1.5
-"""How far a Campbell diagram goes where no speeds are given, over the speed of operation."""
+"""Default end of a Campbell diagram over the speed of operation."""
 
 CAMPBELL_STEPS = 50
 RESPONSE_STEPS = 300
@@ -117,8 +117,8 @@ RESPONSE_STEPS = 300
 
 def whirl_speeds(case: Case, rotor: str) -> tuple[float, ...]:
     """Return the speed of operation, then those of the sweep."""
-    given = () if case.operation is None else (case.operation.speed,)
-    return _turned(case, rotor, (*given, *(case.sweep.speeds if case.sweep else ())))
+    operation_speed = () if case.operation is None else (case.operation.speed,)
+    return _turned(case, rotor, (*operation_speed, *(case.sweep.speeds if case.sweep else ())))
 
 
 def campbell_speeds(case: Case, rotor: str) -> tuple[float, ...]:
@@ -159,7 +159,7 @@ def response_speeds(case: Case, rotor: str) -> tuple[float, ...]:
 
 
 def table_range(case: Case, rotor: str) -> tuple[float, float]:
-    """Return the lowest and the highest speed that the tables of all of a rotor's bearings hold, without their sense.
+    """Return the lowest and the highest speed, without sense, that the tables of all bearings of a rotor hold.
 
     Zero and infinity for bearings without tables.
     """
@@ -168,7 +168,7 @@ def table_range(case: Case, rotor: str) -> tuple[float, float]:
 
 
 def _turned(case: Case, rotor: str, speeds: tuple[float, ...]) -> tuple[float, ...]:
-    """Return speeds of the first driver's rotor as those of another; a rotor that nothing turns stands still."""
+    """Return speeds of the first driver's rotor as those of another; a rotor outside the train stands still."""
     ratio = float(speed_ratios(case).get(rotor, 0.0))
     return tuple(ratio * speed for speed in speeds)
 

@@ -20,7 +20,7 @@ from gearwhine.case.overrides import matching_places, parse_key_path
 SPEED_KEY = "operation.speed"
 
 _EXPECTED = "key.path=from:to:n or key.path=a,b,c, such as operation.torque='10 N*m:100 N*m:10'"
-_DIGITS = 12  # of a value between two ends
+_DIGITS = 12  # digits of a value between two ends
 _BRACKETS = {"[": "]", "{": "}", "(": ")"}
 
 
@@ -30,14 +30,14 @@ class SweptKey:
 
     Attributes
     ----------
-    key
+    key : str
         Key path, as ``--set`` takes it; several with commas between.
-    texts
-        The values as ``--set`` takes them.
-    values
-        The same as numbers in ``unit``; the texts themselves where they are no numbers of one kind.
-    unit
-        That of the first value; empty for plain numbers and texts.
+    texts : tuple of str
+        Values as ``--set`` takes them.
+    values : tuple of float or tuple of str
+        Values as numbers in ``unit``; the texts themselves where they are no numbers of one kind.
+    unit : str
+        Unit of the first value; empty for plain numbers and texts.
     """
 
     key: str
@@ -69,7 +69,7 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
     Raises
     ------
     CaseError
-        Where a text is no ``--over``, a key is gone through twice, there is nothing to go through, or too much.
+        Where a text is no ``--over``, a key is swept twice, or there are no points or too many.
     """
     keys, problems = list[SweptKey](), list[Problem]()
     for text in over:
@@ -79,12 +79,12 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             problems += error.problems
     paths = list[tuple[str, ...]]()
     for key in keys:
-        own = [path for one in key.keys for path in _paths(case, one)]
-        if not own:
+        key_paths = [path for path_text in key.keys for path in _paths(case, path_text)]
+        if not key_paths:
             problems.append(Problem("--over", key.key, "a path with * that some entries of the case have"))
-        if len(set(own)) < len(own) or set(own) & set(paths):
+        if len(set(key_paths)) < len(key_paths) or set(key_paths) & set(paths):
             problems.append(Problem("--over", key.key, "each key once"))
-        paths += own
+        paths += key_paths
     if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
         keys.insert(0, _speeds(case.sweep.speeds))
     if not keys and not problems:
@@ -101,8 +101,8 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
 def _paths(case: Case, key: str) -> list[tuple[str, ...]]:
     """Return the paths that a key stands for; entries of lists that have names are given by their numbers."""
     document, steps = case_document(case), parse_key_path(key) or ()
-    found = [parse_key_path(key_of(place)) or () for place in matching_places(document, steps)]
-    return found if found or "*" in steps else [steps]
+    paths = [parse_key_path(key_of(place)) or () for place in matching_places(document, steps)]
+    return paths if paths or "*" in steps else [steps]
 
 
 def parse_over(text: str) -> SweptKey:
@@ -157,7 +157,7 @@ def _speeds(speeds: Iterable[float]) -> SweptKey:
 
 
 def _in_one_unit(texts: Sequence[str]) -> tuple[list[Decimal], str] | None:
-    """Numbers in the unit of the first; None where they are no numbers, or not of one kind."""
+    """Return numbers in the unit of the first; None where they are no numbers, or not of one kind."""
     numbers, unit = list[Decimal](), None
     for text in texts:
         parts = units.split_quantity(text)

@@ -29,9 +29,9 @@ _RESPELT = {"°": "degree", "%": "percent"}
 
 
 class QuantityError(ValueError):
-    """A text or number is not the quantity that was asked for.
+    """A text or number is not the required quantity.
 
-    The message is what was expected; `note` says what the value is, where that is not plain to see.
+    The message is the expectation; `note` names the dimension of the value, where that is not obvious.
     """
 
     def __init__(self, expected: str, note: str = "") -> None:
@@ -45,17 +45,17 @@ class Dimension:
 
     Attributes
     ----------
-    name
-        With its article, as a message shows it: ``"a length"``.
-    unit
+    name : str
+        Name with its article, as a message shows it: ``"a length"``.
+    unit : str
         SI unit of the stored float.
-    example
+    example : str
         A quantity as a user might write it.
-    largest, smallest
-        What no machine has more of, without its sign, and the least that divides anything, in SI: far beyond
-        gearboxes, but such that products of several quantities neither overflow nor vanish.
-    display
-        A customary unit, used in output where it gives back the very same float.
+    largest, smallest : float
+        Largest absolute value, and least one of a divisor [SI]: far beyond gearboxes, but such that products of several
+        quantities neither overflow nor vanish.
+    display : str
+        Customary unit, used in output where it gives back the very same float.
     """
 
     name: str
@@ -215,13 +215,13 @@ def _matches(unit: _Unit, dimension: Dimension) -> bool:
     """Whether a unit measures this dimension; radians count only for angles, speeds and frequencies."""
     if dimension is RATIO:
         return unit.powers == ()
-    wanted = _parse_unit(dimension.unit)
-    assert wanted is not None, dimension.unit
+    required = _parse_unit(dimension.unit)
+    assert required is not None, dimension.unit
     if dimension is SPEED and ("cycle", 1) in unit.powers:
         return unit.powers == (("cycle", 1), ("second", -1))
     if dimension in (ANGLE, SPEED, FREQUENCY):
-        return unit.powers == wanted.powers
-    return unit.without_angle() == wanted.without_angle()
+        return unit.powers == required.powers
+    return unit.without_angle() == required.without_angle()
 
 
 def _name_of(unit: _Unit) -> str:
@@ -236,15 +236,15 @@ def parse_quantity(value: object, dimension: Dimension) -> float:
 
     Parameters
     ----------
-    value
-        ``"6.35 mm"`` or ``0.00635``.
-    dimension
+    value : str or float
+        Text such as ``"6.35 mm"``, or number such as ``0.00635``.
+    dimension : Dimension
         Required dimension.
 
     Returns
     -------
     float
-        In ``dimension.unit``, the double nearest to the decimal number written wherever the unit is a decimal
+        Value in ``dimension.unit``: the double nearest to the written decimal number wherever the unit is a decimal
         multiple of the SI unit.
 
     Raises
@@ -292,12 +292,16 @@ def split_quantity(text: str) -> tuple[Decimal, str] | None:
     return (Decimal(match[1]), unit) if not unit or _parse_unit(unit) is not None else None
 
 
-def unit_ratio(unit: str, other: str) -> Decimal | None:
-    """Conversion factor from a unit to another; None where they measure different things."""
-    if unit == other:
+def unit_ratio(unit: str, target: str) -> Decimal | None:
+    """Return the conversion factor from a unit to another; None where they measure different things."""
+    if unit == target:
         return Decimal(1)
-    one, two = (_parse_unit(text) if text else None for text in (unit, other))
-    return one.factor / two.factor if one is not None and two is not None and one.powers == two.powers else None
+    first, second = (_parse_unit(text) if text else None for text in (unit, target))
+    return (
+        first.factor / second.factor
+        if first is not None and second is not None and first.powers == second.powers
+        else None
+    )
 
 
 def si_amount(value: object) -> float | None:
@@ -332,15 +336,14 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
 
     Parameters
     ----------
-    number
-        In ``dimension.unit``.
-    dimension
-        Dimension.
+    number : float
+        Value in ``dimension.unit``.
+    dimension : Dimension
 
     Returns
     -------
     str or float
-        Text with a unit (the customary one where nothing is lost by it); the number itself for a ratio.
+        Text with a unit (the customary one where it is exact); the number itself for a ratio.
     """
     if not dimension.unit:
         return number
@@ -356,10 +359,10 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
 
 
 def rpm(value: float) -> float:
-    """Revolutions a minute as an angular speed [rad/s]."""
+    """Return revolutions per minute as an angular speed [rad/s]."""
     return value * math.pi / 30.0
 
 
 def to_rpm(speed: float) -> float:
-    """Angular speed [rad/s] in revolutions a minute."""
+    """Return an angular speed [rad/s] in revolutions per minute."""
     return speed * 30.0 / math.pi

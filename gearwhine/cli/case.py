@@ -30,9 +30,9 @@ def run(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.run import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        return run_into(given, folder, fresh=fresh, pictures=pictures, progress=progress).document
+        return run_into(loaded_case, folder, fresh=fresh, pictures=pictures, progress=progress).document
 
     on_case(case, common, work, shown_by(sections, timed=True))
 
@@ -50,8 +50,8 @@ def check(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.check import sections, summary
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return written(analyses.check(given, progress=progress), common.output, progress)
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        return written(analyses.check(loaded_case, progress=progress), common.output, progress)
 
     on_case(case, common, work, shown_by(sections if verbose else summary))
 
@@ -95,8 +95,8 @@ def report(
     from gearwhine.analyses.case import write_report
     from gearwhine.output.terminal import shown_by
 
-    def work(folder: Path, given: "Case | None", progress: "Progress") -> dict[str, Any]:
-        return write_report(folder, given, interactive=interactive, progress=progress)
+    def work(folder: Path, loaded_case: "Case | None", progress: "Progress") -> dict[str, Any]:
+        return write_report(folder, loaded_case, interactive=interactive, progress=progress)
 
     _on_results(results, common, work, shown_by(lambda document: ()))
 
@@ -112,7 +112,12 @@ def _on_results(
     from gearwhine.progress import shown
 
     if not Path(results).is_dir():
-        on_case(results, common, lambda given, progress: work(results_folder(results, common), given, progress), show)
+        on_case(
+            results,
+            common,
+            lambda loaded_case, progress: work(results_folder(results, common), loaded_case, progress),
+            show,
+        )
         return
     if common.output is not None:
         raise CaseError([Problem("--output", str(common.output), f"none beside the results folder {results!r}")])
@@ -162,10 +167,12 @@ def export(
     from gearwhine.analyses.case import Format, export_results, export_sections
     from gearwhine.output.terminal import shown_by
 
-    asked: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
-    formats = [name for name, wanted in asked.items() if wanted] or list(asked)
+    requested: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
+    formats = [name for name, is_requested in requested.items() if is_requested] or list(requested)
 
-    def work(folder: Path, given: "Case | None", progress: "Progress") -> dict[str, Any]:
-        return export_results(folder, given, formats, signals="all" if all_signals else "sensors", seconds=seconds)
+    def work(folder: Path, loaded_case: "Case | None", progress: "Progress") -> dict[str, Any]:
+        return export_results(
+            folder, loaded_case, formats, signals="all" if all_signals else "sensors", seconds=seconds
+        )
 
     _on_results(results, common, work, shown_by(export_sections))

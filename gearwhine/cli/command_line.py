@@ -54,7 +54,7 @@ def _run_command(arguments: list[str]) -> int:
     from gearwhine.failures import explain
 
     for stream in (sys.stdout, sys.stderr):
-        # What a terminal's encoding lacks, such as µ in ASCII, is shown as ? there.
+        # A character that the terminal's encoding lacks, such as µ in ASCII, is shown as ?.
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
 

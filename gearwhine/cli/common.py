@@ -64,7 +64,7 @@ FreshRun = Annotated[
 ]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
 
-_LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take, results' own names beside the latter
+_LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
 _LONGEST_SHOWN = 60
 _RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
 
@@ -119,25 +119,25 @@ def hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str
 
 
 def _check_folder(folder: Path) -> None:
-    """Refuse a place where no results can go before the work begins, and make nothing yet."""
+    """Refuse a folder that cannot hold results, before the work begins and without creating it."""
     from gearwhine.case import CaseError, Problem
     from gearwhine.output import COMMANDS
 
     if any(len(os.fsencode(part)) > _LONGEST_NAME for part in folder.parts) or len(os.fsencode(folder)) > _LONGEST_PATH:
-        shown = f"{str(folder)[:_LONGEST_SHOWN]}…"
-        raise CaseError([Problem("--output", shown, f"a folder whose name has at most {_LONGEST_NAME} bytes")])
+        short_name = f"{str(folder)[:_LONGEST_SHOWN]}…"
+        raise CaseError([Problem("--output", short_name, f"a folder whose name has at most {_LONGEST_NAME} bytes")])
     place = folder
     while not place.exists() and place != place.parent:
         if place.is_symlink():
             raise CaseError([Problem("--output", str(folder), f"a folder; {place} is a link that leads nowhere")])
         place = place.parent
     if not place.is_dir() or not os.access(place, os.W_OK):
-        what = "is a file" if place.is_file() else "cannot be written to"
-        raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {what}")])
+        reason = "is a file" if place.is_file() else "cannot be written to"
+        raise CaseError([Problem("--output", str(folder), f"a folder for the results; {place} {reason}")])
     if folder.is_dir():
-        taken = [one.name for one in sorted(folder.iterdir()) if one.suffix in _RESULTS and one.is_dir()]
-        if taken:
-            expected = f"a folder for the results; in this one {taken[0]!r}, where a file would go, is a folder"
+        folders = [path.name for path in sorted(folder.iterdir()) if path.suffix in _RESULTS and path.is_dir()]
+        if folders:
+            expected = f"a folder for the results; in this one {folders[0]!r}, where a file would go, is a folder"
             raise CaseError([Problem("--output", str(folder), expected)])
         for name in COMMANDS:
             place = folder / name

@@ -25,9 +25,9 @@ def mesh(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.mesh import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        return written(analyses.mesh(given, suffix=format, progress=progress), folder, progress)
+        return written(analyses.mesh(loaded_case, suffix=format, progress=progress), folder, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -51,9 +51,9 @@ def modes(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.housing import detailed_sections, sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.modes(given, detail=detail, folder=common.output, fresh=fresh, progress=progress)
-        return written(found, common.output, progress)
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.modes(loaded_case, detail=detail, folder=common.output, fresh=fresh, progress=progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(detailed_sections if detail else sections))
 
@@ -64,9 +64,9 @@ def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.comparison import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.compare(given, folder=common.output, fresh=fresh, progress=progress)
-        return written(found, common.output, progress)
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.compare(loaded_case, folder=common.output, fresh=fresh, progress=progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -86,10 +86,12 @@ def survey(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.survey import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        found = analyses.survey(given, sensors=sensors, modes=modes, folder=folder, fresh=fresh, progress=progress)
-        return written(found, folder, progress)
+        result = analyses.survey(
+            loaded_case, sensors=sensors, modes=modes, folder=folder, fresh=fresh, progress=progress
+        )
+        return written(result, folder, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -119,9 +121,11 @@ def update(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.update import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        return written(analyses.update(given, null=null, held_back=held_back, progress=progress), folder, progress)
+        return written(
+            analyses.update(loaded_case, null=null, held_back=held_back, progress=progress), folder, progress
+        )
 
     on_case(case, common, work, shown_by(sections))
 
@@ -159,10 +163,10 @@ def render(
     from gearwhine.analyses import housing as analyses
     from gearwhine.output.terminal import show_files
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        found = analyses.render(
-            given,
+        result = analyses.render(
+            loaded_case,
             modes,
             view=view,
             mode_format=format,
@@ -172,6 +176,6 @@ def render(
             fresh=fresh,
             progress=progress,
         )
-        return written(found, folder, progress)
+        return written(result, folder, progress)
 
     on_case(case, common, work, show_files)

@@ -30,9 +30,9 @@ def rotors(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.rotors import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common) if write_ross else common.output
-        return written(analyses.rotors(given, write_ross=write_ross, progress=progress), folder, progress)
+        return written(analyses.rotors(loaded_case, write_ross=write_ross, progress=progress), folder, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -43,8 +43,8 @@ def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.gears import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        return written(analyses.gears(given, folder=common.output, progress=progress), common.output, progress)
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        return written(analyses.gears(loaded_case, folder=common.output, progress=progress), common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -85,9 +85,9 @@ def load(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.operating_point import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.operating_point(
-            given,
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.operating_point(
+            loaded_case,
             over_torque=over_torque,
             sensitivity=sensitivity,
             line=line,
@@ -96,7 +96,7 @@ def load(
             fresh=fresh,
             progress=progress,
         )
-        return written(found, common.output, progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -140,9 +140,9 @@ def system(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.system import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.system(
-            given,
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.system(
+            loaded_case,
             mesh_phase=mesh_phase,
             campbell=campbell,
             sidebands=sidebands,
@@ -151,7 +151,7 @@ def system(
             fresh=fresh,
             progress=progress,
         )
-        return written(found, common.output, progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -191,9 +191,9 @@ def steady(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.steady_state import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.steady(
-            given,
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.steady(
+            loaded_case,
             curve=curve,
             down=down,
             points=points,
@@ -202,7 +202,7 @@ def steady(
             fresh=fresh,
             progress=progress,
         )
-        return written(found, common.output, progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -213,9 +213,9 @@ def sound(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) 
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.sound import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
-        found = analyses.sound(given, folder=common.output, fresh=fresh, progress=progress)
-        return written(found, common.output, progress)
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+        result = analyses.sound(loaded_case, folder=common.output, fresh=fresh, progress=progress)
+        return written(result, common.output, progress)
 
     on_case(case, common, work, shown_by(sections))
 
@@ -250,13 +250,13 @@ def sweep(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.sweep import sections
 
-    def work(given: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
         source = (case, tuple(common.settings))
-        found = analyses.sweep(
-            given, source, over, folder, workers=workers, scheduler=scheduler, fresh=fresh, progress=progress
+        result = analyses.sweep(
+            loaded_case, source, over, folder, workers=workers, scheduler=scheduler, fresh=fresh, progress=progress
         )
-        return written(found, folder, progress)
+        return written(result, folder, progress)
 
     document = on_case(case, common, work, shown_by(sections, timed=True))
     if document["failed"]:

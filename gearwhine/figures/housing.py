@@ -55,28 +55,28 @@ from housing.measured import MeasuredGeometry
 
 FloatArray = npt.NDArray[np.float64]
 
-_BAND = 0.05  # within which the source's model was (TM-104434, Table II)
-_PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the room between them [mm of paper]
+_BAND = 0.05  # error within which the source's model is (TM-104434, Table II)
+_PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the gap between them [mm of paper]
 _LARGEST = 60.0  # area of the circle of MAC 1 [points²]
 _FAINT = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
 IntArray = npt.NDArray[np.int64]
 
 _COLORS = LinearSegmentedColormap.from_list("likeness", ["#ffffff", "#cfdeec", BLUE, "#0b2540"])
-_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # beside the cells: row names, gap, colours, their numbers [mm]
-_BELOW = 11.0  # for the columns' names, which stand [mm]
-_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # a cell's largest and least height, and the most of all [mm]
-_FITS = (4.2, 2.8)  # a cell from which on a number of two digits can be read in it [mm]
+_LEFT, _BESIDE, _SCALE, _NUMBERS = 24.0, 3.0, 3.0, 11.0  # widths of row names, gap, colour bar and its numbers [mm]
+_BELOW = 11.0  # height of the columns' upright names [mm]
+_CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # largest and least height of a cell, and largest of all [mm]
+_FITS = (4.2, 2.8)  # least width and height of a cell with a number of two digits [mm]
 _NOTHING = 0.05  # values below it are left blank
 _DARK = 0.5  # values above it are written in white
-_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # of a panel, and between them [mm of paper]
-_NAMED = 6  # at most, of the degrees of freedom that stand out
-_STANDS_OUT = 2.0  # times the median of the enhanced criterion
-_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # beside the panels, between two pairs, and for a pair's words [mm]
-_IN_A_ROW = 2  # pairs
-_LONGEST = 56  # caption [letters]
+_CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # height of a panel, and gap between panels [mm of paper]
+_NAMED = 6  # largest number of degrees of freedom that are named
+_STANDS_OUT = 2.0  # enhanced criterion over its median from which a degree of freedom is named
+_MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # margin beside the panels, gap between pairs, and height of a caption [mm]
+_IN_A_ROW = 2  # pairs in a row
+_LONGEST = 56  # length of the longest caption [letters]
 _REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
-_FAINTEST = 0.3  # opacity of what is farthest from the eye
+_FAINTEST = 0.3  # opacity of the farthest lines
 
 
 def draw_comparison(title: str, comparison: Comparison, model_frequencies: FloatArray) -> Figure:
@@ -84,12 +84,12 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    comparison
-        With pairs or without.
-    model_frequencies
-        (n,): of all the model's modes, rad/s; those without a partner are marked on their axis.
+    title : str
+        Title of the sheet.
+    comparison : Comparison
+        Comparison, also one without pairs.
+    model_frequencies : ndarray, shape (n,)
+        Frequencies of all the model's modes [rad/s]; those without a partner are marked on their axis.
     """
     measured = _measured(comparison)
     model = np.asarray(model_frequencies) / HERTZ
@@ -134,8 +134,8 @@ def _measured(comparison: Comparison) -> FloatArray:
 def _note(comparison: Comparison) -> str:
     if not comparison.pairs:
         return f"paired by {comparison.pairing}: none"
-    worst, rms = comparison.max_error_percent, comparison.rms_error_percent
-    return f"paired by {comparison.pairing}: largest error {worst:.2f} %, rms {rms:.2f} %"
+    largest, rms = comparison.max_error_percent, comparison.rms_error_percent
+    return f"paired by {comparison.pairing}: largest error {largest:.2f} %, rms {rms:.2f} %"
 
 
 def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
@@ -158,7 +158,7 @@ def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
 
 
 def _mark_unpaired(axes: Axes, comparison: Comparison, measured: FloatArray, model: FloatArray) -> None:
-    """Short marks on the axes at modes without a partner: red where one was to be expected."""
+    """Draw short marks on the axes at modes without a partner: red where one is expected."""
     shapes = comparison.shapes
     paired = {pair.mode for pair in comparison.pairs}
     expected = set() if shapes is None else set(shapes.unpaired_model)
@@ -208,17 +208,16 @@ def draw_mac_matrix(
 
     Parameters
     ----------
-    title, note
-        Of the sheet.
-    values
-        (n, m).
-    rows, columns
+    title, note : str
+        Title and note of the sheet.
+    values : ndarray, shape (n, m)
+    rows, columns : sequence of str
         Names of modes, such as ``3  1049 Hz``.
-    outlined
+    outlined : collection of (int, int)
         Cells of pairs: row and column from 0.
-    axes_named
+    axes_named : tuple of str
         Titles of rows and columns.
-    named
+    named : str
         Name of the values.
 
     Raises
@@ -259,7 +258,7 @@ def draw_mac_matrix(
 
 
 def _name(axis: Axis, names: Sequence[str], size: float, *, upright: bool) -> None:
-    """Names in the middles of the cells, every other one or fewer where they would touch."""
+    """Write names at the middles of the cells, every other one or fewer where they would touch."""
     step = max(int(np.ceil(2.6 / size)), 1)
     places = range(0, len(names), step)
     axis.set_ticks([place + 0.5 for place in places])
@@ -267,16 +266,16 @@ def _name(axis: Axis, names: Sequence[str], size: float, *, upright: bool) -> No
 
 
 def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray, names: Sequence[str]) -> Figure:
-    """Draw both criteria as bars in the survey's order; red what stands out by the one that sees signs and gains.
+    """Draw both criteria as bars in the survey's order; red: large by the one that depends on signs and gains.
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    comac, enhanced
-        (n,): NaN where unknown.
-    names
-        (n,): of the degrees of freedom, such as ``12 +z``.
+    title : str
+        Title of the sheet.
+    comac, enhanced : ndarray, shape (n,)
+        Both criteria; NaN where unknown.
+    names : sequence of str
+        Names of the degrees of freedom, such as ``12 +z``.
 
     Raises
     ------
@@ -286,29 +285,33 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
     count = len(names)
     if comac.shape != (count,) or enhanced.shape != (count,) or count == 0:
         raise ValueError(f"criteria of shapes {comac.shape} and {enhanced.shape} for {count} degrees of freedom")
-    known = np.flatnonzero(np.isfinite(enhanced))
-    worst = known[np.argsort(-enhanced[known], kind="stable")][:_NAMED]
-    worst = worst[enhanced[worst] > _STANDS_OUT * np.median(enhanced[known])] if known.size else worst
-    labels = [Label(names[dof], float(dof + 1), float(enhanced[dof]), RED) for dof in worst]
-    row = arrange(labels, [PANEL_WIDTH * (dof + 0.5) / count for dof in worst], PANEL_WIDTH)
+    finite = np.flatnonzero(np.isfinite(enhanced))
+    largest_dofs = finite[np.argsort(-enhanced[finite], kind="stable")][:_NAMED]
+    largest_dofs = (
+        largest_dofs[enhanced[largest_dofs] > _STANDS_OUT * np.median(enhanced[finite])]
+        if finite.size
+        else largest_dofs
+    )
+    labels = [Label(names[dof], float(dof + 1), float(enhanced[dof]), RED) for dof in largest_dofs]
+    row = arrange(labels, [PANEL_WIDTH * (dof + 0.5) / count for dof in largest_dofs], PANEL_WIDTH)
     note = "COMAC: 1 where pairs agree in amplitude; enhanced COMAC: 0 where they agree in sign and size too"
     figure = sheet(HEAD + 2.0 * _CRITERIA_HEIGHT + 2.0 * _CRITERIA_GAP + row.height + 2.0 + FOOT, title, note)
     lower = panel(figure, FOOT, _CRITERIA_HEIGHT)
     upper = panel(figure, FOOT + _CRITERIA_HEIGHT + row.height + _CRITERIA_GAP + 2.0, _CRITERIA_HEIGHT)
-    _bars(upper, comac, worst)
-    _bars(lower, enhanced, worst)
+    _bars(upper, comac, largest_dofs)
+    _bars(lower, enhanced, largest_dofs)
     upper.set(ylim=(0.0, 1.0), ylabel="COMAC")
     upper.tick_params(labelbottom=False)
-    largest = float(np.nanmax(enhanced)) if known.size else 0.0
+    largest = float(np.nanmax(enhanced)) if finite.size else 0.0
     lower.set(ylim=(0.0, max(1.08 * largest, 0.1)), ylabel="enhanced COMAC")
     lower.set(xlabel="measured degree of freedom, in the survey's order")
     draw_row(lower, row, _CRITERIA_HEIGHT + 1.0)
     return figure
 
 
-def _bars(axes: Axes, values: FloatArray, worst: npt.NDArray[np.int64]) -> None:
+def _bars(axes: Axes, values: FloatArray, highlighted: npt.NDArray[np.int64]) -> None:
     places = np.arange(1, len(values) + 1)
-    colors = [RED if place - 1 in worst else BLUE for place in places]
+    colors = [RED if place - 1 in highlighted else BLUE for place in places]
     axes.bar(places, np.nan_to_num(values), width=0.85, color=colors, lw=0.0)
     axes.set_xlim(0.5, len(values) + 0.5)
     axes.grid(visible=False, axis="x")
@@ -325,11 +328,11 @@ def draw_comparison_figures(
     Parameters
     ----------
     title : str
-        Of the case.
+        Title of the case.
     comparison, geometry
         See :func:`gearwhine.results.comparison.write_comparison`.
     model_frequencies : ndarray, shape (n,)
-        Of all the model's modes [rad/s].
+        Frequencies of all the model's modes [rad/s].
 
     Yields
     ------
@@ -349,13 +352,18 @@ def _draw_matrices(title: str, comparison: Comparison, shapes: ShapeCorrelation)
     model, measured = shapes.model_frequencies / HERTZ, shapes.measured_frequencies / HERTZ
     paired = {pair.mode - 1: pair.measured_mode - 1 for pair in comparison.pairs}
     near = (model >= 0.9 * measured[0]) & (model <= 1.1 * measured[-1])
-    shown = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
+    drawn_modes = [int(mode) for mode in range(len(model)) if near[mode] or mode in paired]
     columns = _mode_names(range(len(measured)), measured)
-    if shown:
-        outlined = [(row, paired[mode]) for row, mode in enumerate(shown) if mode in paired]
+    if drawn_modes:
+        outlined = [(row, paired[mode]) for row, mode in enumerate(drawn_modes) if mode in paired]
         note = "pairs outlined; close modes are paired by their span, not by the single values"
         figure = draw_mac_matrix(
-            f"MAC: {title}", shapes.mac[shown], _mode_names(shown, model), columns, outlined=outlined, note=note
+            f"MAC: {title}",
+            shapes.mac[drawn_modes],
+            _mode_names(drawn_modes, model),
+            columns,
+            outlined=outlined,
+            note=note,
         )
         yield "mac", figure
     note = "large values off the diagonal: modes found twice, or that the survey cannot tell apart"
@@ -416,12 +424,12 @@ def draw_measured_shapes(
     ----------
     title : str
     positions : ndarray, shape (n_points, 3)
-        Of the survey [m].
+        Positions of the survey's points [m].
     edges : ndarray of int, shape (n_edges, 2)
-        Points to join.
+        Points that the wires join.
     pairs : sequence of ShapePair
     towards_eye : ndarray, shape (3,)
-        From the survey to the camera, a unit vector; y points up.
+        Unit vector from the survey to the camera; y points up.
     """
     flat, depth = _projected(positions, towards_eye)
     reach = _REACH * float(np.linalg.norm(np.ptp(positions, axis=0)))
@@ -457,7 +465,7 @@ def draw_measured_shapes(
 
 
 def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Places on the picture, shape (n, 2), and nearness to the eye, shape (n,)."""
+    """Return places on the picture, shape (n, 2), and nearness to the eye, shape (n,)."""
     right = np.cross([0.0, 1.0, 0.0], towards_eye)
     right /= np.linalg.norm(right)
     upward = np.cross(towards_eye, right)

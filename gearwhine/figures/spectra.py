@@ -36,24 +36,24 @@ from gearwhine.figures.style import (
 )
 
 _MOST_LINES = 1 << 12
-_DENSEST = 2.5  # lines to a millimetre of paper that are drawn one by one
-_DECADES = 5.0  # of the amplitude axis, below its highest line
+_DENSEST = 2.5  # lines in a millimetre of paper up to which they are drawn one by one
+_DECADES = 5.0  # decades of the amplitude axis below its highest line
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
-_ROW_DECADES = 4.0  # that a row shows, below the highest line of all
+_ROW_DECADES = 4.0  # decades that a row shows below the highest line of all
 _OVERLAP = 1.7  # height of a row over the distance to the next
 _MOST_HARMONICS = 12
-_MOST_ROWS = 40  # that one can still tell apart
-_LOWEST_PANEL, _ROW_HEIGHT, _HIGHEST_PANEL = 40.0, 3.4, 175.0  # of a waterfall [mm of paper]
+_MOST_ROWS = 40  # largest number of legible rows
+_LOWEST_PANEL, _ROW_HEIGHT, _HIGHEST_PANEL = 40.0, 3.4, 175.0  # heights of a waterfall and its rows [mm of paper]
 
 
 def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) -> None:
     """Draw the lines of one signal above 0 Hz and up to a limit [Hz], and set the axes to them."""
-    shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
-    frequencies, amplitude = spectrum.frequencies[shown], spectrum.amplitude[shown]
+    inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
+    frequencies, amplitude = spectrum.frequencies[inside], spectrum.amplitude[inside]
     if (together := len(amplitude) // _MOST_LINES) > 1:
-        # Of lines closer than the eye can part the highest is drawn: a path of all takes hundreds of megabytes.
+        # Where lines are too close to be seen apart the highest is drawn: a path of all takes hundreds of megabytes.
         groups = amplitude[: len(amplitude) // together * together].reshape(-1, together)
         highest = np.arange(len(groups)) * together + groups.argmax(axis=1)
         frequencies, amplitude = frequencies[highest], amplitude[highest]
@@ -94,24 +94,25 @@ def draw_waterfall(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    values
-        (s,): such as speeds, distinct.
-    frequencies
-        (s, m): of each spectrum's lines, Hz.
-    amplitudes
-        (s, m): peak amplitudes; NaN where a spectrum has no such line. Rows of NaN alone are left out.
-    value_name, unit
-        Names of the axis of values, and of the amplitudes.
-    note
+    title : str
+        Title of the sheet.
+    values : array_like, shape (s,)
+        Distinct values of the rows, such as speeds.
+    frequencies : array_like, shape (s, m)
+        Frequencies of each spectrum's lines [Hz].
+    amplitudes : array_like, shape (s, m)
+        Peak amplitudes; NaN where a spectrum has no such line. Rows of NaN alone are left out.
+    value_name, unit : str
+        Name of the axis of values, and unit of the amplitudes.
+    note : str
         Begin of the note below the title.
-    mesh_frequencies
-        (s, p): of each gear pair, Hz; dashed with their harmonics, which are numbered at the edge of the panel.
-    mesh_names
-        (p,): of the gear pairs.
-    housing_frequencies
-        (s, n): natural frequencies, Hz, NaN where there are fewer; marked under each row.
+    mesh_frequencies : array_like, shape (s, p)
+        Mesh frequencies of each gear pair [Hz]; dashed with their harmonics, which are numbered at the edge of the
+        panel.
+    mesh_names : sequence of str
+        Names of the gear pairs.
+    housing_frequencies : array_like, shape (s, n)
+        Natural frequencies [Hz], NaN where there are fewer; marked under each row.
 
     Raises
     ------
@@ -126,14 +127,16 @@ def draw_waterfall(
     spacing = _spacing(at[rows])
 
     harmonics = _mesh_harmonics(at[rows], meshes[rows], list(mesh_names), limit)
-    above = [one.label for one in harmonics if one.at_top]
-    beside = [one.label for one in harmonics if not one.at_top]
+    above = [harmonic.label for harmonic in harmonics if harmonic.at_top]
+    beside = [harmonic.label for harmonic in harmonics if not harmonic.at_top]
     width = SHEET_WIDTH - LEFT - column_width(beside)
     row = arrange(above, [label.x / limit * width for label in above], width)
     tall = min(_LOWEST_PANEL + _ROW_HEIGHT * rows.size, _HIGHEST_PANEL)
-    told = [note] if note else []
-    told.append(f"each row {plain(highest * 10.0**-_ROW_DECADES, 2)} to {plain(highest, 2)} {unit} peak, logarithmic")
-    figure = sheet(HEAD + row.height + 2.0 + tall + FOOT, title, "; ".join(told))
+    remarks = [note] if note else []
+    remarks.append(
+        f"each row {plain(highest * 10.0**-_ROW_DECADES, 2)} to {plain(highest, 2)} {unit} peak, logarithmic"
+    )
+    figure = sheet(HEAD + row.height + 2.0 + tall + FOOT, title, "; ".join(remarks))
     axes = panel(figure, FOOT, tall, width=width)
     axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_OVERLAP + 0.2) * spacing))
     axes.set(xlabel="frequency [Hz]", ylabel=value_name)
@@ -153,23 +156,23 @@ def draw_waterfall(
 
 
 def _chosen_rows(values: FloatArray, heights: FloatArray) -> IntArray:
-    """Return the spectra that are drawn, ascending in their value: those that are not NaN alone, at most `_MOST_ROWS`.
+    """Return the spectra that are drawn, ascending in their value: at most `_MOST_ROWS` that are not all NaN.
 
     Raises
     ------
     ValueError
         Where there is none.
     """
-    shown = np.flatnonzero(np.isfinite(heights).any(axis=1))
-    if not shown.size:
+    finite_rows = np.flatnonzero(np.isfinite(heights).any(axis=1))
+    if not finite_rows.size:
         raise ValueError("no spectrum to draw")
-    rows = shown[np.argsort(values[shown])]
+    rows = finite_rows[np.argsort(values[finite_rows])]
     return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, min(rows.size, _MOST_ROWS)).round().astype(int))])
 
 
 @dataclass(frozen=True)
 class _MeshHarmonic:
-    """A multiple of a mesh frequency through the rows [Hz], and its label at the edge of the panel that it leaves."""
+    """A multiple of a mesh frequency through the rows [Hz], and its label where it leaves the panel."""
 
     name: str
     color: str
@@ -181,18 +184,18 @@ class _MeshHarmonic:
 
 def _mesh_harmonics(values: FloatArray, meshes: FloatArray, names: list[str], limit: float) -> list[_MeshHarmonic]:
     """Return the multiples of mesh frequencies that lie below a limit [Hz]; pairs of one frequency are one."""
-    found: list[_MeshHarmonic] = []
+    harmonics: list[_MeshHarmonic] = []
     groups: dict[bytes, list[int]] = {}
     for pair in range(meshes.shape[1]):
         groups.setdefault(np.nan_to_num(meshes[:, pair]).round(9).tobytes(), []).append(pair)
     for place, pairs in enumerate(groups.values()):
         frequencies = meshes[:, pairs[0]]
-        known = np.isfinite(frequencies) & (frequencies > 0.0)
+        is_known = np.isfinite(frequencies) & (frequencies > 0.0)
         color = (RED, *SERIES[1:])[place % len(SERIES)]
-        told = ", ".join(names[pair] for pair in pairs if pair < len(names))
-        name = "mesh harmonics" if len(groups) == 1 or not told else f"harmonics of {name_in_legend(told, 26)}"
+        listed = ", ".join(names[pair] for pair in pairs if pair < len(names))
+        name = "mesh harmonics" if len(groups) == 1 or not listed else f"harmonics of {name_in_legend(listed, 26)}"
         for harmonic in range(1, _MOST_HARMONICS + 1):
-            across, up = harmonic * frequencies[known], values[known]
+            across, up = harmonic * frequencies[is_known], values[is_known]
             inside = np.flatnonzero(across <= limit)
             if not inside.size:
                 break
@@ -201,30 +204,36 @@ def _mesh_harmonics(values: FloatArray, meshes: FloatArray, names: list[str], li
             if not at_top and across[last + 1] > x:
                 # It leaves the panel between two rows.
                 x, y = limit, float(np.interp(limit, across[last : last + 2], up[last : last + 2]))
-            found.append(_MeshHarmonic(name, color, across, up, Label(f"{harmonic}×", x, y, color), at_top))
-    return found
+            harmonics.append(_MeshHarmonic(name, color, across, up, Label(f"{harmonic}×", x, y, color), at_top))
+    return harmonics
 
 
 def _draw_harmonics(axes: Axes, harmonics: Sequence[_MeshHarmonic]) -> dict[str, Line2D]:
     """Draw mesh harmonics through the rows, and return a line of each name for the legend."""
     handles: dict[str, Line2D] = {}
-    for one in harmonics:
-        (drawn,) = axes.plot(
-            one.frequencies, one.values, color=one.color, lw=0.8, ls=(0, (4, 3)), zorder=4.5, label=one.name
+    for harmonic in harmonics:
+        (line,) = axes.plot(
+            harmonic.frequencies,
+            harmonic.values,
+            color=harmonic.color,
+            lw=0.8,
+            ls=(0, (4, 3)),
+            zorder=4.5,
+            label=harmonic.name,
         )
-        handles.setdefault(one.name, drawn)
+        handles.setdefault(harmonic.name, line)
     return handles
 
 
 def _draw_row(
     axes: Axes, lines: FloatArray, heights: FloatArray, base: float, spacing: float, highest: float, *, zorder: float
 ) -> None:
-    """One spectrum on its base line; it hides what lies behind it."""
-    known = np.isfinite(heights) & (lines > 0.0)
-    decades = np.log10(np.maximum(heights[known], 1e-300) / highest) + _ROW_DECADES
+    """Draw one spectrum on its base line; it hides rows behind it."""
+    is_known = np.isfinite(heights) & (lines > 0.0)
+    decades = np.log10(np.maximum(heights[is_known], 1e-300) / highest) + _ROW_DECADES
     tops = base + _OVERLAP * spacing * np.clip(decades, 0.0, None) / _ROW_DECADES
-    axes.fill_between(lines[known], base, tops, color="white", lw=0.0, zorder=zorder)
-    axes.plot(lines[known], tops, color=BLUE, lw=0.6, zorder=zorder + 0.001)
+    axes.fill_between(lines[is_known], base, tops, color="white", lw=0.0, zorder=zorder)
+    axes.plot(lines[is_known], tops, color=BLUE, lw=0.6, zorder=zorder + 0.001)
 
 
 def _mark_modes(axes: Axes, modes: FloatArray, base: float, spacing: float, limit: float) -> None:

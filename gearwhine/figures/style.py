@@ -30,27 +30,27 @@ INK, BLUE, RED, GREY, PALE = "#202428", "#1f5a96", "#b5382a", "#8a9097", "#e4e7e
 SERIES = (BLUE, "#c77d1e", "#3b7d4f", "#7a4f9a", "#5b6770", "#a3485f", "#2a8c8c", "#8c6d1f")
 SHEET_WIDTH = 160.0  # of a figure made for print [mm]
 LEFT, RIGHT = 15.0, 4.0  # margins of such a sheet beside its panels [mm]
-HEAD, FOOT = 13.0, 11.0  # ... for its title and a note of two lines, and for an axis with its name [mm]
+HEAD, FOOT = 13.0, 11.0  # margins for its title and a note of two lines, and for an axis with its name [mm]
 PANEL_WIDTH = SHEET_WIDTH - LEFT - RIGHT
-HALF_GAP = 17.0  # between two panels side by side, for the second one's numbers and name [mm]
+HALF_GAP = 17.0  # gap between two panels side by side, for the second one's numbers and name [mm]
 HALF_WIDTH = 0.5 * (PANEL_WIDTH - HALF_GAP)
-NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # letters on it [points]
+NOTE, TICK, LABEL, TITLE = 6.5, 7.0, 7.5, 9.0  # sizes of letters [points]
 MM_PER_INCH = 25.4
 RPM = 9.549296585513721  # revolutions per minute of 1 rad/s
 HERTZ = 2.0 * pi  # rad/s of 1 Hz
 MILLI, MICRO, MEGA = 1e3, 1e6, 1e-6  # factors from m to mm, from m to µm, from Pa to MPa and from N/m to N/µm
 
-_SPARE = (5.4, 2.6, 0.0)  # of the head that a note of none, one and two lines leaves empty [mm]
-_IN_HEAD = 4  # entries of a legend beside the title at most
-_LEGEND_ROW, _LEGEND_MARGIN = 3.6, 1.5  # of a legend below the panels [mm]
-_NOTE_LETTERS = 124  # of a note in one line
-_NAME_OF_AXIS = 11.2  # left of a panel [mm]
+_SPARE = (5.4, 2.6, 0.0)  # height of the head that a note of no, one and two lines leaves empty [mm]
+_IN_HEAD = 4  # largest number of a legend's entries beside the title
+_LEGEND_ROW, _LEGEND_MARGIN = 3.6, 1.5  # height of a row and margin of a legend below the panels [mm]
+_NOTE_LETTERS = 124  # letters of a note in one line
+_NAME_OF_AXIS = 11.2  # distance of an axis's name from the left of its panel [mm]
 _SCREEN_DPI, _PRINT_DPI = 130, 200
-_GAP = 2.0  # between neighbouring labels [mm]
-_RISE = 4.0  # of a leader between the last of what is drawn and the row [mm]
+_GAP = 2.0  # gap between neighbouring labels [mm]
+_RISE = 4.0  # rise of a leader between the drawing and the row [mm]
 _LEAD, _ASIDE = 1.6, 2.2  # end of a leader and begin of its label beside a panel [mm]
-_PANEL_TITLE = 48  # letters over half a sheet
-_NEAR = 0.3  # between labels one above the other [mm]
+_PANEL_TITLE = 48  # letters of a title over half a sheet
+_NEAR = 0.3  # gap between labels one above the other [mm]
 _RIGHT_ANGLE = 90.0  # degrees
 _MILLION = 1e6
 _FEW_DECADES = 60.0  # ratio of the ends of a logarithmic axis below which powers of ten are too few marks
@@ -69,13 +69,13 @@ def tidy(axes: Axes, *, size: float = 9.0) -> None:
 def sheet(height: float, title: str, note: str = "") -> Figure:
     """Return a sheet for print, 160 mm wide, with a title and a grey note at its upper left.
 
-    ``height`` [mm] holds a head of `HEAD`; the sheet is lower by what a short note leaves of it. A title may share its
-    line with a legend, so it is cut after 60 letters; a note takes two lines at most.
+    ``height`` [mm] holds a head of `HEAD`; a short note makes the sheet lower. A title may share its line with a
+    legend, so it is cut after 60 letters; a note takes two lines at most.
     """
     wrapped = wrap(note, _NOTE_LETTERS, max_lines=2, placeholder=" …")
     height -= _SPARE[len(wrapped)]
     figure = Figure(figsize=(SHEET_WIDTH / MM_PER_INCH, height / MM_PER_INCH), dpi=_PRINT_DPI)
-    # Names are the user's: a dollar sign in one is no formula.
+    # Names come from the user: a dollar sign in one begins no formula.
     lines = "\n".join(wrapped)
     for text, size, color, down in ((shortened(title, 60), TITLE, INK, 1.5), (lines, NOTE, GREY, 6.2)):
         if text:
@@ -89,13 +89,13 @@ def sheet_height(figure: Figure) -> float:
 
 
 def panel(figure: Figure, bottom: float, height: float, *, left: float = LEFT, width: float = PANEL_WIDTH) -> Axes:
-    """Axes at a place of a sheet, all in mm from its lower left corner, so that a scale can be true."""
+    """Return axes at a place of a sheet, in mm from its lower left corner, so that a scale can be true."""
     across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
     axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
     tidy(axes, size=TICK)
     axes.xaxis.label.set(size=LABEL, color=INK)
     axes.yaxis.label.set(size=LABEL, color=INK)
-    # At one place on every sheet, clear of numbers of five digits.
+    # The same place on every sheet, clear of five-digit numbers.
     axes.yaxis.set_label_coords(-_NAME_OF_AXIS / width, 0.5)
     return axes
 
@@ -109,7 +109,7 @@ def panel_pair(figure: Figure, bottom: float, height: float) -> tuple[Axes, Axes
 
 
 def panel_title(axes: Axes, text: str) -> None:
-    """Write what a panel shows at its upper left, a user's names as they stand."""
+    """Write the title of a panel at its upper left, with a user's names unchanged."""
     axes.set_title(
         shortened(arrowed(text), _PANEL_TITLE), fontsize=LABEL, color=INK, loc="left", pad=3.0, parse_math=False
     )
@@ -119,7 +119,7 @@ def degree_axis(axes: Axes) -> None:
     """Give an axis of phases [°] ticks at multiples of 45, 90, 180 or 360, and limits at such ticks."""
     low, high = axes.get_ylim()
     span = high - low
-    step = next((one for one in (45.0, 90.0, 180.0) if span <= 6.0 * one), 360.0)
+    step = next((candidate for candidate in (45.0, 90.0, 180.0) if span <= 6.0 * candidate), 360.0)
     first, last = step * np.floor(low / step + 1e-9), step * np.ceil(high / step - 1e-9)
     if last - first < _RIGHT_ANGLE:
         first, last = (first, first + _RIGHT_ANGLE) if high >= -low else (last - _RIGHT_ANGLE, last)
@@ -138,7 +138,7 @@ def log_axis(axes: Axes, low: float, high: float) -> None:
 
 
 def panel_size(axes: Axes) -> tuple[float, float]:
-    """Width and height of a panel, mm."""
+    """Return width and height of a panel [mm]."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     across, up = figure.get_size_inches()
@@ -203,7 +203,7 @@ def legend_height(entries: int, columns: int = 4) -> float:
 
 
 def plain(value: float, digits: int = 3) -> str:
-    """Return a number of so many digits, without powers of ten up to a million."""
+    """Return a number with ``digits`` digits, without powers of ten up to a million."""
     text = f"{value:.{digits}g}"
     return f"{float(text):.0f}" if "e+" in text and abs(value) < _MILLION else text
 
@@ -221,7 +221,7 @@ def shortened(text: str, most: int = 28) -> str:
 
 @contextmanager
 def missing_glyphs_as_boxes() -> Iterator[None]:
-    """Draw a letter that no font here has as a box, which says as much as a warning would."""
+    """Draw letters that no font has as boxes, without a warning."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         yield
@@ -255,15 +255,15 @@ class LabelRow:
 
     Attributes
     ----------
-    labels
-        Those that have room, from left to right.
-    places
-        (n,): of their middles, mm from the left of the panel.
-    upright
+    labels : tuple of Label
+        Labels that have room, from left to right.
+    places : ndarray, shape (n,)
+        Places of their middles, from the left of the panel [mm].
+    upright : bool
         Whether they stand rather than lie.
-    height
-        Height of the row with its leaders, mm.
-    left_out
+    height : float
+        Height of the row with its leaders [mm].
+    left_out : int
         Number of labels without room.
     """
 
@@ -275,28 +275,28 @@ class LabelRow:
 
 
 def spread(centres: npt.ArrayLike, widths: npt.ArrayLike, low: float, high: float, gap: float) -> FloatArray:
-    """Places for labels of given widths, in their order, apart, and as near as can be to where they belong.
+    """Return places for labels of given widths, in their order, apart, and as near as possible to their centres.
 
-    Minimises the sum of squared displacements with neighbours at least ``gap`` apart. Less the room that the labels
-    before it need, a label's place may only rise: that is isotonic regression (Barlow et al. 1972), and bounds are
-    held by clipping its solution.
+    The places minimise the sum of squared displacements with neighbours at least ``gap`` apart. Less the room that the
+    labels before it need, a label's place may only rise: that is isotonic regression (Barlow et al. 1972), and bounds
+    are held by clipping its solution.
 
     Parameters
     ----------
-    centres
-        (n,): ascending, where they belong.
-    widths
-        (n,): theirs.
-    low, high
+    centres : array_like, shape (n,)
+        Ascending places to which the labels belong.
+    widths : array_like, shape (n,)
+        Widths of the labels.
+    low, high : float
         Bounds, which hold where the labels fit between them.
-    gap
-        Between neighbours.
+    gap : float
+        Gap between neighbours.
     """
-    wanted, wide = np.asarray(centres, dtype=np.float64), np.asarray(widths, dtype=np.float64)
-    if wanted.size == 0:
-        return wanted
+    positions, wide = np.asarray(centres, dtype=np.float64), np.asarray(widths, dtype=np.float64)
+    if positions.size == 0:
+        return positions
     room = np.concatenate([[0.0], np.cumsum(0.5 * (wide[1:] + wide[:-1]) + gap)])
-    free = np.asarray(isotonic_regression(wanted - room).x, dtype=np.float64)
+    free = np.asarray(isotonic_regression(positions - room).x, dtype=np.float64)
     first, last = low + 0.5 * wide[0], high - 0.5 * wide[-1] - room[-1]
     return np.asarray(np.clip(free, min(first, last), max(first, last)) + room)
 
@@ -304,20 +304,19 @@ def spread(centres: npt.ArrayLike, widths: npt.ArrayLike, low: float, high: floa
 def arrange(labels: Sequence[Label], at: Sequence[float], width: float) -> LabelRow:
     """Place labels in one row over a panel.
 
-    They lie where they fit so, and stand where they do not. Where even standing they do not fit, an even choice of
-    them stays.
+    They lie where they fit so, else they stand. Where even upright labels do not fit, an even choice of them stays.
 
     Parameters
     ----------
-    labels
-        In any order.
-    at
-        Where each belongs, mm from the left of the panel.
-    width
-        Of the panel, mm.
+    labels : sequence of Label
+        Labels in any order.
+    at : sequence of float
+        Place to which each belongs, from the left of the panel [mm].
+    width : float
+        Width of the panel [mm].
     """
     order = np.argsort(at, kind="stable")
-    chosen, wanted = [labels[index] for index in order], np.asarray(at, dtype=np.float64)[order]
+    chosen, positions = [labels[index] for index in order], np.asarray(at, dtype=np.float64)[order]
     if not chosen:
         return LabelRow((), np.empty(0), False, 0.0, 0)
     sizes = np.array([_size(label.text) for label in chosen])
@@ -327,7 +326,7 @@ def arrange(labels: Sequence[Label], at: Sequence[float], width: float) -> Label
     keep = np.unique(np.linspace(0, len(chosen) - 1, min(fit, len(chosen))).round().astype(int))
     return LabelRow(
         labels=tuple(chosen[index] for index in keep),
-        places=spread(wanted[keep], along[keep], 0.0, width, _GAP),
+        places=spread(positions[keep], along[keep], 0.0, width, _GAP),
         upright=upright,
         height=_RISE + float(across[keep].max()),
         left_out=len(chosen) - len(keep),
@@ -339,14 +338,14 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
 
     Parameters
     ----------
-    axes
-        A panel, with its final limits.
-    row
-        From :func:`arrange` for the panel's width.
-    level
-        Where the leaders begin to slant, mm from the bottom of the panel; it must be clear of what is drawn.
-    above
-        Whether the row stands above what it names.
+    axes : Axes
+        Panel with its final limits.
+    row : LabelRow
+        Row of :func:`arrange` for the panel's width.
+    level : float
+        Height at which the leaders begin to slant, from the bottom of the panel [mm]; it must be clear of the drawing.
+    above : bool
+        Whether the row stands above the points that it names.
     """
     width, height = panel_size(axes)
     paper = Affine2D().scale(1.0 / width, 1.0 / height) + axes.transAxes
@@ -370,7 +369,7 @@ def draw_row(axes: Axes, row: LabelRow, level: float, *, above: bool = True) -> 
 
 
 def column_width(labels: Iterable[Label]) -> float:
-    """Room that labels beside a panel take with their leaders, mm; `RIGHT` where there is none."""
+    """Return the width of labels beside a panel with their leaders [mm]; `RIGHT` where there are none."""
     return max([RIGHT, *(_ASIDE + 1.8 + _size(label.text)[0] for label in labels)])
 
 
@@ -379,10 +378,10 @@ def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
 
     Parameters
     ----------
-    axes
-        A panel with its final limits, and :func:`column_width` beside it.
-    labels
-        In any order.
+    axes : Axes
+        Panel with its final limits, and :func:`column_width` beside it.
+    labels : sequence of Label
+        Labels in any order.
     """
     width, height = panel_size(axes)
     paper = Affine2D().scale(1.0 / width, 1.0 / height) + axes.transAxes
@@ -408,7 +407,7 @@ def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
 
 @lru_cache(maxsize=1024)
 def _size(text: str) -> tuple[float, float]:
-    """Width and height of a label that lies, mm."""
+    """Return width and height of a label that lies [mm]."""
     figure = Figure(dpi=_MEASURING_DPI)
     FigureCanvasAgg(figure)
     with missing_glyphs_as_boxes():

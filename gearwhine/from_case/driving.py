@@ -104,10 +104,10 @@ def _history(share: Torque, times: FloatArray, values: FloatArray) -> TorqueHist
 
 
 def _slopes(case: Case, shares: Sequence[Torque]) -> Iterator[TorqueSlope]:
-    """Slopes of the motor's and the load's torques over the deviation of a shaft from its nominal rotation.
+    """Yield the slopes of the motor's and the load's torques over a shaft's deviation from its nominal rotation.
 
     A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
-    ±T' share / |r| with the rotor's own speed: the motor's with the turning, the load's against it.
+    ±T' share / |r| with the rotor's own speed: the motor's torque with the rotation, the load's against it.
     """
     operation = case.operation
     assert operation is not None
@@ -125,7 +125,7 @@ def _slopes(case: Case, shares: Sequence[Torque]) -> Iterator[TorqueSlope]:
 
 
 def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArray]:
-    """dT/dω of a line of straight pieces, level beyond its ends, on both sides of every corner."""
+    """Return dT/dω of a piecewise linear torque, constant beyond its ends, on both sides of every corner."""
     corners = np.array(line.speed) / nominal
     steps = np.concatenate([[0.0], np.diff(line.torque) / np.diff(line.speed), [0.0]])
     hair = min(_SLOPE_STEP, 0.25 * float(np.diff(corners).min()))
@@ -133,7 +133,7 @@ def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArr
 
 
 def _variations(case: Case, shares: Sequence[Torque]) -> Iterator[AnyTorque]:
-    """Histories added to the torques and ripple about them, each in the sense of its torque."""
+    """Yield the histories added to the torques and the ripple about them, each in the sense of its torque."""
     operation = case.operation
     assert operation is not None
     if shares:
@@ -141,10 +141,10 @@ def _variations(case: Case, shares: Sequence[Torque]) -> Iterator[AnyTorque]:
     else:
         turning = math.copysign(1.0, operation.speed)
         entering, leaving = Torque(case.rotor[0].name, operation.at or 0.0, turning), ()
-    own = [output.over_time for output in operation.output]
+    output_histories = [output.over_time for output in operation.output]
     if operation.over_time is not None:
         yield operation.over_time.build(entering.rotor, entering.at, math.copysign(1.0, entering.value))
-        if not any(own):
+        if not any(output_histories):
             yield from (operation.over_time.build(share.rotor, share.at, share.value) for share in leaving)
     yield from (ripple.build(entering.rotor, entering.at, entering.value) for ripple in operation.ripple)
     for output, share in zip(operation.output, leaving, strict=False):

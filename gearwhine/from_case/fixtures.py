@@ -17,7 +17,7 @@ from meshes import GeometryError, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_REACH = 0.05  # farthest that what sits on the surface may be given from it, as a part of the housing's diagonal
+_REACH = 0.05  # largest distance of a fixture or sensor from the surface, as a part of the housing's diagonal
 
 
 def build_supports(case: Case) -> list[HousingSupport]:
@@ -28,17 +28,17 @@ def build_supports(case: Case) -> list[HousingSupport]:
 
 def build_attachments(case: Case) -> Iterator[tuple[str, str, Fixture]]:
     """Build all fixtures of the housing, each with its key and label."""
-    given = case.housing
-    assert given is not None
-    for index, support in enumerate(given.support):
+    table = case.housing
+    assert table is not None
+    for index, support in enumerate(table.support):
         yield f"housing.support[{index}]", f'support "{support.name}"', support.build()
-    for index, mount in enumerate(given.mount):
+    for index, mount in enumerate(table.mount):
         yield f"housing.mount[{index}]", f'mount "{mount.name}"', mount.build()
-    for index, joint in enumerate(given.joint):
+    for index, joint in enumerate(table.joint):
         yield f"housing.joint[{index}]", f'joint "{joint.name}"', joint.build()
     for tied in cover_joints(case):
         yield "housing.box.cover.bolts", tied.name, tied
-    for index, mass in enumerate(given.mass):
+    for index, mass in enumerate(table.mass):
         yield f"housing.mass[{index}]", f'mass "{mass.name}"', mass.build()
 
 
@@ -48,15 +48,15 @@ def check_places(case: Case, mesh: Mesh) -> None:
     Raises
     ------
     CaseError
-        With every one that does not.
+        With every one that has no place.
     """
-    given = case.housing
-    assert given is not None
+    table = case.housing
+    assert table is not None
     problems = list(_misplaced(case, mesh))
-    for index, sensor in enumerate(given.sensor):
-        found = sensor_port(mesh, sensor.build()).position
+    for index, sensor in enumerate(table.sensor):
+        nearest = sensor_port(mesh, sensor.build()).position
         key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
-        problems += _check_reach(mesh, key, label, sensor.position, found)
+        problems += _check_reach(mesh, key, label, sensor.position, nearest)
     if problems:
         raise CaseError(problems)
 
@@ -82,30 +82,30 @@ def attach_all(case: Case, mesh: Mesh, free: Matrices) -> Matrices:
 
 
 def _check_reach(
-    mesh: Mesh, key: str, label: str, asked: tuple[float, float, float], found: FloatArray
+    mesh: Mesh, key: str, label: str, position: tuple[float, float, float], nearest: FloatArray
 ) -> Iterator[Problem]:
-    """Yield a place that is not meant to be on the surface, rather than move it far."""
+    """Yield a problem for a position far from the surface, rather than move it there."""
     reach = _REACH * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    if np.linalg.norm(found - asked) > reach:
-        given, nearest = (
-            ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in place) for place in (asked, found)
+    if np.linalg.norm(nearest - position) > reach:
+        given_text, nearest_text = (
+            ", ".join(f"{round(1e3 * value, 3) + 0.0:.6g}" for value in place) for place in (position, nearest)
         )
         expected = (
-            f"a place within {1e3 * reach:.3g} mm of the surface; ({given}) mm is not, the nearest point of it is "
-            f"({nearest}) mm"
+            f"a place within {1e3 * reach:.3g} mm of the surface; ({given_text}) mm is not, the nearest point of it is "
+            f"({nearest_text}) mm"
         )
         yield Problem(key, UNSAID, expected, label=label)
 
 
 def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
-    """Surfaces that the mesh does not have, boxes without surface, points off the surface."""
-    given = case.housing
-    assert given is not None
+    """Yield problems of surfaces that the mesh does not have, boxes without surface, and points off the surface."""
+    table = case.housing
+    assert table is not None
     named: list[tuple[str, str, str]] = []
     fastened: list[tuple[str, int, Support | Mount | LumpedMass]] = []
-    fastened += [("support", index, entry) for index, entry in enumerate(given.support)]
-    fastened += [("mount", index, entry) for index, entry in enumerate(given.mount)]
-    fastened += [("mass", index, entry) for index, entry in enumerate(given.mass)]
+    fastened += [("support", index, entry) for index, entry in enumerate(table.support)]
+    fastened += [("mount", index, entry) for index, entry in enumerate(table.mount)]
+    fastened += [("mass", index, entry) for index, entry in enumerate(table.mass)]
     for kind, index, entry in fastened:
         key, label = f"housing.{kind}[{index}]", f'{kind} "{entry.name}"'
         if entry.surface is not None:
@@ -118,17 +118,17 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
                 yield Problem(
                     f"{key}.{form}", UNSAID, f"a {form} that {holds} some of the surface; {error}", label=label
                 )
-    for index, joint in enumerate(given.joint):
+    for index, joint in enumerate(table.joint):
         for end, surface in enumerate(joint.surfaces or ()):
             named.append((f"housing.joint[{index}].surfaces[{end}]", f'joint "{joint.name}"', surface))
-    known = sorted(mesh.surfaces)
+    surfaces = sorted(mesh.surfaces)
     for key, label, surface in named:
         if surface not in mesh.surfaces:
-            listed = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
-            expected = f"a surface of the mesh ({listed or 'it names none'})" + did_you_mean(surface, known)
+            listed = ", ".join(surfaces[:20]) + (", …" if len(surfaces) > 20 else "")
+            expected = f"a surface of the mesh ({listed or 'it names none'})" + did_you_mean(surface, surfaces)
             yield Problem(key, surface, expected, label=label)
-    for index, mass in enumerate(given.mass):
+    for index, mass in enumerate(table.mass):
         if mass.position is not None:
-            found = mass.build().place(mesh).position
+            nearest = mass.build().place(mesh).position
             label = f'mass "{mass.name}"'
-            yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, found)
+            yield from _check_reach(mesh, f"housing.mass[{index}].position", label, mass.position, nearest)

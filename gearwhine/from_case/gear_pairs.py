@@ -37,14 +37,14 @@ def solve_gears(
     torques = pair_torques(case) if case.operation else (0.0,) * len(case.gear_pair)
     speeds = rotor_speeds(case) if case.operation else {}
     solved = []
-    for number, (given, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
-        progress(f"gear pair {given.driver} -> {given.driven}")
+    for number, (entry, torque) in enumerate(zip(case.gear_pair, torques, strict=True)):
+        progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(
-            aligned_pair(build_pair(case, given, number), gaps or {}),
-            pair_geometry(case, given),
+            aligned_pair(build_pair(case, entry, number), gaps or {}),
+            pair_geometry(case, entry),
             torque=torque,
-            inertias=(_inertia(case, given.driver), _inertia(case, given.driven)),
-            speed=speeds.get(shaft_of(case.gear_named(given.driver))),
+            inertias=(_inertia(case, entry.driver), _inertia(case, entry.driven)),
+            speed=speeds.get(shaft_of(case.gear_named(entry.driver))),
         )
         solved.append(loaded)
     return tuple(solved)
@@ -57,9 +57,9 @@ class TakenMisalignment:
     Attributes
     ----------
     taken : float or None
-        [rad]; None where the operating point gives it and is not solved.
+        Misalignment that is taken [rad]; None where the operating point gives it and is not solved.
     origin : str
-        ``operating point``; ``case``, whose word it is; or ``default``, 0 for want of a word.
+        ``operating point``; ``case``, where the case gives it; or ``default``, which is 0.
     found : float or None
         Misalignment at the operating point [rad]; None where that is not solved.
     """
@@ -71,37 +71,37 @@ class TakenMisalignment:
 
 def taken_misalignments(case: Case, point: OperatingPoint | None) -> tuple[TakenMisalignment, ...]:
     """Misalignment of every gear pair of the case, beside that of its operating point where it is solved."""
-    taken = []
-    for number, given in enumerate(case.gear_pair):
-        found = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if case.finds_misalignment(given):
-            taken.append(TakenMisalignment(found, "operating point", found))
-        elif isinstance(given.misalignment, float | int):
-            taken.append(TakenMisalignment(given.misalignment, "case", found))
+    misalignments = []
+    for number, entry in enumerate(case.gear_pair):
+        at_operating_point = None if point is None or not point.pairs else point.pairs[number].misalignment
+        if case.finds_misalignment(entry):
+            misalignments.append(TakenMisalignment(at_operating_point, "operating point", at_operating_point))
+        elif isinstance(entry.misalignment, float | int):
+            misalignments.append(TakenMisalignment(entry.misalignment, "case", at_operating_point))
         else:
-            taken.append(TakenMisalignment(0.0, "default", found))
-    return tuple(taken)
+            misalignments.append(TakenMisalignment(0.0, "default", at_operating_point))
+    return tuple(misalignments)
 
 
-def build_pair(case: Case, given: GivenPair, number: int = 0) -> GearPair:
+def build_pair(case: Case, entry: GivenPair, number: int = 0) -> GearPair:
     """Build a gear pair of the case for `coupling.gears`; ``number`` is its place in the list, for messages."""
-    angle = None if case.finds_misalignment(given) or given.misalignment == "found" else given.misalignment or 0.0
-    stiffness: StiffnessModel | str = given.stiffness.model
-    if given.stiffness.file is not None:
-        position, values = _table(given.stiffness.file, f"gear_pair[{number}].stiffness.file")
+    angle = None if case.finds_misalignment(entry) or entry.misalignment == "found" else entry.misalignment or 0.0
+    stiffness: StiffnessModel | str = entry.stiffness.model
+    if entry.stiffness.file is not None:
+        position, values = _table(entry.stiffness.file, f"gear_pair[{number}].stiffness.file")
         stiffness = stiffness_model("table", position=position, stiffness=values)
-    elif given.stiffness.value is not None:
-        stiffness = stiffness_model(given.stiffness.model, value=given.stiffness.value)
+    elif entry.stiffness.value is not None:
+        stiffness = stiffness_model(entry.stiffness.model, value=entry.stiffness.value)
     return GearPair(
-        driver=given.driver,
-        driven=given.driven,
+        driver=entry.driver,
+        driven=entry.driven,
         stiffness=stiffness,
-        damping_ratio=given.damping_ratio,
-        damping=given.damping,
-        backlash=given.backlash,
-        friction=given.friction,
+        damping_ratio=entry.damping_ratio,
+        damping=entry.damping,
+        backlash=entry.backlash,
+        friction=entry.friction,
         misalignment=angle,
-        corner_contact=given.corner_contact,
+        corner_contact=entry.corner_contact,
     )
 
 
@@ -113,7 +113,7 @@ def aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ...
 
 
 def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
-    """Both gears of every pair of the case in mesh."""
+    """Return the geometry of every gear pair of the case."""
     return tuple(pair_geometry(case, pair) for pair in case.gear_pair)
 
 
@@ -124,7 +124,7 @@ def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
 
 
 def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
-    """Two columns of a CSV file: position in base pitches, stiffness [N/m]; a first line of names may stand."""
+    """Return two columns of a CSV file, with or without a line of names: position [base pitches], stiffness [N/m]."""
     rows = []
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
@@ -149,28 +149,28 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
 
 def _inertia(case: Case, name: str) -> float:
     """Polar inertia that rotates with a gear [kg m²], see :func:`coupling.machine.parts.gear_inertia`."""
-    given = case.gear_named(name)
-    if given.rotor is None:
-        return gear_inertia(case, given)[1] or build_gear(case, given).polar_inertia
-    gears = shaft_gears(case, given.rotor)
-    (gear,) = (one for one in gears if one.name == name)
-    return inertia_with_discs(gear, case.rotor_named(given.rotor).build(case.material), gears)
+    entry = case.gear_named(name)
+    if entry.rotor is None:
+        return gear_inertia(case, entry)[1] or build_gear(case, entry).polar_inertia
+    gears = shaft_gears(case, entry.rotor)
+    (gear,) = (shaft_gear for shaft_gear in gears if shaft_gear.name == name)
+    return inertia_with_discs(gear, case.rotor_named(entry.rotor).build(case.material), gears)
 
 
 def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
-    """Warnings of what runs but is not as it should be."""
-    found = []
+    """Return warnings of gears that run but are doubtful."""
+    warnings = []
     for gear in (geometry.driver, geometry.driven):
         try:
             require_tip_thickness(gear)
         except ThinTipError as error:
-            found.append({"name": "thin tip", "message": str(error)})
+            warnings.append({"name": "thin tip", "message": str(error)})
         if gear.is_undercut:
             message = (
                 f"gear {gear.name!r}: the teeth are undercut, their flanks begin at a diameter of "
                 f"{2e3 * gear.form_radius:.6g} mm; a profile_shift of "
                 f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
             )
-            found.append({"name": "undercut", "message": message})
+            warnings.append({"name": "undercut", "message": message})
     backlash = pair.backlash_warning(geometry)
-    return found if backlash is None else [*found, {"name": "backlash", "message": backlash}]
+    return warnings if backlash is None else [*warnings, {"name": "backlash", "message": backlash}]

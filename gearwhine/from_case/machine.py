@@ -16,8 +16,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 
-# Shafts keep every bending mode up to LATERAL_LIMIT_HZ, or several times the housing's limit where that is higher; what
-# lies above answers statically, through attachment vectors at bearings and gears.
+# Shafts keep every bending mode up to LATERAL_LIMIT_HZ, or several times the housing's limit where that is higher;
+# further modes respond statically, through attachment vectors at bearings and gears.
 _HOUSING_FACTOR = 2.5
 
 
@@ -47,27 +47,27 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     operation = case.operation
     assert operation is not None
     bearings = []
-    for given in case.rotor:
-        own = [(n, entry) for n, entry in enumerate(case.bearing) if entry.rotor == given.name]
-        laws = {entry.name: bearing_law(case, n) for n, entry in own}
-        elements = {entry.name: rolling_elements(case, n) for n, entry in own}
-        # Those of the rotor's own file stand on the ground.
-        seats = {entry.name: entry.seat for _, entry in own if not entry.grounded}
+    for rotor in case.rotor:
+        own_bearings = [(n, entry) for n, entry in enumerate(case.bearing) if entry.rotor == rotor.name]
+        laws = {entry.name: bearing_law(case, n) for n, entry in own_bearings}
+        elements = {entry.name: rolling_elements(case, n) for n, entry in own_bearings}
+        # Bearings of the rotor's own file stand on the ground.
+        seats = {entry.name: entry.seat for _, entry in own_bearings if not entry.grounded}
         bearings += [
             MountedBearing(
                 bearing,
-                given.name,
+                rotor.name,
                 None if grounded else seats.get(bearing.name),
                 laws.get(bearing.name),
                 elements.get(bearing.name),
             )
-            for bearing in build_bearings(case, given.name)
+            for bearing in build_bearings(case, rotor.name)
         ]
     return Machine(
-        shafts=[_shaft(case, given) for given in case.rotor],
+        shafts=[_shaft(case, rotor) for rotor in case.rotor],
         bearings=bearings,
-        gears=[gear for given in case.rotor for gear in shaft_gears(case, given.name)],
-        gear_pairs=[build_pair(case, given, number) for number, given in enumerate(case.gear_pair)],
+        gears=[gear for rotor in case.rotor for gear in shaft_gears(case, rotor.name)],
+        gear_pairs=[build_pair(case, pair, number) for number, pair in enumerate(case.gear_pair)],
         speed=operation.speed,
         torque=operation.torque,
         outputs=[output.build() for output in operation.output],
@@ -77,15 +77,15 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     )
 
 
-def _shaft(case: Case, given: Rotor) -> Shaft:
-    limit, count = _retained_modes(case, given.name)
+def _shaft(case: Case, rotor: Rotor) -> Shaft:
+    limit, count = _retained_modes(case, rotor.name)
     return Shaft(
-        given.build(case.material),
-        given.axis,
-        given.start,
-        given.damping_ratio,
-        given.build_unbalance(),
-        given.build_bow(),
+        rotor.build(case.material),
+        rotor.axis,
+        rotor.start,
+        rotor.damping_ratio,
+        rotor.build_unbalance(),
+        rotor.build_bow(),
         limit,
         count,
     )
@@ -94,23 +94,25 @@ def _shaft(case: Case, given: Rotor) -> Shaft:
 def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:
     """Bearings of each rotor and the states of the rolling ones, linearised about the operating point on rigid seats.
 
-    Where no bearing's load is left to the operating point the case gives them all.
+    The operating point is solved only if the load of a bearing is left to it.
 
     Raises
     ------
     CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
-        Where a bearing's load or geometry does not let it be, or the machine has no operating point.
+        Where a bearing cannot exist with its load or geometry, or the machine has no operating point.
     """
-    given = {one.name: (build_bearings(case, one.name), rolling_states(case, one.name)) for one in case.rotor}
+    built = {rotor.name: (build_bearings(case, rotor.name), rolling_states(case, rotor.name)) for rotor in case.rotor}
     if not any(case.finds_load(bearing) for bearing in case.bearing):
-        return given
+        return built
     point = describe_machine(case, grounded=True).operating_point(gravity(case))
-    found = {}
-    for name, (_, states) in given.items():
-        own = [one for one in point.bearings if one.mounted.rotor == name]
-        open_loads = {one.name: one.rolling for one in own if one.mounted.needs_load and one.rolling is not None}
-        found[name] = tuple(one.linearised.bearing for one in own), states | open_loads
-    return found
+    loaded = {}
+    for name, (_, states) in built.items():
+        on_rotor = [load for load in point.bearings if load.mounted.rotor == name]
+        open_loads = {
+            load.name: load.rolling for load in on_rotor if load.mounted.needs_load and load.rolling is not None
+        }
+        loaded[name] = tuple(load.linearised.bearing for load in on_rotor), states | open_loads
+    return loaded
 
 
 def gravity(case: Case) -> tuple[float, ...] | None:
@@ -120,11 +122,11 @@ def gravity(case: Case) -> tuple[float, ...] | None:
 
 def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
     """Retained modes of a rotor: a frequency limit [rad/s], or a number of each kind."""
-    given = case.rotor_named(rotor)
-    if given.modes is not None:
-        return None, given.modes
-    if given.frequency_limit is not None:
-        return _TWO_PI * given.frequency_limit, None
+    table = case.rotor_named(rotor)
+    if table.modes is not None:
+        return None, table.modes
+    if table.frequency_limit is not None:
+        return _TWO_PI * table.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
     return _TWO_PI * max(LATERAL_LIMIT_HZ, _HOUSING_FACTOR * limit), None
 

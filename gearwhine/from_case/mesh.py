@@ -32,7 +32,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     warn : callable
         Receives warnings, a sentence each.
     order : {1, 2}
-        Of the elements, where they are made here and not read.
+        Order of the elements, where they are meshed and not read.
 
     Raises
     ------
@@ -40,31 +40,31 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
         Where the case has no housing, its shape cannot be meshed or its file not read, or a seat is not found in it.
     """
     require(case, "housing", command="mesh")
-    given = case.housing
-    assert given is not None
-    if given.box is not None:
+    table = case.housing
+    assert table is not None
+    if table.box is not None:
         with _at_fault("housing.box", "a box that can be meshed"):
-            return mesh_box(box_geometry(given.box, given.seat), given.box.mesh_size, order=order)
-    if given.mesh is not None:
+            return mesh_box(box_geometry(table.box, table.seat), table.box.mesh_size, order=order)
+    if table.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
-            mesh = read_mesh(given.mesh.file, unit=UNITS[given.mesh.unit])
-            mesh = mesh.rotated(np.array(given.mesh.rotation))
+            mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
+            mesh = mesh.rotated(np.array(table.mesh.rotation))
         return _with_seats(case, mesh)
-    assert given.cad is not None
-    turn = np.array(given.cad.rotation)
+    assert table.cad is not None
+    turn = np.array(table.cad.rotation)
     with _at_fault("housing.cad", "a solid that can be meshed", file=True):
-        found = mesh_cad(
-            given.cad.file,
-            given.cad.mesh_size,
-            glue=given.cad.glue,
-            unit=None if given.cad.unit is None else UNITS[given.cad.unit],
+        meshed = mesh_cad(
+            table.cad.file,
+            table.cad.mesh_size,
+            glue=table.cad.glue,
+            unit=None if table.cad.unit is None else UNITS[table.cad.unit],
             order=order,
-            refine=[(_in_the_file(seat.center, turn), seat.diameter) for seat in given.seat],
-            refined_size=given.cad.seat_mesh_size,
+            refine=[(_in_the_file(seat.center, turn), seat.diameter) for seat in table.seat],
+            refined_size=table.cad.seat_mesh_size,
         )
-    for remark in found.remarks:
-        warn(f"{given.cad.file.name}: {remark}")
-    return _with_seats(case, found.mesh.rotated(turn))
+    for remark in meshed.remarks:
+        warn(f"{table.cad.file.name}: {remark}")
+    return _with_seats(case, meshed.mesh.rotated(turn))
 
 
 def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
@@ -109,13 +109,13 @@ def _with_seats(case: Case, mesh: Mesh) -> Mesh:
 
 def cover_joints(case: Case) -> list[Joint]:
     """Return the bolts of a box's cover, each a joint of its two patches."""
-    given = case.housing
-    if given is None or given.box is None or given.box.cover is None or given.box.cover.bolts is None:
+    table = case.housing
+    if table is None or table.box is None or table.box.cover is None or table.box.cover.bolts is None:
         return []
-    box = box_geometry(given.box, given.seat)
-    parts = material_of(case, given.material)
-    own = material_of(case, given.box.cover.bolts.material or given.material)
-    return housing_cover_joints(box, parts, own)
+    box = box_geometry(table.box, table.seat)
+    parts = material_of(case, table.material)
+    bolt_material = material_of(case, table.box.cover.bolts.material or table.material)
+    return housing_cover_joints(box, parts, bolt_material)
 
 
 def material_of(case: Case, name: str) -> Material:
@@ -129,8 +129,8 @@ def material_of(case: Case, name: str) -> Material:
     steel = case.material[name]
     if not steel.is_isotropic:
         expected = f"E / (2 (1 + ν)) = {steel.youngs_modulus / (2.0 * (1.0 + steel.poisson_ratio)):.5g} Pa in a housing"
-        shown = f"{steel.shear_modulus:.5g} Pa"
-        raise CaseError([Problem(f"material.{name}.shear_modulus", shown, f"{expected}, whose solids are isotropic")])
+        value = f"{steel.shear_modulus:.5g} Pa"
+        raise CaseError([Problem(f"material.{name}.shear_modulus", value, f"{expected}, whose solids are isotropic")])
     return Material(steel.youngs_modulus, steel.poisson_ratio, steel.density)
 
 
@@ -149,40 +149,39 @@ def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Mate
     Raises
     ------
     CaseError
-        Where a region names a volume that the mesh does not have, holds no element, or shares some with another; all
-        of them at once.
+        Where regions name volumes that the mesh does not have, hold no element, or overlap; with all of them.
     """
-    given = case.housing
-    assert given is not None
-    rest = material_of(case, given.material)
-    if not given.region:
+    table = case.housing
+    assert table is not None
+    rest = material_of(case, table.material)
+    if not table.region:
         return mesh, rest, {}
     problems: list[Problem] = []
     members: dict[str, npt.NDArray[np.int64]] = {}
-    taken = np.full(mesh.n_elements, -1)
-    for index, region in enumerate(given.region):
+    region_of = np.full(mesh.n_elements, -1)
+    for index, region in enumerate(table.region):
         elements = _elements(mesh, index, region, problems)
-        other = np.unique(taken[elements])
-        for rival in other[other >= 0].tolist():
-            count = int(np.count_nonzero(taken[elements] == rival))
+        overlapped = np.unique(region_of[elements])
+        for rival in overlapped[overlapped >= 0].tolist():
+            count = int(np.count_nonzero(region_of[elements] == rival))
             expected = (
-                f'elements of its own ({count} of its {len(elements)} are in region "{given.region[rival].name}" too)'
+                f'elements of its own ({count} of its {len(elements)} are in region "{table.region[rival].name}" too)'
             )
             problems.append(_problem(index, region, expected))
-        taken[elements] = index
+        region_of[elements] = index
         members[region.name] = elements
     if problems:
         raise CaseError(problems)
-    materials = {region.name: material_of(case, region.material) for region in given.region}
+    materials = {region.name: material_of(case, region.material) for region in table.region}
     return replace(mesh, volumes=members), rest, materials
 
 
 def _elements(mesh: Mesh, index: int, region: Region, problems: list[Problem]) -> npt.NDArray[np.int64]:
     if region.volume is not None:
         if region.volume not in mesh.volumes:
-            known = sorted(mesh.volumes)
-            expected = f"a volume of the mesh ({', '.join(known) or 'it has none'})" + did_you_mean(
-                region.volume, known
+            volumes = sorted(mesh.volumes)
+            expected = f"a volume of the mesh ({', '.join(volumes) or 'it has none'})" + did_you_mean(
+                region.volume, volumes
             )
             problems.append(_problem(index, region, expected))
         return np.asarray(mesh.volumes.get(region.volume, np.empty(0, dtype=np.int64)))

@@ -33,43 +33,43 @@ def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     """Warnings about the mesh of a case.
 
     Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
-    has joints, which may be what joins them.
+    has joints, which may join them.
 
     Raises
     ------
     CaseError
-        Where it is wrong; with everything that is, at once.
+        With all errors of the mesh.
     """
-    given = case.housing
-    assert given is not None
-    source = given.mesh or given.cad
+    table = case.housing
+    assert table is not None
+    source = table.mesh or table.cad
     unit = None if source is None or source.unit is None else UNITS[source.unit]
-    found = diagnose(mesh, unit=unit)
-    if given.joint or cover_joints(case):
-        found = tuple(one for one in found if not _of_loose_bodies(one))
-    wrong = [one for one in found if one.severity == "error"]
+    defects = diagnose(mesh, unit=unit)
+    if table.joint or cover_joints(case):
+        defects = tuple(defect for defect in defects if not _of_loose_bodies(defect))
+    wrong = [defect for defect in defects if defect.severity == "error"]
     if wrong:
-        key = "housing.mesh.file" if given.mesh else "housing.cad.file" if given.cad else "housing.box"
+        key = "housing.mesh.file" if table.mesh else "housing.cad.file" if table.cad else "housing.box"
         value: object = UNSAID if source is None else str(source.file)
-        raise CaseError([Problem(key, value, f"a sound mesh; {one.name}: {one.message}") for one in wrong])
-    return _warnings(found)
+        raise CaseError([Problem(key, value, f"a sound mesh; {defect.name}: {defect.message}") for defect in wrong])
+    return _warnings(defects)
 
 
-def _of_loose_bodies(one: MeshDefect) -> bool:
+def _of_loose_bodies(defect: MeshDefect) -> bool:
     """Whether a defect lies between bodies; elements of one body that do not match are an error."""
-    return one.name == "disconnected" or (one.name == "non-conforming" and one.severity == "warning")
+    return defect.name == "disconnected" or (defect.name == "non-conforming" and defect.severity == "warning")
 
 
 def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:
     """Warnings about element size for modes up to a frequency; without one, about the kind of element alone."""
-    # Without a limit, one so low that no element is too large for it.
+    # Without a limit a frequency is taken that is so low that no element is too large for it.
     return _warnings(resolution_defects(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
 
 
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     assert case.housing is not None
-    given = case.material[case.housing.material]
-    return WaveCarrier(given.youngs_modulus, given.poisson_ratio, given.density, _TWO_PI * limit_hz)
+    material = case.material[case.housing.material]
+    return WaveCarrier(material.youngs_modulus, material.poisson_ratio, material.density, _TWO_PI * limit_hz)
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ class MeshPreview:
     Attributes
     ----------
     size : ndarray, shape (3,)
-        Of the housing along x, y and z [m].
+        Size of the housing along x, y and z [m].
     mesh_size : float or None
-        Length of the elements where they are made here [m].
+        Length of the elements, where the housing is meshed and not read [m].
     bolts : list of housing.Joint, or None
-        Of a box's cover.
+        Bolts of a box's cover.
     mesh : Mesh or None
-        Of a file; of a CAD file by straight elements, which show its bores as well, sooner.
+        Mesh of a file; that of a CAD file has straight elements, which show its bores as well and are made sooner.
     """
 
     size: FloatArray
@@ -102,25 +102,25 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, 
     Raises
     ------
     CaseError
-        Where the file cannot be read, its mesh is wrong, or something finds no place on it.
+        Where the file cannot be read, its mesh is wrong, or a fixture or sensor has no place on it.
     """
-    given = case.housing
-    assert given is not None
-    if given.box is not None:
-        load = _preview_load(expected_elements(wall_volume(given.box), given.box.mesh_size))
-        preview = MeshPreview(np.array(given.box.size), given.box.mesh_size, bolts=cover_joints(case))
-        return preview, _preview_size(case, given.box) + load
+    table = case.housing
+    assert table is not None
+    if table.box is not None:
+        load = _preview_load(expected_elements(wall_volume(table.box), table.box.mesh_size))
+        preview = MeshPreview(np.array(table.box.size), table.box.mesh_size, bolts=cover_joints(case))
+        return preview, _preview_size(case, table.box) + load
     remarks: list[str] = []
-    progress("meshing the drawing" if given.mesh is None else "reading the mesh")
+    progress("meshing the drawing" if table.mesh is None else "reading the mesh")
     mesh = build_mesh(case, remarks.append, order=1)
     warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
     with noted_on_failure(warnings):
         materials_of(case, mesh)
         check_places(case, mesh)
-    preview = MeshPreview(np.ptp(mesh.bounds, axis=0), None if given.cad is None else given.cad.mesh_size, mesh=mesh)
-    if given.cad is not None:
+    preview = MeshPreview(np.ptp(mesh.bounds, axis=0), None if table.cad is None else table.cad.mesh_size, mesh=mesh)
+    if table.cad is not None:
         return preview, warnings + _preview_load(mesh.n_elements)
-    return preview, warnings + resolution_warnings(case, mesh, given.frequency_limit)
+    return preview, warnings + resolution_warnings(case, mesh, table.frequency_limit)
 
 
 def _preview_size(case: Case, box: Box) -> list[dict[str, Any]]:
@@ -159,11 +159,13 @@ def noted_on_failure(warnings: Sequence[dict[str, Any]]) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        for one in warnings:
-            error.add_note(f"warning: {one['message']}")
+        for entry in warnings:
+            error.add_note(f"warning: {entry['message']}")
         raise
 
 
 def _warnings(defects: tuple[MeshDefect, ...]) -> list[dict[str, Any]]:
     """Mesh defects as warnings of the command's JSON."""
-    return [warning(one.name, one.message, count=one.count, place_m=one.place.tolist()) for one in defects]
+    return [
+        warning(defect.name, defect.message, count=defect.count, place_m=defect.place.tolist()) for defect in defects
+    ]

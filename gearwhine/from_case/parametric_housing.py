@@ -30,11 +30,11 @@ from housing.updating import ModalState, ModelSensitivity, Parameter, Surrogate,
 from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from meshes.box.morph import MorphError
 
-_SPREAD = 1.0 / 3.0  # of the larger distance from the nominal value to an end of the range
+_SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
 FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
-"""In z, of the differences that give the rates of what a parameter changes."""
+"""Step in z of the central differences by a parameter."""
 
 _WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
 
@@ -47,10 +47,10 @@ class FittedNumber:
     ----------
     given : UpdateParameter
     parameter : housing.updating.Parameter
-        In SI.
+        Parameter with its range and prior [SI].
     places : tuple of locations
     own : tuple of float
-        Value before the fit, in SI.
+        Value at each place before the fit [SI].
     """
 
     given: UpdateParameter
@@ -60,7 +60,7 @@ class FittedNumber:
 
     @property
     def start(self) -> float:
-        """Its value in the case as it stands."""
+        """Value in the case as it stands [SI]; 1 of a factor."""
         return 1.0 if self.given.factor else self.own[0]
 
     def as_written(self, value: float) -> float:
@@ -69,14 +69,14 @@ class FittedNumber:
         return float(f"{value / unit:.5g}") * unit
 
     def entries(self, value: float) -> Iterator[tuple[Location, float]]:
-        """Numbers to set and their places, in SI, for a value."""
-        for place, own in zip(self.places, self.own, strict=True):
-            yield place, own * value if self.given.factor else value
+        """Yield the places to set and their numbers for a value [SI]."""
+        for place, before in zip(self.places, self.own, strict=True):
+            yield place, before * value if self.given.factor else value
 
 
 @dataclass(frozen=True)
 class FittedCase:
-    """A case whose numbers are fitted: it makes the case of any values.
+    """A case with fitted numbers, which makes the case of any values.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class FittedCase:
         Raises
         ------
         CaseError
-            Where they make no sound case.
+            Where the values make no valid case.
         """
         return parse_case(self.document_at(values), source="update")
 
@@ -120,7 +120,7 @@ class FittedCase:
 def fitted_case(
     case: Case, mesh_size: float | None = None, parameters: Sequence[UpdateParameter] | None = None
 ) -> FittedCase:
-    """Return the case with its fitted parameters, or with others, and with elements of another size if wanted [m].
+    """Return the case with its fitted parameters, or with ``parameters``; ``mesh_size`` [m] replaces that of a box.
 
     Raises
     ------
@@ -137,29 +137,29 @@ def fitted_case(
     if box is not None and mesh_size is not None:
         box["mesh_size"] = mesh_size
     problems: list[Problem] = []
-    numbers, taken = [], dict[Location, str]()
-    for index, given in enumerate(parameters):
-        label = f'parameter "{given.name}"'
+    numbers, owner_of = [], dict[Location, str]()
+    for index, parameter in enumerate(parameters):
+        label = f'parameter "{parameter.name}"'
         places = list[Location]()
-        own = list[float]()
-        for position, key in enumerate(given.keys):
+        values = list[float]()
+        for position, key in enumerate(parameter.keys):
             where = f"update.parameter[{index}].keys[{position}]"
             steps = parse_key_path(key)
-            found = list(matching_places(document, steps or ()))
-            if not found:
+            matches = list(matching_places(document, steps or ()))
+            if not matches:
                 problems.append(Problem(where, key, "the key path of a number in this case", label))
-            for place in found:
+            for place in matches:
                 value = si_amount(look_up(document, place))
                 if value is None:
                     problems.append(Problem(where, key, f"a number; {key_of(place)} is none", label))
-                elif place in taken:
-                    problems.append(Problem(where, key, f"a key that no other sets ({taken[place]!r} does)", label))
+                elif place in owner_of:
+                    problems.append(Problem(where, key, f"a key that no other sets ({owner_of[place]!r} does)", label))
                 else:
-                    taken[place] = given.name
+                    owner_of[place] = parameter.name
                     places.append(place)
-                    own.append(value)
-        if places and len(own) == len(places):
-            number = _number(given, tuple(places), tuple(own), index, label, problems)
+                    values.append(value)
+        if places and len(values) == len(places):
+            number = _number(parameter, tuple(places), tuple(values), index, label, problems)
             numbers += [] if number is None else [number]
     if problems:
         raise CaseError(problems)
@@ -167,31 +167,31 @@ def fitted_case(
 
 
 def _number(
-    given: UpdateParameter,
+    entry: UpdateParameter,
     places: tuple[Location, ...],
-    own: tuple[float, ...],
+    values: tuple[float, ...],
     index: int,
     label: str,
     problems: list[Problem],
 ) -> FittedNumber | None:
-    low, high = given.bounds
-    start = 1.0 if given.factor else own[0]
-    nominal = start if given.nominal is None else amount(given.nominal)
+    low, high = entry.bounds
+    start = 1.0 if entry.factor else values[0]
+    nominal = start if entry.nominal is None else amount(entry.nominal)
     if not low <= start <= high or not low <= nominal <= high:
         expected = f"a range with the case's own {start:g} in it (SI)"
-        problems.append(Problem(f"update.parameter[{index}].range", list(given.range), expected, label))
+        problems.append(Problem(f"update.parameter[{index}].range", list(entry.range), expected, label))
         return None
-    spread = _SPREAD * max(high - nominal, nominal - low) if given.spread is None else amount(given.spread)
-    return FittedNumber(given, Parameter(given.name, low, high, nominal, spread), places, own)
+    spread = _SPREAD * max(high - nominal, nominal - low) if entry.spread is None else amount(entry.spread)
+    return FittedNumber(entry, Parameter(entry.name, low, high, nominal, spread), places, values)
 
 
-def unit_in_si(given: UpdateParameter) -> float:
+def unit_in_si(parameter: UpdateParameter) -> float:
     """SI value of the unit that a parameter is written in."""
-    return amount(f"1 {given.unit}") if given.unit else 1.0
+    return amount(f"1 {parameter.unit}") if parameter.unit else 1.0
 
 
 def with_entry(document: Any, place: Location, value: Any) -> Any:
-    """Tables and lists with one entry replaced; what is not on the way to it is shared."""
+    """Return tables and lists with one entry replaced; parts beside the path to it are shared."""
     if not place:
         return value
     step, *rest = place
@@ -209,9 +209,9 @@ class MeshedParameters:
     fitted : FittedCase
     coordinates : ndarray, shape (n_parameters,)
     case : Case
-        At the coordinates.
+        Case at the coordinates.
     mesh : Mesh
-        Of its housing.
+        Mesh of its housing.
     """
 
     fitted: FittedCase
@@ -223,7 +223,7 @@ class MeshedParameters:
         """Return the cases `RATE_STEP` above and below in one coordinate."""
         either = []
         for way in (1.0, -1.0):
-            # Not by the case's own values, which stop at the end of the range.
+            # The step is not limited by the range, at whose end the case's own value may stand.
             parameter = self.fitted.parameters[number]
             values = values_at(self.fitted.parameters, self.coordinates)
             values[number] += parameter.deviation(float(self.coordinates[number]), way * RATE_STEP)
@@ -284,15 +284,15 @@ class MeshedParameters:
             total = sum((attachment.additions(mesh) for *_, attachment in build_attachments(case)), Additions())
             n = len(mesh.points)
             matrices.append((total.stiffness.matrix(n), total.mass.matrix(n)))
-        stiffness, mass = ((one - other) / (2.0 * RATE_STEP) for one, other in zip(*matrices, strict=True))
+        stiffness, mass = ((upper - lower) / (2.0 * RATE_STEP) for upper, lower in zip(*matrices, strict=True))
         return sparse.csr_array(stiffness), sparse.csr_array(mass)
 
 
 def geometry_of(case: Case) -> BoxGeometry | None:
     """Return the dimensions of a case's box; None for another housing."""
-    given = case.housing
-    assert given is not None
-    return None if given.box is None else box_geometry(given.box, given.seat)
+    table = case.housing
+    assert table is not None
+    return None if table.box is None else box_geometry(table.box, table.seat)
 
 
 @dataclass(frozen=True)
@@ -305,14 +305,14 @@ class ParametricHousing:
     modes : int
         Number of modes.
     measured : callable, optional
-        From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
+        Returns for a mesh the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
     progress : callable
     draft : bool
-        Whether modes go without their proof, which on a search's way they may (:func:`housing.solve_modes`).
+        Whether modes are solved without proof, as within a search (:func:`housing.solve_modes`).
     as_written : bool
-        Whether values are rounded as an updated case has them, so that the design solved is the one written: where the
-        last digits differ the mesher may well go another way, and frequencies with it by some 0.03 %.
+        Whether values are rounded as an updated case has them, so that the solved design is the written one: other last
+        digits may lead to another mesh, and change frequencies by some 0.03 %.
     """
 
     case: FittedCase
@@ -346,7 +346,7 @@ class ParametricHousing:
         Raises
         ------
         housing.HousingError
-            Where the values make no sound housing.
+            Where the values make no valid housing.
         """
         try:
             case = self.case_at(coordinates)
@@ -355,7 +355,7 @@ class ParametricHousing:
                 try:
                     return self._solved(coordinates, case, followed)
                 except HousingError:
-                    pass  # the move may have folded an element, of which a new mesh knows nothing
+                    pass  # the move may have folded an element, which a new mesh avoids
             return self._solved(coordinates, case, build_mesh(case))
         except (CaseError, GeometryError) as error:
             raise HousingError(str(error)) from error
@@ -365,15 +365,15 @@ class ParametricHousing:
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
         solved = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
-        given = case.housing
-        assert given is not None
-        ports = [seat_matrix(mesh, seat.build()) for seat in given.seat]
+        table = case.housing
+        assert table is not None
+        ports = [seat_matrix(mesh, seat.build()) for seat in table.seat]
         seats = (
             np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
             if ports
             else np.empty((len(solved.frequencies), 0, 2))
         )
-        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        bounds = None if table.box is None else np.array([table.box.lower, table.box.upper])
         skin = survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
         state = ModalState(solved.frequencies, seats, skin, measured)
@@ -393,9 +393,9 @@ class HousingAtParameters:
     mesh : Mesh
     state : housing.updating.ModalState
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
-        Mass-normalised [1/√kg]; None once they are let go.
-    known : Surrogate, or None
-        Its neighbourhood where that was worked out before.
+        Mass-normalised mode shapes [1/√kg]; None once they are dropped.
+    known : Surrogate or None
+        Surrogate about these coordinates, where it is computed already.
     """
 
     designs: ParametricHousing
@@ -407,11 +407,11 @@ class HousingAtParameters:
     known: Surrogate | None = None
 
     def surrogate(self) -> Surrogate:
-        """Its neighbourhood, by the exact rates of stiffness and mass."""
+        """Return the surrogate about these coordinates, by the exact rates of stiffness and mass."""
         return self._surrogate if self.known is None else self.known
 
     def light(self) -> "HousingAtParameters":
-        """Return a copy for another process, with its neighbourhood and without its shapes: a twentieth of the size."""
+        """Return a copy for another process, with its surrogate and without its shapes: a twentieth of the size."""
         return replace(self, shapes=None, known=self.surrogate())
 
     @cached_property

@@ -21,14 +21,14 @@ from rotors import rolling_bearings as rolling
 FloatArray = npt.NDArray[np.float64]
 
 
-def build_gear(case: Case, given: GivenGear) -> Gear:
+def build_gear(case: Case, entry: GivenGear) -> Gear:
     """Build a gear of the case; see :meth:`gearwhine.case.Gear.build`."""
-    return given.build(case.material_of_gear(given))
+    return entry.build(case.material_of_gear(entry))
 
 
-def gear_inertia(case: Case, given: GivenGear) -> tuple[float, float, float]:
+def gear_inertia(case: Case, entry: GivenGear) -> tuple[float, float, float]:
     """Mass [kg], polar and diametral inertia [kg m²] of a gear of the case: as given, or from the geometry."""
-    return given.inertia(case.material_of_gear(given))
+    return entry.inertia(case.material_of_gear(entry))
 
 
 def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
@@ -40,9 +40,9 @@ def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
     ]
 
 
-def build_rotor(case: Case, given: GivenRotor) -> Rotor:
+def build_rotor(case: Case, entry: GivenRotor) -> Rotor:
     """Build a rotor of the case, its gears on it as discs that stiffen it."""
-    return rotor_with_gears(given.build(case.material), shaft_gears(case, given.name))
+    return rotor_with_gears(entry.build(case.material), shaft_gears(case, entry.name))
 
 
 def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
@@ -53,12 +53,12 @@ def build_bearings(case: Case, rotor: str) -> tuple[RotorBearing, ...]:
     Raises
     ------
     CaseError
-        For a rolling bearing that its load or geometry does not let be.
+        For a rolling bearing that cannot exist with its load or geometry.
     """
     saved = case.rotor_named(rotor).saved
-    replaced = {given.name for given in case.bearing if given.rotor == rotor}
+    replaced = {entry.name for entry in case.bearing if entry.rotor == rotor}
     of_file = tuple(bearing for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced)
-    return of_file + tuple(_bearing(case, index) for index, given in enumerate(case.bearing) if given.rotor == rotor)
+    return of_file + tuple(_bearing(case, index) for index, entry in enumerate(case.bearing) if entry.rotor == rotor)
 
 
 def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
@@ -69,15 +69,15 @@ def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
     CaseError
         As `build_bearings`.
     """
-    given = case.bearing[index]
-    if not isinstance(given.stiffness, RollingStiffness) or case.finds_load(given):
+    entry = case.bearing[index]
+    if not isinstance(entry.stiffness, RollingStiffness) or case.finds_load(entry):
         return None
-    load = (0.0, 0.0, 0.0) if given.load is None else (given.load.x, given.load.y, given.load.z)
+    load = (0.0, 0.0, 0.0) if entry.load is None else (entry.load.x, entry.load.y, entry.load.z)
     try:
-        bearing = given.stiffness.rolling.build(given.name)
+        bearing = entry.stiffness.rolling.build(entry.name)
         return rolling.rolling_equilibrium(bearing, [*load, 0.0, 0.0], held={"rx": 0.0, "ry": 0.0})
     except (RotorError, EquilibriumError) as error:
-        raise _refused(given, index, error) from error
+        raise _refused(entry, index, error) from error
 
 
 def bearing_law(case: Case, index: int) -> BearingLaw | None:
@@ -88,11 +88,11 @@ def bearing_law(case: Case, index: int) -> BearingLaw | None:
     CaseError
         As `build_bearings`.
     """
-    given = case.bearing[index].stiffness
-    if isinstance(given, StopStiffness):
-        return given.stop.build()
-    if isinstance(given, RollingStiffness) and given.rolling.law == "nonlinear":
-        # One whose load is left to the operating point waits for it undeflected.
+    stiffness = case.bearing[index].stiffness
+    if isinstance(stiffness, StopStiffness):
+        return stiffness.stop.build()
+    if isinstance(stiffness, RollingStiffness) and stiffness.rolling.law == "nonlinear":
+        # A bearing whose load is left to the operating point is undeflected until then.
         state = rolling_state(case, index)
         return RollingLaw(rolling.rolling_state(_elements(case, index), np.zeros(5)) if state is None else state)
     return None
@@ -110,12 +110,12 @@ def rolling_elements(case: Case, index: int) -> rolling.RollingBearing | None:
 
 
 def _elements(case: Case, index: int) -> rolling.RollingBearing:
-    given = case.bearing[index]
-    assert isinstance(given.stiffness, RollingStiffness)
+    entry = case.bearing[index]
+    assert isinstance(entry.stiffness, RollingStiffness)
     try:
-        return given.stiffness.rolling.build(given.name)
+        return entry.stiffness.rolling.build(entry.name)
     except RotorError as error:
-        raise _refused(given, index, error) from error
+        raise _refused(entry, index, error) from error
 
 
 def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
@@ -127,41 +127,41 @@ def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
         As `build_bearings`.
     """
     states = {
-        given.name: rolling_state(case, index) for index, given in enumerate(case.bearing) if given.rotor == rotor
+        entry.name: rolling_state(case, index) for index, entry in enumerate(case.bearing) if entry.rotor == rotor
     }
     return {name: state for name, state in states.items() if state is not None}
 
 
 def _bearing(case: Case, index: int) -> RotorBearing:
-    given = case.bearing[index]
+    entry = case.bearing[index]
     return RotorBearing(
-        given.name,
-        given.at,
+        entry.name,
+        entry.at,
         _stiffness(case, index),
-        given.damping.build(),
-        None if given.speeds is None else np.array(given.speeds),
-        None if given.pedestal is None else given.pedestal.build(),
+        entry.damping.build(),
+        None if entry.speeds is None else np.array(entry.speeds),
+        None if entry.pedestal is None else entry.pedestal.build(),
     )
 
 
 def _stiffness(case: Case, index: int) -> FloatArray:
-    given = case.bearing[index]
-    if isinstance(given.stiffness, StopStiffness):
-        load = (0.0, 0.0) if given.load is None else (given.load.x, given.load.y)
-        return given.stiffness.stop.build().tangent(load)
-    if not isinstance(given.stiffness, RollingStiffness):
-        return given.stiffness.build()
-    if case.finds_load(given):
+    entry = case.bearing[index]
+    if isinstance(entry.stiffness, StopStiffness):
+        load = (0.0, 0.0) if entry.load is None else (entry.load.x, entry.load.y)
+        return entry.stiffness.stop.build().tangent(load)
+    if not isinstance(entry.stiffness, RollingStiffness):
+        return entry.stiffness.build()
+    if case.finds_load(entry):
         return np.zeros((5, 5))
     state = rolling_state(case, index)
     assert state is not None
     try:
-        return rolling.linearised_bearing(state, given.name, given.at).stiffness
+        return rolling.linearised_bearing(state, entry.name, entry.at).stiffness
     except EquilibriumError as error:
-        raise _refused(given, index, error) from error
+        raise _refused(entry, index, error) from error
 
 
-def _refused(given: Bearing, index: int, error: Exception) -> CaseError:
+def _refused(entry: Bearing, index: int, error: Exception) -> CaseError:
     expected = f"a bearing that its elements hold under its load; {error}"
-    key, label = f"bearing[{index}].stiffness.rolling", f'bearing "{given.name}"'
+    key, label = f"bearing[{index}].stiffness.rolling", f'bearing "{entry.name}"'
     return CaseError([Problem(key, UNSAID, expected, label=label)])

@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 class Stream(Protocol):
-    """Arrays that are too long to be held at once: they are written behind the others."""
+    """Arrays that are too long for memory: they are written behind the others."""
 
     def labels(self) -> Variables:
-        """Coordinates along their dimensions, which stand in the file before."""
+        """Return the coordinates along their dimensions, which the file must hold first."""
 
     def append_to(self, path: Path) -> None:
-        """Write them piece by piece into a file that holds the others."""
+        """Append the arrays piece by piece to a file that holds the others."""
 
     def add_to(self, variables: Variables) -> None:
-        """Add them in memory to the others."""
+        """Add the arrays in memory to the others."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class LabelledArrays:
     scalars : mapping of the same kind
         Coordinates without a dimension.
     attributes : mapping of str to str
-        Of the whole.
+        Attributes of the whole.
     streams : tuple of Stream
     """
 
@@ -69,7 +69,7 @@ class LabelledArrays:
 
 
 def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
-    """Solved objects, each with the declaration of its quantities, as labelled arrays; what is None is left out."""
+    """Return solved objects, each with the declaration of its quantities, as labelled arrays; None is left out."""
     variables: Variables = {}
     for fields, solved in parts:
         variables |= {} if solved is None else arrays_of(fields, solved)
@@ -77,8 +77,8 @@ def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] =
         variables = stream.labels() | variables
     scalars: Variables = {}
     if case.operation is not None:
-        told = {"units": "rpm", "long_name": "speed of the first driver"}
-        scalars["speed"] = ((), case.operation.speed * RPM, told)
+        attributes = {"units": "rpm", "long_name": "speed of the first driver"}
+        scalars["speed"] = ((), case.operation.speed * RPM, attributes)
     return LabelledArrays(variables, scalars, file_attributes(case), tuple(streams))
 
 
@@ -94,55 +94,59 @@ def file_attributes(case: Case) -> dict[str, str]:
 
 def arrays_of(fields: Iterable[Field], solved: Any) -> Variables:
     """Return those declared quantities of a solved object that have a name in the file, with their labels."""
-    found: Variables = {}
-    _add_fields(fields, [solved], (), found)
-    return found
+    variables: Variables = {}
+    _add_fields(fields, [solved], (), variables)
+    return variables
 
 
-def _add_fields(fields: Iterable[Field], objects: Sequence[Any], along: tuple[str, ...], found: Variables) -> None:
-    """Add the quantities of objects that stand along a dimension, None for those that are missing; or of one alone."""
-    for each in fields:
-        if isinstance(each, Quantity):
-            if each.name:
-                _add_quantity(each, objects, along, found)
+def _add_fields(fields: Iterable[Field], objects: Sequence[Any], along: tuple[str, ...], variables: Variables) -> None:
+    """Add the quantities of objects along a dimension, None where one is missing; or of a single object."""
+    for entry in fields:
+        if isinstance(entry, Quantity):
+            if entry.name:
+                _add_quantity(entry, objects, along, variables)
             continue
-        inner = [_taken(each, one) for one in objects]
-        if isinstance(each, Part):
-            if any(one is not None for one in inner):
-                _add_fields(each.fields, inner, along, found)
-        elif each.dimension:
-            rows = [row for one in inner if one is not None for row in one]
+        inner = [_value_of(entry, item) for item in objects]
+        if isinstance(entry, Part):
+            if any(item is not None for item in inner):
+                _add_fields(entry.fields, inner, along, variables)
+        elif entry.dimension:
+            rows = [row for item in inner if item is not None for row in item]
             if rows:
-                _add_fields(each.fields, rows, (each.dimension,), found)
+                _add_fields(entry.fields, rows, (entry.dimension,), variables)
 
 
-def _taken(field: Field, of: Any) -> Any:
+def _value_of(field: Field, of: Any) -> Any:
     value = None if of is None else field.of(of)
     return None if value is ABSENT else value
 
 
-def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, ...], found: Variables) -> None:
-    values = [_taken(quantity, one) for one in objects]
-    known = next((number for number, value in enumerate(values) if value is not None), None)
-    if known is None:
+def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, ...], variables: Variables) -> None:
+    values = [_value_of(quantity, item) for item in objects]
+    first = next((number for number, value in enumerate(values) if value is not None), None)
+    if first is None:
         return
-    if isinstance(values[known], dict):
+    if isinstance(values[first], dict):
         labels = quantity.dimensions[0]
-        found.setdefault(labels, ((labels,), list(values[known]), {}))
+        variables.setdefault(labels, ((labels,), list(values[first]), {}))
         values = [None if value is None else np.array(list(value.values())) for value in values]
-    if quantity.name in found and quantity.dimensions != (quantity.name,):
+    if quantity.name in variables and quantity.dimensions != (quantity.name,):
         raise ValueError(f"{quantity.name!r} is declared twice")
-    told: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
-    told |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
-    told |= {} if quantity.attributes is None else quantity.attributes(objects[known])
+    attributes: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
+    attributes |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
+    attributes |= {} if quantity.attributes is None else quantity.attributes(objects[first])
     if quantity.common or not along:
-        found[quantity.name] = (quantity.dimensions, values[known], told)
+        variables[quantity.name] = (quantity.dimensions, values[first], attributes)
     else:
-        found[quantity.name] = ((*along, *quantity.dimensions), _stacked(values, len(quantity.dimensions)), told)
+        variables[quantity.name] = (
+            (*along, *quantity.dimensions),
+            _stacked(values, len(quantity.dimensions)),
+            attributes,
+        )
 
 
 def _stacked(values: Sequence[Any], axes: int) -> npt.NDArray[Any]:
-    """Values of all rows in one array; where one is missing or shorter than another, the rest is NaN."""
+    """Return the values of all rows in one array, NaN where one is missing or shorter than another."""
     arrays = [np.empty((0,) * axes) if value is None else np.asarray(value) for value in values]
     shapes = {array.shape for array in arrays}
     if all(value is not None for value in values) and len(shapes) == 1:

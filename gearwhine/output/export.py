@@ -41,14 +41,14 @@ SOUND_SECONDS = 5.0
 """Least length of the sound file of a record that repeats [s]."""
 
 LONGEST_SOUND = 600.0
-"""Longest that may be asked for [s]: 115 MB."""
+"""Longest sound file that may be asked for [s], which has 115 MB."""
 
 _DATA = "results.nc"
-_FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # of a full scale
-_RATIO_LIMIT = 10_000  # of the terms of a resampling ratio: the pitch is right to 1e-8
+_FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # first digits of a full scale
+_RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right to 1e-8
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
-_ATTENUATION = 100.0  # dB, of what would fold back
-_MEASURED = ("sensor", "microphone")  # dimensions of what is measured on a real machine, too
+_ATTENUATION = 100.0  # attenuation of aliases [dB]
+_MEASURED = ("sensor", "microphone")  # dimensions of quantities that are measured on real machines
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
 
 
@@ -58,24 +58,24 @@ def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document
     Parameters
     ----------
     folder : path
-        A results folder.
+        Results folder.
     chapters : callable
-        Makes the chapters of a command's document.
+        Returns the chapters of a command's document.
     place : path
-        Where the files go.
+        Folder for the files.
 
     Returns
     -------
     list of dict
         File, title and number of rows of each table.
     """
-    found = [
+    titled_tables = [
         (title, table)
         for _, document in stored_results(folder)
         for title, table in _tables(str(document.get("command", "results")), chapters(document))
     ]
     written: list[Document] = []
-    for stem, (title, table) in zip(file_stems([title for title, _ in found]), found, strict=True):
+    for stem, (title, table) in zip(file_stems([title for title, _ in titled_tables]), titled_tables, strict=True):
         (place / f"{stem}.csv").write_text(_csv(table), encoding="utf-8", newline="")
         written.append({"file": f"{stem}.csv", "title": title, "rows": len(table.rows)})
     return written
@@ -84,10 +84,10 @@ def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document
 def _tables(title: str, sections: Iterable[Section]) -> Iterator[tuple[str, Table]]:
     """Yield the tables of sections and of those inside them, each under the titles that lead to it."""
     for section in sections:
-        here = " ".join(part for part in (title, section.title) if part)
+        path = " ".join(part for part in (title, section.title) if part)
         for table in section.tables:
-            yield " ".join(part for part in (here, table.caption) if part), table
-        yield from _tables(here, section.inner)
+            yield " ".join(part for part in (path, table.caption) if part), table
+        yield from _tables(path, section.inner)
 
 
 def _csv(table: Table) -> str:
@@ -115,9 +115,9 @@ def write_universal_files(
     Parameters
     ----------
     folder : path
-        A results folder.
+        Results folder.
     place : path
-        Where the files go.
+        Folder for the files.
     sensors : sequence of (str, (x, y, z), int)
         Name, position [m] and direction of each sensor: 1, 2, 3 for x, y, z with a sign, 0 for another.
     signals : {"sensors", "all"}
@@ -156,15 +156,15 @@ def write_universal_files(
 def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
     import xarray as xr
 
-    for own, document in stored_results(folder):
-        path = folder / own / _DATA
+    for place, document in stored_results(folder):
+        path = folder / place / _DATA
         if path.is_file() and not path.is_symlink():
             with xr.open_dataset(path, engine="h5netcdf") as data:
                 yield str(document.get("command", "results")), document, data
 
 
 def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tuple[float, float, float]]]:
-    """Return the points of microphones by name, behind those before them, and their positions [m]."""
+    """Return the points of microphones by name, numbered from ``before`` on, and their positions [m]."""
     if "microphone_position" not in data:
         return {}, []
     names = [str(name) for name in data["microphone"].values]
@@ -199,20 +199,20 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
 
     for name, variable in data.data_vars.items():
         axis = next((dimension for dimension in variable.dims if _axis_unit(data, dimension) in _KINDS), None)
-        others = [dimension for dimension in variable.dims if dimension != axis]
-        measured = next((kind for kind in _MEASURED if any(kind in str(dimension) for dimension in others)), None)
+        other_axes = [dimension for dimension in variable.dims if dimension != axis]
+        measured = next((kind for kind in _MEASURED if any(kind in str(dimension) for dimension in other_axes)), None)
         if axis is None or str(name).endswith("_phase") or (signals == "sensors" and measured is None):
             continue
-        if any(dimension not in data.coords or data[dimension].dtype.kind not in "UO" for dimension in others):
+        if any(dimension not in data.coords or data[dimension].dtype.kind not in "UO" for dimension in other_axes):
             continue  # along numbers, such as those of modes
         phase = data.get(f"{name}_phase")
-        # At once: each row of its own is sought in the file anew.
+        # The array is loaded at once: row by row each read would search the file anew.
         variable.load()
         if phase is not None:
             phase.load()
         abscissa = np.asarray(data[axis].values, dtype=np.float64)
-        for labels in product(*(data[dimension].values.tolist() for dimension in others)):
-            at = dict(zip(others, labels, strict=True))
+        for labels in product(*(data[dimension].values.tolist() for dimension in other_axes)):
+            at = dict(zip(other_axes, labels, strict=True))
             values = np.asarray(variable.sel(at).values, dtype=np.float64)
             if phase is not None:
                 values = values * np.exp(1j * np.asarray(phase.sel(at).values))
@@ -237,27 +237,27 @@ def _axis_unit(data: xr.Dataset, dimension: Any) -> str:
 
 
 def _response_unit(unit: str) -> str:
-    """Return the unit of a response to a metre of transmission error, for that by a metre."""
+    """Return the unit of a response to one metre of transmission error from that of the response per metre."""
     return {"m s-2 m-1": "m/s2", "N m-1": "N", "N m m-1": "N m"}.get(unit, unit)
 
 
 def _quantity(name: str) -> str:
-    """Return the name of a variable without what the axis says."""
+    """Return the name of a variable without the parts that its axis names."""
     for part in ("transmissibility_", "_spectrum"):
         name = name.replace(part, "")
     return name.replace("_", " ")
 
 
 def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[str, ...]:
-    told = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
+    remarks = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
     if unit == "s":
-        told.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
+        remarks.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
     else:
-        told.append("amplitudes are peaks")
+        remarks.append("amplitudes are peaks")
     for key, words in (("trusted_below_hz", "complete below"), ("complete_below_hz", "complete below")):
         if key in variable.attrs:
-            told.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
-    return ("; ".join(told),)
+            remarks.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
+    return ("; ".join(remarks),)
 
 
 def write_sounds(
@@ -274,11 +274,11 @@ def write_sounds(
     Parameters
     ----------
     folder : path
-        A results folder.
+        Results folder.
     place : path
-        Where the files go.
+        Folder for the files.
     rate : int
-        [Hz].
+        Sampling rate [Hz].
     seconds : float
         Least length of the file of a record that repeats [s]; 0 for one period.
 
@@ -290,27 +290,29 @@ def write_sounds(
     """
     written: list[Document] = []
     for command, document, data in _datasets(folder):
-        for one in _SOUNDS:
-            if one.variable not in data or one.time not in data:
+        for kind in _SOUNDS:
+            if kind.variable not in data or kind.time not in data:
                 continue
-            times = np.asarray(data[one.time].values, dtype=np.float64)
-            names = [str(name) for name in data[one.label].values]
+            times = np.asarray(data[kind.time].values, dtype=np.float64)
+            names = [str(name) for name in data[kind.label].values]
             for stem, name in zip(file_stems(names, f"{command}-"), names, strict=True):
-                signal = np.asarray(data[one.variable].sel({one.label: name}).values, dtype=np.float64)
+                signal = np.asarray(data[kind.variable].sel({kind.label: name}).values, dtype=np.float64)
                 interval = (times[-1] - times[0]) / (len(times) - 1)
                 count = periods(len(times) * interval, seconds, rate) if _repeats(document) else 0
                 sound = repeated(signal - signal.mean(), interval, rate, count)
                 scale = full_scale(float(np.abs(sound).max()))
-                path = place / f"{stem}-full-scale-{scale:g}-{one.suffix.replace('_', '-')}.wav"
-                comment = f"{one.what} at {name}; full scale (sample 1.0) is {scale:g} {one.unit}; gearwhine {command}"
+                path = place / f"{stem}-full-scale-{scale:g}-{kind.suffix.replace('_', '-')}.wav"
+                comment = (
+                    f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}; gearwhine {command}"
+                )
                 _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
                 written.append(
                     {
                         "file": path.name,
-                        one.label: name,
-                        f"full_scale_{one.suffix}": scale,
-                        f"peak_{one.suffix}": float(np.abs(sound).max()),
-                        f"rms_{one.suffix}": float(np.sqrt(np.mean(sound**2))),
+                        kind.label: name,
+                        f"full_scale_{kind.suffix}": scale,
+                        f"peak_{kind.suffix}": float(np.abs(sound).max()),
+                        f"rms_{kind.suffix}": float(np.sqrt(np.mean(sound**2))),
                         "seconds": len(sound) / rate,
                         "periods": max(count, 1),
                         "sampling_rate_hz": rate,
@@ -326,7 +328,7 @@ class _Sound:
     variable: str
     label: str
     time: str
-    what: str
+    quantity: str
     unit: str
     suffix: str
 
@@ -343,25 +345,25 @@ def _repeats(document: Document) -> bool:
 
 
 def periods(period: float, seconds: float, rate: int) -> int:
-    """Return how many periods a sound takes to be as long as asked for, or a little more where that closes it better.
+    """Return the number of periods of a sound that is as long as asked for, or longer where that closes it better.
 
-    Its samples end where it begins again, to a part of a sample: of the numbers up to half as many again, the one with
-    the smallest part.
+    The end of the last period lies a fraction of a sample beside a sample. Of the numbers up to half as many again, the
+    one with the smallest fraction is taken.
 
     Parameters
     ----------
     period : float
-        [s].
+        Length of a period [s].
     seconds : float
         Least length [s].
     rate : int
-        Of the samples [Hz].
+        Sampling rate [Hz].
     """
     least = max(math.ceil(seconds / period - 1e-9), 1)
     apart = [
         abs(count * period * rate - round(count * period * rate)) for count in range(least, least + least // 2 + 1)
     ]
-    # By a thousandth of a sample, the first of those that are alike.
+    # The first of those that are equal to a thousandth of a sample.
     return least + min(range(len(apart)), key=lambda place: round(apart[place], 3))
 
 
@@ -373,14 +375,14 @@ def repeated(signal: FloatArray, interval: float, rate: int, count: int) -> Floa
     signal : ndarray, shape (n,)
         One period, or a record that does not repeat.
     interval : float
-        Between its samples [s].
+        Time between its samples [s].
     rate : int
-        Of the result [Hz].
+        Sampling rate of the result [Hz].
     count : int
     """
     if count == 0:
         return resampled(signal, interval, rate)
-    # Before and behind it is what the filter reaches, so that no end is heard.
+    # The signal is extended on both sides by the reach of the filter, so that its ends are not heard.
     reach = math.ceil((_HALF_LENGTH + 1) * max(1.0 / rate, interval) / (len(signal) * interval))
     sound = resampled(np.tile(signal, count + 2 * reach), interval, rate)
     period = len(signal) * interval * rate
@@ -403,9 +405,9 @@ def resampled(signal: FloatArray, interval: float, rate: int) -> FloatArray:
     ----------
     signal : ndarray, shape (n,)
     interval : float
-        Between its samples [s].
+        Time between its samples [s].
     rate : int
-        Of the result [Hz].
+        Sampling rate of the result [Hz].
 
     References
     ----------

@@ -76,7 +76,7 @@ def _take(handle: int, *, wait: bool) -> bool:
 
 
 def file_contents(table: Any) -> dict[str, Any]:
-    """Each file that a table names, however deep: from its name to a digest of its bytes and its ending.
+    """Return a digest of the bytes, and the ending, of each file that a table names, however deep.
 
     The ending counts because a file's reader is chosen by it.
     """
@@ -125,14 +125,14 @@ PRESENTATION = (
 def source_digest(*names: str, without: tuple[str, ...] = ()) -> str:
     """SHA-256 of the text of packages and modules, which changes between releases under one version number.
 
-    Code in them that does not bear on the result counts too: that costs a solution now and then, and forgets nothing.
+    Code in them that does not affect the result counts too: that costs an unneeded solution at times, but misses none.
 
     Parameters
     ----------
     *names : str
         Dotted names of packages, with all that they hold, and of modules.
     without : tuple of str
-        Dotted names of what is left out.
+        Dotted names of packages and modules that are left out.
     """
     total = hashlib.sha256()
     left_out = {file for name in without for _, file in _source_files(name)}
@@ -146,13 +146,13 @@ def source_digest(*names: str, without: tuple[str, ...] = ()) -> str:
 
 def _source_files(name: str) -> list[tuple[str, Path]]:
     """Return the files of a package or a module, each with its place in the tree."""
-    found = find_spec(name)
-    if found is None or found.origin is None:
+    spec = find_spec(name)
+    if spec is None or spec.origin is None:
         raise ModuleNotFoundError(f"no package or module {name!r}")
-    file = Path(found.origin)
+    file = Path(spec.origin)
     top = file.parents[name.count(".") + (file.name == "__init__.py")]
     files = sorted(file.parent.rglob("*.py")) if file.name == "__init__.py" else [file]
-    return [(one.relative_to(top).as_posix(), one) for one in files]
+    return [(path.relative_to(top).as_posix(), path) for path in files]
 
 
 def _paths(value: Any) -> set[Path]:
@@ -197,15 +197,15 @@ COMMANDS = (
 _STAGING = ".partial-"
 _DRAWN = (".png", ".glb", ".vtu")
 _JSON_LINE = 160  # letters of a document's line that holds a whole list or object
-_LONGEST = 60  # of a name in a file's [characters]
+_LONGEST = 60  # length of the longest name in a file's name [characters]
 
 
 @contextmanager
 def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -> Iterator[Path]:
     """Stage files in a folder inside the output folder: they move out to it, one by one and whole, at the end.
 
-    Where the work fails or is interrupted, the output folder keeps what it had. What a killed run left behind is
-    cleared away first; what a living one is still at is left alone, and two runs move their files one after the other.
+    Where the work fails or is interrupted, the output folder keeps its files. Staged files of a killed run are removed
+    first, those of a living one stay, and two runs move their files one after the other.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
         does not draw anew are then cleared away, so that no old mode stands among the new ones. None where the files
         add to earlier ones.
     """
-    made = not folder.exists()
+    is_new = not folder.exists()
     with ExitStack() as stack:
         with exclusive_lock(folder):
             for stale in folder.glob(f"{_STAGING}*"):
@@ -237,7 +237,7 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
             raise
         finally:
             shutil.rmtree(place, ignore_errors=True)
-            if made:
+            if is_new:
                 with suppress(OSError):  # it holds results, or another run is at work in it
                     folder.rmdir()
 
@@ -251,12 +251,12 @@ def read_summary(folder: Path) -> Mapping[str, Any] | None:
     return summary if isinstance(summary, Mapping) else None
 
 
-def listed_files(folder: Path, own: Path) -> list[Path]:
-    """Files that the summary in a place of the output folder lists and that stand there: no links, no other places."""
-    names = (read_summary(folder / own) or {}).get("files", ())
+def listed_files(folder: Path, place: Path) -> list[Path]:
+    """Return the files that the summary in a place of the output folder lists and that exist there, without links."""
+    names = (read_summary(folder / place) or {}).get("files", ())
     texts = {name for name in names if isinstance(name, str) and name} if isinstance(names, list) else set()
-    found = (Path(text) for text in sorted(texts))
-    return [one for one in found if one == own / one.name and _is_plain_file(folder / one)]
+    paths = (Path(text) for text in sorted(texts))
+    return [path for path in paths if path == place / path.name and _is_plain_file(folder / path)]
 
 
 def _is_plain_file(path: Path) -> bool:
@@ -264,10 +264,10 @@ def _is_plain_file(path: Path) -> bool:
 
 
 def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
-    """Move a run's files to the output folder, and clear away what it does not draw anew."""
+    """Move a run's files to the output folder, and remove earlier drawings that it does not draw anew."""
     names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
-    stale = [] if replaced is None else [one for one in listed_files(folder, replaced) if one.suffix in _DRAWN]
-    # The summary moves last: where it is new, all is new, and until then the old one lists what is to be cleared.
+    stale = [] if replaced is None else [file for file in listed_files(folder, replaced) if file.suffix in _DRAWN]
+    # The summary moves last: where it is new, all is new, and until then the old one lists the files to be removed.
     for name in sorted(names, key=lambda name: name.name == SUMMARY):
         if name.name == SUMMARY:
             for old in stale:
@@ -281,7 +281,7 @@ def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
 def json_text(document: Mapping[str, Any]) -> str:
     """Return a document as JSON for reading, refusing values that JSON has no word for.
 
-    What fits on a line stands on one, such as a line of a spectrum, and so does any list of plain values.
+    A list or object that fits on a line stands on one, and so does any list of plain values.
     """
     return _json_lines(document, "")
 
@@ -292,17 +292,17 @@ def _json_lines(value: Any, margin: str) -> str:
     inner = (
         list(value.values()) if isinstance(value, Mapping) else list(value) if isinstance(value, list | tuple) else []
     )
-    nested = any(isinstance(one, Mapping | list | tuple) for one in inner)
+    nested = any(isinstance(item, Mapping | list | tuple) for item in inner)
     if not inner or len(margin) + len(text) <= _JSON_LINE or not (nested or isinstance(value, Mapping)):
         return text
     further = f"{margin} "
     if isinstance(value, Mapping):
         entries = [
-            f"{json.dumps(str(key), ensure_ascii=False)}: {_json_lines(one, further)}" for key, one in value.items()
+            f"{json.dumps(str(key), ensure_ascii=False)}: {_json_lines(item, further)}" for key, item in value.items()
         ]
         opening, closing = "{}"
     else:
-        entries, (opening, closing) = [_json_lines(one, further) for one in inner], "[]"
+        entries, (opening, closing) = [_json_lines(item, further) for item in inner], "[]"
     return f"{opening}\n{further}" + f",\n{further}".join(entries) + f"\n{margin}{closing}"
 
 
@@ -318,7 +318,7 @@ def finite(value: Any) -> Any:
 
 
 def file_stems(names: Sequence[str], prefix: str = "") -> list[str]:
-    """Return a file stem for each name, after a prefix: of letters that any file system takes, and no two alike."""
+    """Return a file stem for each name, after a prefix: distinct, and of letters that any file system takes."""
     stems: list[str] = []
     for number, name in enumerate(names, start=1):
         plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]

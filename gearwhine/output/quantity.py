@@ -5,9 +5,9 @@ rows of like objects::
 
     ROTORS = (
         Rows("rotors", lambda solved: solved, dimension="rotor", fields=(
-            Quantity("name", lambda one: one.rotor.name, "rotor", heading="rotor"),
-            Quantity("mass_kg", lambda one: one.rotor.mass, heading="mass [kg]", shown=".3f"),
-            Part("campbell", lambda one: one.campbell, (
+            Quantity("name", lambda solved: solved.rotor.name, "rotor", heading="rotor"),
+            Quantity("mass_kg", lambda solved: solved.rotor.mass, heading="mass [kg]", shown=".3f"),
+            Part("campbell", lambda solved: solved.campbell, (
                 Quantity("frequency_hz", lambda diagram: diagram.frequencies / HERTZ,
                          "campbell_frequency", ("campbell_step", "whirl_branch"), "Hz", "natural frequency of whirl"),
             )),
@@ -43,7 +43,7 @@ class Absent:
 ABSENT: Final = Absent()
 """Value of a quantity whose key the document leaves out; None stands in it as null."""
 
-Taken = Callable[[Any], Any]
+Getter = Callable[[Any], Any]
 Row = Mapping[str, Any]
 
 
@@ -62,28 +62,28 @@ class Quantity:
         Name in the NetCDF file; empty for a quantity of the document alone. A variable that is named for its only
         dimension is the coordinate along it.
     dimensions : tuple of str
-        Of one value, behind the dimension of the rows that the quantity stands in. The labels of a mapping are the
-        coordinate along the first.
+        Dimensions of one value, behind the dimension of the rows that the quantity stands in. The labels of a mapping
+        are the coordinate along the first.
     unit : str
         CF unit in the file.
     long_name : str
-        In the file.
+        Long name in the file.
     document : callable, optional
-        Takes the document's form of the value from the file's: another unit, or fewer entries.
+        Converts the value from the file's form to the document's: another unit, or fewer entries.
     attributes : callable, optional
         Takes further attributes of the variable from the solved object.
     common : bool
         Whether rows have the value in common: it stands in the file once, without their dimension.
     heading : str
-        Of its column in a table, with the unit; empty for a quantity that tables do not show.
+        Heading of its column in a table, with the unit; empty for a quantity that tables do not show.
     shown : str or callable
         Format of the number in its column, or the text of a row of the document.
     scale : float
-        Of the number in its column.
+        Factor of the number in its column.
     """
 
     key: str
-    of: Taken
+    of: Getter
     name: str = ""
     dimensions: tuple[str, ...] = ()
     unit: str = ""
@@ -103,14 +103,14 @@ class Part:
     Attributes
     ----------
     key : str
-        In the document; empty where the quantities stand beside those around.
+        Key in the document; empty where the quantities stand beside those around.
     of : callable
         Takes the object; None where there is none, which the document shows as null.
     fields : tuple of Quantity, Part or Rows
     """
 
     key: str
-    of: Taken
+    of: Getter
     fields: "Fields"
 
 
@@ -121,17 +121,17 @@ class Rows:
     Attributes
     ----------
     key : str
-        In the document; empty for rows of the file alone.
+        Key in the document; empty for rows of the file alone.
     of : callable
         Takes the objects; None where there are none, which the document shows as null.
     fields : tuple of Quantity, Part or Rows
     dimension : str
-        In the file: rows of all objects around stand along it, one after the other. Empty for rows of the document
-        alone.
+        Dimension in the file, along which the rows of all objects around stand one after the other; empty for rows of
+        the document alone.
     """
 
     key: str
-    of: Taken
+    of: Getter
     fields: "Fields"
     dimension: str = ""
 
@@ -146,20 +146,20 @@ def document_of(fields: Iterable[Field], solved: Any) -> dict[str, Any]:
     for field in fields:
         if isinstance(field, Quantity) and not field.key:
             continue
-        found = field.of(solved)
+        value = field.of(solved)
         if isinstance(field, Part) and not field.key:
-            document |= {} if found is None else document_of(field.fields, found)
-        elif field.key and found is not ABSENT:
-            document[field.key] = None if found is None else _entry(field, found)
+            document |= {} if value is None else document_of(field.fields, value)
+        elif field.key and value is not ABSENT:
+            document[field.key] = None if value is None else _entry(field, value)
     return document
 
 
-def _entry(field: Field, found: Any) -> Any:
+def _entry(field: Field, value: Any) -> Any:
     if isinstance(field, Part):
-        return document_of(field.fields, found)
+        return document_of(field.fields, value)
     if isinstance(field, Rows):
-        return [document_of(field.fields, one) for one in found]
-    return plain(found if field.document is None else field.document(found))
+        return [document_of(field.fields, item) for item in value]
+    return plain(value if field.document is None else field.document(value))
 
 
 def plain(value: Any) -> Any:
@@ -176,15 +176,15 @@ def plain(value: Any) -> Any:
 
 
 def warning(name: str, message: str, **figures: Any) -> Document:
-    """One entry of a document's ``warnings``; ``figures`` have their units in their keys."""
+    """Return an entry of a document's ``warnings``; ``figures`` have their units in their keys."""
     return {"name": name, "message": message} | figures
 
 
-def add_warnings(document: Document, found: Iterable[Mapping[str, Any]] = ()) -> None:
+def add_warnings(document: Document, warnings: Iterable[Mapping[str, Any]] = ()) -> None:
     """Append warnings to those that a document has; a message that it has already is not repeated."""
     listed = list(document.get("warnings", ()))
     messages = {entry["message"] for entry in listed}
-    for entry in found:
+    for entry in warnings:
         if entry["message"] not in messages:
             listed.append(dict(entry))
             messages.add(entry["message"])
@@ -195,7 +195,7 @@ def joined(*documents: Mapping[str, Any]) -> Document:
     """Merge documents: the keys of later ones win, the warnings of all are joined."""
     whole: Document = {}
     for document in documents:
-        found = document.get("warnings", ())
-        add_warnings(whole, found)
+        warnings = document.get("warnings", ())
+        add_warnings(whole, warnings)
         whole |= {key: value for key, value in document.items() if key != "warnings"}
     return whole

@@ -24,16 +24,16 @@ class Column:
     Attributes
     ----------
     heading : str
-        With the unit.
+        Heading with the unit.
     of : str or callable
         Key of the value in a row, keys of parts before it with points between; or a callable that takes the text of
         the cell from the row.
     form : str
         Format of a number.
     scale : float
-        Of a number.
+        Factor of a number.
     link : callable, optional
-        Takes from the row the names of places in the report: the cell leads to the first of them that is there.
+        Returns names of places in the report for a row: the cell links to the first of them that exists.
     """
 
     heading: str
@@ -74,7 +74,7 @@ class Table:
     rows : tuple of mapping
     caption : str
     anchor : callable, optional
-        Takes from a row the name of its place in the report, for links to it.
+        Returns the name of a row's place in the report, for links to it.
     """
 
     columns: tuple[Column, ...]
@@ -97,9 +97,9 @@ class Finding:
     ----------
     text : str
     passed : bool or None
-        None where it is a warning, which may be neither.
+        Whether it passes; None of a warning.
     link : tuple of str
-        Names of places in the report, of which the first that is there shows more.
+        Names of places in the report; the sentence links to the first of them that exists.
     """
 
     text: str
@@ -120,11 +120,11 @@ class Picture:
     begins : str
         Beginning of the file names, before ``.png``.
     caption : str
-        One sentence that names what is shown and what to look for.
+        One sentence on the content of the picture and its main feature.
     small : bool
         Whether it stands in a row with others of its kind.
     sheet_of : str
-        Beginning of the names of pictures that this one repeats on one sheet: it is left out where they are there.
+        Beginning of the names of pictures that this one repeats on one sheet; it is left out where they exist.
     """
 
     begins: str
@@ -147,7 +147,7 @@ class Curves:
     variable : str
         Name of the array.
     along : tuple of str
-        Its axes: the abscissa, and for colours the ordinate; its other dimension, if any, makes one drawing each.
+        Axes: the abscissa, and for colours the ordinate. Each entry of another dimension has a drawing of its own.
     caption : str
     logarithmic : bool
         Whether values are shown on a logarithmic scale.
@@ -169,15 +169,15 @@ class Section:
         Empty where the sentences need none.
     content : tuple of str, Finding or Table
     note : str
-        Beside the title.
+        Note beside the title.
     pictures : tuple of Picture
-        For the report, in their order there.
+        Pictures of the report, in their order there.
     inner : tuple of Section
-        Behind its own content.
+        Sections behind its own content.
     curves : tuple of Curves
-        For the interactive report.
+        Curves of the interactive report.
     shows : Document or None
-        Part of a command's document that it shows, by which a report tells results that stand in it twice.
+        Part of a command's document that the section shows; a report folds results that stand in it twice.
     """
 
     title: str
@@ -195,21 +195,26 @@ class Section:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Its own sentences."""
-        return tuple(one for one in self.content if isinstance(one, str))
+        """Sentences of the section itself."""
+        return tuple(item for item in self.content if isinstance(item, str))
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        """Its own tables."""
-        return tuple(one for one in self.content if isinstance(one, Table))
+        """Tables of the section itself."""
+        return tuple(item for item in self.content if isinstance(item, Table))
 
 
 def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
     """Return the columns of declared quantities that have a heading."""
     return tuple(
-        Column(one.heading, (one.shown if callable(one.shown) else one.key), _form(one), one.scale)
-        for one in fields
-        if isinstance(one, Quantity) and one.heading
+        Column(
+            quantity.heading,
+            (quantity.shown if callable(quantity.shown) else quantity.key),
+            _form(quantity),
+            quantity.scale,
+        )
+        for quantity in fields
+        if isinstance(quantity, Quantity) and quantity.heading
     )
 
 
@@ -228,9 +233,9 @@ def arrowed(text: str) -> str:
     return text.replace(" -> ", " → ")
 
 
-def counted(number: int, what: str) -> str:
+def counted(number: int, noun: str) -> str:
     """Return a number of things in words, such as ``1 mode`` and ``2 modes``."""
-    return f"{number} {what}{'' if number == 1 else 's'}"
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def percent(part: float) -> str:
@@ -239,7 +244,7 @@ def percent(part: float) -> str:
 
 
 def is_number(text: str) -> bool:
-    """Whether a cell begins with a number and a unit at most: such columns stand to the right."""
+    """Whether a cell is a number, with a unit at most: such columns are aligned to the right."""
     try:
         float(text.removesuffix("%").removesuffix("°").strip())
     except ValueError:

@@ -28,7 +28,7 @@ from gearwhine.output.files import (
 from housing.storage.netcdf import Variables, read_netcdf
 
 _FOREMOST = "run"
-_ADDING = "render"  # draws what it is asked for, beside what it drew before
+_ADDING = "render"  # command whose pictures are added to its earlier ones
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,9 @@ class Option:
     Attributes
     ----------
     keys : tuple of str
-        Of the document; the first one names the option.
+        Keys of the document; the first one names the option.
     dimensions : tuple of str
-        How the names of its dimensions in the file begin.
+        Beginnings of the names of its dimensions in the file.
     files : str
         Pattern of the names of its drawings.
     """
@@ -70,7 +70,7 @@ class Option:
 
     def has(self, dimensions: Sequence[str]) -> bool:
         """Whether an array with these dimensions belongs to the option."""
-        return any(one.startswith(self.dimensions) for one in dimensions)
+        return any(dimension.startswith(self.dimensions) for dimension in dimensions)
 
 
 def kept_options(
@@ -81,26 +81,26 @@ def kept_options(
     place: Path,
     earlier: Mapping[str, Any],
 ) -> Kept:
-    """Return what an earlier result in a folder has by options that a new one was not asked for.
+    """Return the parts of an earlier result in a folder by options that a new one is not asked for.
 
-    Only of the same case and where what both have is the same, number for number.
+    They are kept where the case and the parts that both results have are the same, number for number.
 
     Parameters
     ----------
     options : sequence of Option
-        Of the command.
+        Options of the command.
     same : sequence of str
         Keys of the document that no option changes.
     case : Case
     document : mapping
-        Of the new result.
+        Document of the new result.
     place : path
-        Folder of the earlier one.
+        Folder of the earlier result.
     earlier : mapping
-        Its document.
+        Document of the earlier result.
     """
     now = json.loads(json_text(finite(document)))
-    missing = [one for one in options if one.keys[0] in earlier and one.keys[0] not in document]
+    missing = [option for option in options if option.keys[0] in earlier and option.keys[0] not in document]
     alike = all(now.get(key) == earlier.get(key) for key in same)
     try:
         if not missing or not alike or (place / "case.toml").read_text(encoding="utf-8") != dump_case(case):
@@ -108,14 +108,16 @@ def kept_options(
         arrays, _ = read_netcdf(place / "results.nc")
     except (OSError, ValueError, KeyError):
         return Kept()
-    names = [one.keys[0] for one in missing]
-    entries: dict[str, Any] = {key: earlier[key] for one in missing for key in one.keys if key in earlier}
-    told = [one for one in earlier.get("warnings", ()) if one["name"] in names]
+    names = [option.keys[0] for option in missing]
+    entries: dict[str, Any] = {key: earlier[key] for option in missing for key in option.keys if key in earlier}
+    warnings = [entry for entry in earlier.get("warnings", ()) if entry["name"] in names]
     variables = {
-        name: array.labelled for name, array in arrays.items() if any(one.has(array.dimensions) for one in missing)
+        name: array.labelled
+        for name, array in arrays.items()
+        if any(option.has(array.dimensions) for option in missing)
     }
-    files = [file for one in missing for file in sorted(place.glob(one.files))]
-    return Kept(entries | {"kept": [*entries], "warnings": [*document["warnings"], *told]}, variables, files)
+    files = [file for option in missing for file in sorted(place.glob(option.files))]
+    return Kept(entries | {"kept": [*entries], "warnings": [*document["warnings"], *warnings]}, variables, files)
 
 
 def kept_sentence(document: Mapping[str, Any], options: Sequence[Option], alike: str) -> Iterator[str]:
@@ -125,12 +127,12 @@ def kept_sentence(document: Mapping[str, Any], options: Sequence[Option], alike:
     ----------
     document : mapping
     options : sequence of Option
-        Of the command.
+        Options of the command.
     alike : str
-        What both results have in common.
+        Name of the parts that both results have in common.
     """
-    kept = document.get("kept", ())
-    if names := [one.keys[0].replace("_", " ") for one in options if one.keys[0] in kept]:
+    kept_keys = document.get("kept", ())
+    if names := [option.keys[0].replace("_", " ") for option in options if option.keys[0] in kept_keys]:
         yield f"Of the results that stood in the folder, of the same {alike}: {' and '.join(names)}"
 
 
@@ -143,39 +145,39 @@ def store_results(
     *,
     modes_stored: bool = False,
 ) -> None:
-    """Keep a command's results in a folder.
+    """Store a command's results in a folder.
 
     Parameters
     ----------
-    command
+    command : str
         One of `gearwhine.output.COMMANDS`.
-    document
-        Printed, and stored as the summary; it gains the command, the time, the input files and the files written.
-    case
-        Stored as it is resolved.
-    folder
-        The output folder.
-    write
+    document : dict
+        Document that is stored as the summary; it gains the command, the time, the input files and the files written.
+    case : Case
+        Case, which is stored as it is resolved.
+    folder : path
+        Output folder.
+    write : callable
         Writes the command's own files into a folder.
-    modes_stored
-        Whether the folder holds the modes that the results rest on, so that they are listed though not written.
+    modes_stored : bool
+        Whether the folder holds the modes of the results, so that they are listed though not written.
     """
 
     def settle(place: Path) -> Path | None:
-        own = _place_of(folder, command)
-        (place / own).mkdir(exist_ok=True)
+        command_folder = _place_of(folder, command)
+        (place / command_folder).mkdir(exist_ok=True)
         for path in sorted(place.iterdir()):
             if path.is_file() and path.name != MODE_CACHE_FILE:
-                path.rename(place / own / path.name)
+                path.rename(place / command_folder / path.name)
         names = {path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()}
         if modes_stored:
             names.add(MODE_CACHE_FILE)
-        files = [*sorted(names), (own / SUMMARY).as_posix()]
+        files = [*sorted(names), (command_folder / SUMMARY).as_posix()]
         document.update(
             command=command, made_at=_now(), input_files=_input_files(case), folder=str(folder), files=files
         )
-        (place / own / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
-        return None if command == _ADDING else own
+        (place / command_folder / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
+        return None if command == _ADDING else command_folder
 
     with staging(folder, settle) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
@@ -185,14 +187,16 @@ def store_results(
 def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     """Return the results in a folder, newest first: the relative place of each, and its document."""
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
-    found = [(own, summary) for own in places if (summary := read_summary(folder / own)) is not None]
-    return sorted(found, key=lambda one: str(one[1].get("made_at", "")), reverse=True)
+    results = [(place, summary) for place in places if (summary := read_summary(folder / place)) is not None]
+    return sorted(results, key=lambda result: str(result[1].get("made_at", "")), reverse=True)
 
 
 def earlier_result(folder: Path, command: str) -> tuple[Path, Mapping[str, Any]] | None:
     """Return the place of a command's results in a folder, and their document; None where there are none."""
-    found = [(folder / own, summary) for own, summary in stored_results(folder) if summary.get("command") == command]
-    return found[0] if found else None
+    matches = [
+        (folder / place, summary) for place, summary in stored_results(folder) if summary.get("command") == command
+    ]
+    return matches[0] if matches else None
 
 
 def _place_of(folder: Path, command: str) -> Path:
@@ -214,7 +218,7 @@ def _give_way(folder: Path, owner: str) -> None:
     (folder / owner).mkdir(exist_ok=True)
     document = dict(read_summary(folder) or {})
     shared = [MODE_CACHE_FILE] if (folder / MODE_CACHE_FILE).is_file() else []
-    names = [one.name for one in listed_files(folder, Path()) if one.name not in (MODE_CACHE_FILE, SUMMARY)]
+    names = [path.name for path in listed_files(folder, Path()) if path.name not in (MODE_CACHE_FILE, SUMMARY)]
     document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
     for name in names:
         os.replace(folder / name, folder / owner / name)

@@ -13,8 +13,8 @@ from rich.text import Text
 from gearwhine.output.sections import Document, Section, Table, is_number
 
 _WIDTH = 120
-_LISTED = 12  # files that are named
-_NARROWEST = 20  # columns of a wrapped text
+_LISTED = 12  # largest number of files that are named
+_NARROWEST = 20  # least number of columns of a wrapped text
 
 
 def open_console() -> Console:
@@ -30,7 +30,7 @@ def open_console() -> Console:
 def shown_by(
     sections: Callable[[Document], Iterable[Section]], *, timed: bool = False
 ) -> Callable[[dict[str, Any]], None]:
-    """Return a command's way to show its document: by its sections, and the time where it is worth a line."""
+    """Return a function that prints a command's document by its sections, with the time where ``timed``."""
     return lambda document: show(document, sections(document), timed=timed)
 
 
@@ -48,23 +48,23 @@ def show(document: Document, sections: Iterable[Section], *, timed: bool = False
 
 
 def show_files(document: Document) -> None:
-    """Print which files were written, for commands that show nothing else."""
+    """Print the written files, for commands that show nothing else."""
     show(document, ())
 
 
 def show_section(console: Console, section: Section, indent: int = 0) -> None:
     """Print a section; content under a title is set in by two columns."""
     if section.title:
-        told = _hanging(console, section.note, indent + len(section.title))
-        console.print(Text.assemble(" " * indent, (section.title, "bold"), told))
+        note = _hanging(console, section.note, indent + len(section.title))
+        console.print(Text.assemble(" " * indent, (section.title, "bold"), note))
         indent += 2
-    for one in section.content:
-        if isinstance(one, Table):
-            if one.caption:
-                console.print(f"{' ' * indent}{one.caption}")
-            console.print(Padding(_grid(one), (0, 0, 1, indent), expand=False))
+    for item in section.content:
+        if isinstance(item, Table):
+            if item.caption:
+                console.print(f"{' ' * indent}{item.caption}")
+            console.print(Padding(_grid(item), (0, 0, 1, indent), expand=False))
         else:
-            console.print(f"{' ' * indent}{_hanging(console, str(one), indent)}")
+            console.print(f"{' ' * indent}{_hanging(console, str(item), indent)}")
     for inner in section.inner:
         show_section(console, inner, indent)
 

@@ -17,7 +17,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
     Parameters
     ----------
     document : Document
-        With its ``command``. Analyses that other commands include stand under ``housing``, ``compare``, ``load``,
+        Document with its ``command``. Analyses that other commands include are ``housing``, ``compare``, ``load``,
         ``system`` and ``sound``; the rotors and gear pairs of a run stand beside its motion.
     """
     from gearwhine.results import (
@@ -37,7 +37,7 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
 
     command = document.get("command")
 
-    def own(key: str, *commands: str) -> Document:
+    def if_command(key: str, *commands: str) -> Document:
         """Return the document where it is one of these commands' and holds the key."""
         return document if command in commands and key in document else {}
 
@@ -48,17 +48,17 @@ def chapters_of(document: Document) -> tuple[Section, ...]:
     if command == "check":
         return check.sections(document)
     chapters: tuple[tuple[Callable[[Document], Section], Document], ...] = (
-        (housing.report, part("housing") or own("certificate", "modes")),
-        (comparison.report, part("compare") or own("pairing", "compare")),
-        (update.report, own("parameters", "update")),
-        (rotors.report, own("rotors", "rotors", *_RUNS)),
-        (gears.report, own("pairs", "gears", *_RUNS)),
-        (operating_point.report, part("load") or own("gear_pairs", "load")),
-        (system.report, part("system") or own("stability", "system")),
-        (run.report, own("steps", *_RUNS)),
-        (sound.report, part("sound") or own("total_db_a", "sound")),
-        (sweep.report, own("points", "sweep")),
-        (housing.render_report, own("command", "render")),
-        (steady_state.report, own("motions", "steady")),
+        (housing.report, part("housing") or if_command("certificate", "modes")),
+        (comparison.report, part("compare") or if_command("pairing", "compare")),
+        (update.report, if_command("parameters", "update")),
+        (rotors.report, if_command("rotors", "rotors", *_RUNS)),
+        (gears.report, if_command("pairs", "gears", *_RUNS)),
+        (operating_point.report, part("load") or if_command("gear_pairs", "load")),
+        (system.report, part("system") or if_command("stability", "system")),
+        (run.report, if_command("steps", *_RUNS)),
+        (sound.report, part("sound") or if_command("total_db_a", "sound")),
+        (sweep.report, if_command("points", "sweep")),
+        (housing.render_report, if_command("command", "render")),
+        (steady_state.report, if_command("motions", "steady")),
     )
     return tuple(replace(chapter(shown), shows=shown) for chapter, shown in chapters if shown)

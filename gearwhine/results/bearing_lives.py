@@ -7,7 +7,7 @@ from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import Document
 
 LONGEST_LIFE = 1e6
-"""Life beyond which a number of hours says nothing more than that the bearing is hardly loaded [h]."""
+"""Life above which the bearing is hardly loaded, and only this bound is shown [h]."""
 
 
 def life_in_words(hours: float | None) -> str:
@@ -25,11 +25,11 @@ def life_quantities(
     Parameters
     ----------
     rated : callable
-        Makes of an attribute's name what takes it from a row's :class:`gearwhine.solve.bearing_lives.BearingLife`.
+        Maps the name of an attribute of :class:`gearwhine.solve.bearing_lives.BearingLife` to a function of a row.
     name : str
-        Of the bearings in the NetCDF file, such as ``bearing``.
+        Name of the bearings in the NetCDF file, such as ``bearing``.
     headings : tuple of str
-        Of the columns of both lives.
+        Headings of the columns of both lives.
     """
 
     def of(key: str) -> Callable[[Document], str]:

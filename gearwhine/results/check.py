@@ -23,31 +23,31 @@ if TYPE_CHECKING:
     from housing import Joint as BuiltJoint
 
 
-def _given(key: str, of: Any) -> Quantity:
-    """Declare a quantity whose key is left out where there is none."""
+def _optional(key: str, of: Any) -> Quantity:
+    """Declare a quantity whose key is left out where its value is None."""
 
-    def taken(one: Any) -> Any:
-        found = of(one)
-        return ABSENT if found is None else found
+    def value_or_absent(row: Any) -> Any:
+        value = of(row)
+        return ABSENT if value is None else value
 
-    return Quantity(key, taken)
-
-
-def _part(key: str, of: Any, fields: Any) -> Part:
-    """Declare a part whose key is left out where there is none."""
-
-    def taken(one: Any) -> Any:
-        found = of(one)
-        return ABSENT if found is None else found
-
-    return Part(key, taken, fields)
+    return Quantity(key, value_or_absent)
 
 
-def _bushing(given: "Mount | Joint") -> dict[str, Any]:
-    """Springs and dashpots by motion, those that are not zero; each key with its unit."""
-    document: dict[str, Any] = {"name": given.name}
+def _optional_part(key: str, of: Any, fields: Any) -> Part:
+    """Declare a part whose key is left out where its value is None."""
+
+    def value_or_absent(row: Any) -> Any:
+        value = of(row)
+        return ABSENT if value is None else value
+
+    return Part(key, value_or_absent, fields)
+
+
+def _bushing(bushing: "Mount | Joint") -> dict[str, Any]:
+    """Return the springs and dashpots that are not zero, by motion; each key has its unit."""
+    document: dict[str, Any] = {"name": bushing.name}
     for key, turning_unit, unit in (("stiffness", "n_m_per_rad", "n_per_m"), ("damping", "n_m_s_per_rad", "n_s_per_m")):
-        table = getattr(given, key)
+        table = getattr(bushing, key)
         if table is None:
             continue
         for motion, amount in zip(type(table).model_fields, amounts(table), strict=True):
@@ -76,12 +76,12 @@ def _bolt(joint: "BuiltJoint") -> dict[str, Any]:
 
 
 def _names(key: str, table: str) -> Quantity:
-    return Quantity(key, lambda checked: [one.name for one in getattr(checked.case.housing, table)])
+    return Quantity(key, lambda checked: [member.name for member in getattr(checked.case.housing, table)])
 
 
 def _of_mesh(key: str, of: Any) -> Quantity:
     """Declare a quantity of the mesh of a file."""
-    return _given(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh))
+    return _optional(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh))
 
 
 HOUSING = (
@@ -106,27 +106,27 @@ HOUSING = (
         "regions", lambda checked: [f"{region.name} of {region.material}" for region in checked.case.housing.region]
     ),
     Quantity("size_m", lambda checked: checked.mesh.size),
-    _given("mesh_size_m", lambda checked: checked.mesh.mesh_size),
-    _given("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
+    _optional("mesh_size_m", lambda checked: checked.mesh.mesh_size),
+    _optional("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
     Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores_along_axes(checked.mesh.mesh), BORE),
     _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
     _of_mesh("volumes", lambda mesh: sorted(mesh.volumes)),
-    _part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE),
-    _given("kinds", lambda checked: checked.mesh.mesh.kinds if checked.case.housing.mesh else None),
+    _optional_part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE),
+    _optional("kinds", lambda checked: checked.mesh.mesh.kinds if checked.case.housing.mesh else None),
 )
-"""Of a housing as it is given, and of its mesh as far as it is known."""
+"""Quantities of a housing as the case gives it, and of its mesh as far as that is known."""
 
 ROTOR = (
-    Quantity("name", lambda one: one.given.name),
-    Quantity("length_m", lambda one: one.built.length),
-    Quantity("segments", lambda one: len(one.built.segments)),
-    Quantity("couplings", lambda one: sum(isinstance(segment, CouplingSegment) for segment in one.given.segments)),
-    Quantity("mass_kg", lambda one: one.built.mass),
-    Quantity("polar_inertia_kg_m2", lambda one: one.built.polar_inertia),
-    Quantity("speed_rpm", lambda one: None if one.speed is None else one.speed * RPM),
-    Quantity("mass_model", lambda one: one.given.mass),
+    Quantity("name", lambda rotor: rotor.given.name),
+    Quantity("length_m", lambda rotor: rotor.built.length),
+    Quantity("segments", lambda rotor: len(rotor.built.segments)),
+    Quantity("couplings", lambda rotor: sum(isinstance(segment, CouplingSegment) for segment in rotor.given.segments)),
+    Quantity("mass_kg", lambda rotor: rotor.built.mass),
+    Quantity("polar_inertia_kg_m2", lambda rotor: rotor.built.polar_inertia),
+    Quantity("speed_rpm", lambda rotor: None if rotor.speed is None else rotor.speed * RPM),
+    Quantity("mass_model", lambda rotor: rotor.given.mass),
 )
-"""Of a rotor."""
+"""Quantities of a rotor."""
 
 
 def _span(speeds: Sequence[float]) -> list[float] | None:
@@ -151,7 +151,7 @@ ANALYSIS = (
     Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
     Quantity("torques", _swinging_torques),
 )
-"""Of the case and a rotor: at which speeds ``gearwhine rotors`` looks at it, where it does."""
+"""Quantities of the analyses that ``gearwhine rotors`` makes of a rotor; a row is the case and the rotor."""
 
 BEARING = (
     Quantity("name", lambda bearing: bearing.name),
@@ -165,18 +165,19 @@ BEARING = (
     ),
     Quantity("pedestal_kg", lambda bearing: None if bearing.pedestal is None else bearing.pedestal.mass),
 )
-"""Of a bearing of the case."""
+"""Quantities of a bearing of the case."""
 
 LOCATION = (
-    Quantity("rotor", lambda one: one.shaft),
-    Quantity("arrangement", lambda one: one.arrangement),
-    Quantity("thrust_plus_z", lambda one: one.carrying(1)),
-    Quantity("thrust_minus_z", lambda one: one.carrying(-1)),
+    Quantity("rotor", lambda location: location.shaft),
+    Quantity("arrangement", lambda location: location.arrangement),
+    Quantity("thrust_plus_z", lambda location: location.carrying(1)),
+    Quantity("thrust_minus_z", lambda location: location.carrying(-1)),
     Quantity(
-        "rows", lambda one: {bearing.name: bearing.arrangement for bearing in one.bearings if bearing.arrangement}
+        "rows",
+        lambda location: {bearing.name: bearing.arrangement for bearing in location.bearings if bearing.arrangement},
     ),
 )
-"""Of a rotor: the bearings that take its thrust towards +z and -z, and how rows stand to each other (O or X)."""
+"""Quantities of a rotor's location: bearings that take its thrust towards +z and -z, and arrangements of rows."""
 
 PAIR = (
     Quantity("driver", lambda pair: pair.given.driver),
@@ -202,7 +203,7 @@ PAIR = (
     Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
     Part("geometry", lambda pair: pair.geometry, GEOMETRY),
 )
-"""Of a gear pair."""
+"""Quantities of a gear pair."""
 
 _TORQUE_LINE = (
     Quantity("speed_rpm", lambda line: np.array(line.speed) * RPM),
@@ -221,27 +222,30 @@ OPERATION = (
             Quantity("torque_n_m", lambda torque: torque[0].value),
         ),
     ),
-    _given("gravity_m_per_s2", lambda case: case.operation.gravity),
-    _part(
+    _optional("gravity_m_per_s2", lambda case: case.operation.gravity),
+    _optional_part(
         "base",
         lambda case: case.operation.base,
         (
             Quantity("point_m", lambda base: base.point),
-            Quantity("harmonics_hz", lambda base: [one.frequency for one in base.harmonic]),
+            Quantity("harmonics_hz", lambda base: [harmonic.frequency for harmonic in base.harmonic]),
             Quantity("over_time", lambda base: base.over_time is not None),
         ),
     ),
-    _part("motor", lambda case: case.operation.motor, _TORQUE_LINE),
-    _part("load", lambda case: case.operation.load, _TORQUE_LINE),
+    _optional_part("motor", lambda case: case.operation.motor, _TORQUE_LINE),
+    _optional_part("load", lambda case: case.operation.load, _TORQUE_LINE),
 )
-"""Of the operation; motor and load by their torque over speed, as the free speed of a run follows it."""
+"""Quantities of the operation; motor and load by their torque over speed, which drives a run of free speed."""
 
 TRANSIENT = (
-    _given("revolutions", lambda given: given.revolutions if given.run is None else None),
-    _given("recorded_revolutions", lambda given: given.revolutions - given.discard if given.run is None else None),
-    _part(
+    _optional("revolutions", lambda transient: transient.revolutions if transient.run is None else None),
+    _optional(
+        "recorded_revolutions",
+        lambda transient: transient.revolutions - transient.discard if transient.run is None else None,
+    ),
+    _optional_part(
         "run",
-        lambda given: given.run,
+        lambda transient: transient.run,
         (
             Quantity("seconds", lambda run: run.duration),
             Quantity("free", lambda run: run.free),
@@ -249,10 +253,10 @@ TRANSIENT = (
             Quantity("speeds_rpm", lambda run: np.array(run.line[1]) * RPM),
         ),
     ),
-    _given("discarded_revolutions", lambda given: None if given.run is None else given.discard),
-    Quantity("tolerance", lambda given: given.tolerance),
+    _optional("discarded_revolutions", lambda transient: None if transient.run is None else transient.discard),
+    Quantity("tolerance", lambda transient: transient.tolerance),
 )
-"""Of a transient at one speed, or of a run over speed."""
+"""Quantities of a transient at one speed, or of a run over speed."""
 
 _SURVEY = (
     Quantity("remarks", lambda survey: survey.remarks),
@@ -274,7 +278,7 @@ _SURVEY = (
             Quantity("extent_m", lambda geometry: np.ptp(geometry.positions, axis=0)),
         ),
     ),
-    _part(
+    _optional_part(
         "responses",
         lambda survey: survey.responses,
         (
@@ -288,51 +292,59 @@ _SURVEY = (
 )
 
 
-def _alignment(given: Any) -> bool | str | None:
-    if given.survey is None or given.survey.geometry is None:
+def _alignment(measured: Any) -> bool | str | None:
+    if measured.survey is None or measured.survey.geometry is None:
         return None
-    return given.align if isinstance(given.align, bool) else "landmarks"
+    return measured.align if isinstance(measured.align, bool) else "landmarks"
 
 
 MEASURED = (
-    _given("frequencies_hz", lambda given: list(given.frequencies or ()) if given.survey is None else None),
-    _given("file", lambda given: None if given.survey is None else str(given.file)),
-    Part("", lambda given: given.survey, _SURVEY),
-    _given("align", _alignment),
+    _optional("frequencies_hz", lambda measured: list(measured.frequencies or ()) if measured.survey is None else None),
+    _optional("file", lambda measured: None if measured.survey is None else str(measured.file)),
+    Part("", lambda measured: measured.survey, _SURVEY),
+    _optional("align", _alignment),
 )
-"""Of what was measured on the housing."""
+"""Quantities of the measurement on the housing."""
 
 CHECK = (
     Quantity("title", lambda checked: checked.case.title),
-    _part("housing", lambda checked: None if checked.mesh is None else checked, HOUSING),
+    _optional_part("housing", lambda checked: None if checked.mesh is None else checked, HOUSING),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
-    Rows("rotor_analysis", lambda checked: [(checked.case, one) for one in checked.case.rotor] or ABSENT, ANALYSIS),
-    _given("bearings", lambda checked: _bearings(checked.case) or None),
-    Rows("axial_location", lambda checked: [one for one in checked.locations if one.bearings] or ABSENT, LOCATION),
+    Rows(
+        "rotor_analysis",
+        lambda checked: [(checked.case, analysis) for analysis in checked.case.rotor] or ABSENT,
+        ANALYSIS,
+    ),
+    _optional("bearings", lambda checked: _bearings(checked.case) or None),
+    Rows(
+        "axial_location",
+        lambda checked: [location for location in checked.locations if location.bearings] or ABSENT,
+        LOCATION,
+    ),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
-    _part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
-    _part("transient", lambda checked: checked.case.transient, TRANSIENT),
-    _part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
-    _part("measured", lambda checked: checked.case.measured, MEASURED),
-    _given("provenance", lambda checked: checked.case.provenance or None),
-    _given("warnings", lambda checked: checked.warnings or None),
+    _optional_part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
+    _optional_part("transient", lambda checked: checked.case.transient, TRANSIENT),
+    _optional_part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
+    _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
+    _optional("provenance", lambda checked: checked.case.provenance or None),
+    _optional("warnings", lambda checked: checked.warnings or None),
 )
-"""Of a checked case."""
+"""Quantities of a checked case."""
 
 
 def _bearings(case: Case) -> list[dict[str, Any]]:
     """Return every bearing as a document; those of the rotors' own files are on the ground."""
-    own = {(bearing.rotor, bearing.name) for bearing in case.bearing}
+    in_case = {(bearing.rotor, bearing.name) for bearing in case.bearing}
     return [document_of(BEARING, bearing) for bearing in case.bearing] + [
         {"name": bearing.name, "rotor": rotor.name, "seat": "ground"}
         for rotor in case.rotor
         for bearing in (rotor.saved.bearings if rotor.saved else ())
-        if (rotor.name, bearing.name) not in own
+        if (rotor.name, bearing.name) not in in_case
     ]
 
 
 def check_document(case: Case, progress: Progress = silent) -> dict[str, Any]:
-    """Everything that follows from the case by arithmetic alone, and what the file of its geometry holds."""
+    """Return all quantities that follow from the case by arithmetic, and the contents of its geometry's file."""
     return document_of(CHECK, check_case(case, progress))
 
 
@@ -366,7 +378,9 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(document.get("bearings", ())),
-        "location": [_location_line(one) for one in document.get("axial_location", ()) if _is_told(one)],
+        "location": [
+            _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
+        ],
         "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
@@ -377,7 +391,7 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
 
 
 def _housing_summary(housing: Document) -> list[str]:
-    """Return what the housing is, and the numbers of what it has."""
+    """Return the kind of the housing, and the number of its parts."""
     first = _housing_lines(housing)[0]
     counts = [
         counted(len(housing[key]), word)
@@ -398,14 +412,14 @@ def _housing_summary(housing: Document) -> list[str]:
 def _bearing_summary(bearings: Sequence[Document]) -> list[str]:
     if not bearings:
         return []
-    on_ground = sum(one["seat"] == "ground" for one in bearings)
+    on_ground = sum(bearing["seat"] == "ground" for bearing in bearings)
     seated = len(bearings) - on_ground
     parts = [f"{seated} in seats of the housing"] * bool(seated) + [f"{on_ground} on the ground"] * bool(on_ground)
     return [", ".join(parts)]
 
 
-def _is_told(location: Document) -> bool:
-    """Whether the location of a rotor is worth a line: rows that carry one way, or thrust that is held one way only."""
+def _is_worth_a_line(location: Document) -> bool:
+    """Whether the summary has a line on a rotor's location: for rows in an arrangement, or thrust held one way only."""
     return bool(location["rows"]) or bool(location["thrust_plus_z"]) != bool(location["thrust_minus_z"])
 
 
@@ -423,8 +437,8 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
-        "location": [_location_line(one) for one in document.get("axial_location", ())],
-        "analysis": [line for one in document.get("rotor_analysis", ()) for line in _analysis_lines(one)],
+        "location": [_location_line(location) for location in document.get("axial_location", ())],
+        "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
@@ -452,34 +466,34 @@ def _operation_lines(operation: Document) -> Iterator[str]:
         yield "base moves: " + ", ".join(moves + ["a table over time"] * base["over_time"])
 
 
-def _measured_lines(given: Document) -> list[str]:
+def _measured_lines(measured: Document) -> list[str]:
     """Return lines on the measured modes; for a file also on the content that was read."""
     lines = []
-    if "frequencies_hz" in given:
-        lines.append(", ".join(f"{one:.6g}" for one in given["frequencies_hz"]) + " Hz")
-    if "points" in given:
-        kind = "" if "frequencies_hz" not in given else f"; {'complex' if given['complex'] else 'real'} shapes"
-        size = " x ".join(f"{1e3 * side:.4g}" for side in given["extent_m"])
-        points = f"{counted(given['points'], 'point')} over {size} mm"
-        lines.append(f"{points}, {counted(given['degrees_of_freedom'], 'measured direction')}{kind}")
-    if "responses" in given:
-        found = given["responses"]
+    if "frequencies_hz" in measured:
+        lines.append(", ".join(f"{frequency:.6g}" for frequency in measured["frequencies_hz"]) + " Hz")
+    if "points" in measured:
+        kind = "" if "frequencies_hz" not in measured else f"; {'complex' if measured['complex'] else 'real'} shapes"
+        size = " x ".join(f"{1e3 * side:.4g}" for side in measured["extent_m"])
+        points = f"{counted(measured['points'], 'point')} over {size} mm"
+        lines.append(f"{points}, {counted(measured['degrees_of_freedom'], 'measured direction')}{kind}")
+    if "responses" in measured:
+        responses = measured["responses"]
         lines.append(
-            f"responses in {found['of']} to {counted(found['references'], 'force')}, {found['lines']} lines from "
-            f"{found['from_hz']:.6g} to {found['to_hz']:.6g} Hz"
+            f"responses in {responses['of']} to {counted(responses['references'], 'force')}, "
+            f"{responses['lines']} lines from {responses['from_hz']:.6g} to {responses['to_hz']:.6g} Hz"
         )
     return lines
 
 
-def _transient_line(given: Document) -> str:
-    tolerance = f"tolerance {given['tolerance']:g}"
-    if "run" not in given:
-        recorded = given["recorded_revolutions"]
-        return f"{given['revolutions']:g} revolutions, the last {recorded:g} recorded; {tolerance}"
-    run = given["run"]
+def _transient_line(transient: Document) -> str:
+    tolerance = f"tolerance {transient['tolerance']:g}"
+    if "run" not in transient:
+        recorded = transient["recorded_revolutions"]
+        return f"{transient['revolutions']:g} revolutions, the last {recorded:g} recorded; {tolerance}"
+    run = transient["run"]
     speeds = " → ".join(f"{speed:.6g}" for speed in dict.fromkeys(run["speeds_rpm"]))
     line = f"free from {speeds} rpm" if run["free"] else f"{speeds} rpm"
-    discarded = given["discarded_revolutions"]
+    discarded = transient["discarded_revolutions"]
     first = f", the first {discarded:g} revolutions not recorded" if discarded else ""
     return f"{line} in {run['seconds']:g} s{first}; {tolerance}"
 
@@ -493,17 +507,17 @@ def _housing_lines(housing: Document) -> list[str]:
     if "mesh" in housing:
         shape += f", {housing['mesh']['nodes']} nodes, {kinds_of_elements(housing['kinds'])}"
     limit, count = housing["frequency_limit_hz"], housing["modes"]
-    wanted = f"all modes below {limit:g} Hz" if limit else f"the lowest {counted(count, 'mode')}"
-    lines = [f"{shape}, {housing['material']}; {wanted}"]
+    modes = f"all modes below {limit:g} Hz" if limit else f"the lowest {counted(count, 'mode')}"
+    lines = [f"{shape}, {housing['material']}; {modes}"]
     lines += [f"{kind}: {', '.join(housing[kind])}" for kind in ("regions", "seats", "supports") if housing[kind]]
     for kind in ("mounts", "joints"):
-        lines += [_bushing_line(kind[:-1], one) for one in housing[kind]]
+        lines += [_bushing_line(kind[:-1], bushing) for bushing in housing[kind]]
     if housing.get("cover_bolts"):
         first, *others = housing["cover_bolts"]
         lines.append(_bushing_line("cover", first) + (f"; so {counted(len(others), 'more bolt')}" if others else ""))
     lines += [bore_line(bore) for bore in housing.get("bores", ())]
     if housing["masses"]:
-        lines.append("masses: " + ", ".join(f"{one['name']} {one['mass_kg']:g} kg" for one in housing["masses"]))
+        lines.append("masses: " + ", ".join(f"{mass['name']} {mass['mass_kg']:g} kg" for mass in housing["masses"]))
     return lines + ([f"sensors: {', '.join(housing['sensors'])}"] if housing["sensors"] else [])
 
 
@@ -545,7 +559,9 @@ def _location_line(location: Document) -> str:
     """Return a rotor's arrangement of bearings, and which of them takes its thrust in which sense."""
     plus, minus = (
         [
-            f"{name} ({one}, {ARRANGEMENTS[one]})" if (one := location["rows"].get(name)) else name
+            f"{name} ({arrangement}, {ARRANGEMENTS[arrangement]})"
+            if (arrangement := location["rows"].get(name))
+            else name
             for name in location[key]
         ]
         for key in ("thrust_plus_z", "thrust_minus_z")
@@ -563,11 +579,11 @@ def _location_line(location: Document) -> str:
 
 
 def _analysis_lines(analysis: Document) -> Iterator[str]:
-    for key, what in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
+    for key, analysis_name in (("campbell_rpm", "Campbell diagram"), ("response_rpm", "response to unbalance and bow")):
         if analysis[key] is not None:
             low, high, count = analysis[key]
             low, high = low + 0.0, high + 0.0  # of a shaft that turns the other way, no -0
-            yield f"{analysis['rotor']}: {what} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
+            yield f"{analysis['rotor']}: {analysis_name} at {counted(count, 'speed')}, {low:.6g} to {high:.6g} rpm"
     if analysis["torques"]:
         yield f"{analysis['rotor']}: torsional response to {counted(analysis['torques'], 'torque')}"
 

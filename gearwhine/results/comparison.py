@@ -62,14 +62,14 @@ PAIR = (
     Quantity("close_modes", lambda pair: pair.close_modes),
     Quantity("mixed", lambda pair: pair.mixed),
 )
-"""Of a measured mode and its partner in the model."""
+"""Quantities of a measured mode and its partner in the model."""
 
 ALIKE = (Quantity("modes", lambda pair: [pair.first, pair.second]), Quantity("mac", lambda pair: pair.mac))
-"""Of two modes of one set that the survey finds alike."""
+"""Quantities of two modes of one set that look alike at the points of the survey."""
 
 
 def _alike(key: str, of: Any, *, one_frequency: bool | None = None) -> Rows:
-    """Modes that look alike; of measured ones those that are one mode found twice, or those that are not."""
+    """Declare modes that look alike; ``one_frequency`` selects those that may be one mode found twice, or others."""
     return Rows(key, lambda shapes: [pair for pair in of(shapes) if one_frequency in (None, pair.one_frequency)], ALIKE)
 
 
@@ -154,7 +154,7 @@ SHAPES = (
         "", lambda shapes: shapes.comac, "comac", ("degree_of_freedom",), "1", "coordinate modal assurance criterion"
     ),
 )
-"""Of measured shapes beside the model's: what is missing, double, close or alike, and how good the survey is."""
+"""Quantities of measured shapes beside the model's: missing, double, close and similar modes; quality of the survey."""
 
 COMPARISON = (
     Rows("pairs", lambda comparison: comparison.pairs, PAIR, "pair"),
@@ -166,7 +166,7 @@ COMPARISON = (
     Quantity("measures_agree", lambda comparison: comparison.measures_agree),
     Part("", lambda comparison: comparison.shapes, SHAPES),
 )
-"""Of the pairs of measured and model modes."""
+"""Quantities of the pairs of measured and model modes."""
 
 SURVEY = (
     Quantity("points", lambda survey: len(survey.distances)),
@@ -191,7 +191,7 @@ SURVEY = (
         ),
     ),
 )
-"""Of a survey on the model."""
+"""Quantities of a survey on the model."""
 
 RESPONSES = (
     Quantity("criterion", lambda likeness: "FRAC"),
@@ -206,7 +206,7 @@ RESPONSES = (
         document=lambda frac: [[None if np.isnan(value) else value for value in row] for row in frac],
     ),
 )
-"""Of measured responses beside the model's."""
+"""Quantities of measured responses beside the model's."""
 
 
 def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
@@ -229,8 +229,8 @@ def responses_document(likeness: "ResponseCorrelation | str") -> dict[str, Any]:
     return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
 
 
-_POOR = 0.3  # MACs between different modes from which on a survey is said to confuse them
-_REAL = 0.9  # modal phase collinearity below which a shape is said to be complex
+_POOR = 0.3  # MAC between different modes above which the survey confuses them
+_REAL = 0.9  # modal phase collinearity below which a shape is called complex
 
 
 def report(document: Document) -> Section:
@@ -280,9 +280,9 @@ _PAIRS = (
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the pairs, how clear the pairing is, and how the measured survey lies on the model."""
-    told = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_dominance(document)
+    evidence = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_dominance(document)
     survey = _survey(document["survey"]) if "survey" in document else ()
-    return (Section("", (*table_of(_PAIRS, document["pairs"]), *told, *survey)),)
+    return (Section("", (*table_of(_PAIRS, document["pairs"]), *evidence, *survey)),)
 
 
 def _by_dominance(document: Document) -> Iterator[str]:
@@ -303,15 +303,15 @@ def _by_dominance(document: Document) -> Iterator[str]:
 def _by_shapes(document: Document) -> Iterator[str]:
     """Yield lines on missing, double, close and similar modes, and on the quality of the survey."""
     count = document["model_modes"]
-    held = counted(count["count"], "model mode")
+    model_modes = counted(count["count"], "model mode")
     if document["pairs"]:
         yield (
             f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
-            f"rms {document['rms_error_percent']:.2f} %; {held} below {count['below_hz']:.0f} Hz."
+            f"rms {document['rms_error_percent']:.2f} %; {model_modes} below {count['below_hz']:.0f} Hz."
         )
         yield "Confidence: what the best assignment loses without the pair, as a part of its score; no probability."
     else:
-        yield f"Paired by {document['pairing']}: no measured mode is like one of {held}."
+        yield f"Paired by {document['pairing']}: no measured mode is like one of {model_modes}."
     for mode in document["unpaired_measured"]:
         yield (
             f"Measured mode {mode['measured_mode']} ({mode['measured_hz']:.0f} Hz) has no partner: most like mode "
@@ -343,11 +343,11 @@ def _by_shapes(document: Document) -> Iterator[str]:
 
 
 def _survey_quality(document: Document) -> Iterator[str]:
-    worst = document["auto_mac_off_diagonal"]
-    remark = "; a survey with more points would tell modes apart better" if worst["model"] > _POOR else ""
+    largest_mac = document["auto_mac_off_diagonal"]
+    remark = "; a survey with more points would tell modes apart better" if largest_mac["model"] > _POOR else ""
     yield (
-        f"Largest MAC between different modes: {worst['measured']:.2f} of the test, {worst['model']:.2f} of the model"
-        f"{remark}."
+        f"Largest MAC between different modes: {largest_mac['measured']:.2f} of the test, "
+        f"{largest_mac['model']:.2f} of the model{remark}."
     )
     bent = [number for number, value in enumerate(document["phase_collinearity"], start=1) if value < _REAL]
     if bent:
@@ -374,8 +374,8 @@ def _survey(survey: Document) -> Iterator[str]:
         f"{1e3 * survey['worst_distance_m']:.3g} mm at worst (point {survey['worst_point']})."
     )
     if far := survey["far_points"]:
-        shown = ", ".join(far[:10]) + (", …" if len(far) > 10 else "")
-        yield f"Farther than {1e3 * survey['tolerance_m']:.3g} mm: {shown}."
+        names = ", ".join(far[:10]) + (", …" if len(far) > 10 else "")
+        yield f"Farther than {1e3 * survey['tolerance_m']:.3g} mm: {names}."
     if "alignment" in survey:
         alignment = survey["alignment"]
         yield (
@@ -395,7 +395,7 @@ def _listed(numbers: list[int]) -> str:
 
 
 _PAIR_COLUMNS = ("measured_mode", "measured_hz", "model_hz", "error_percent", "mode", "mac", "confidence", "strength")
-_ALONG = 1e-4  # by which a direction may miss an axis and still be named after it
+_ALONG = 1e-4  # deviation from an axis up to which a direction is named after it
 
 
 def write_comparison(folder: Path, comparison: "Comparison", geometry: "MeasuredGeometry | None" = None) -> list[str]:
@@ -406,7 +406,7 @@ def write_comparison(folder: Path, comparison: "Comparison", geometry: "Measured
     folder : path
     comparison : Comparison
     geometry : housing.measured.MeasuredGeometry, optional
-        Of the survey, which names the degrees of freedom; else they are numbered.
+        Geometry of the survey, which names the degrees of freedom; without it they are numbered.
 
     Returns
     -------
@@ -447,7 +447,7 @@ def dof_names(geometry: "MeasuredGeometry") -> list[str]:
 
 
 def _pair_rows(comparison: "Comparison") -> list[list[object]]:
-    """Rows of the source's Table II with the evidence for each pair; a measured mode without a partner has one, too."""
+    """Return the rows of the source's Table II with the evidence for each pair; unpaired modes have rows too."""
     of = {quantity.key: quantity.of for quantity in PAIR}
     rows: list[list[object]] = [[_cell(of[key](pair)) for key in _PAIR_COLUMNS] for pair in comparison.pairs]
     shapes = comparison.shapes
@@ -483,7 +483,7 @@ def coordinate_names(count: int, geometry: "MeasuredGeometry | None") -> list[st
 
 
 def _cell(value: float | None) -> str | int:
-    """Six digits, which is more than any measurement has; nothing where there is none; a whole number as it is."""
+    """Return a value with six digits, more than any measurement has; an integer as it is; no value as an empty cell."""
     if isinstance(value, int):
         return value
     return "" if value is None or not np.isfinite(value) else f"{value:.6g}"

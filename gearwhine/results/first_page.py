@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from gearwhine.solve.case_summary import CheckedPair, CheckedRotor
 
 _MM = 1e3
-_LINES = 3  # of each sensor
-_OPPOSED = 0.1  # share of a line against it that is told
+_LINES = 3  # lines of each sensor
+_OPPOSED = 0.1  # least share of a line against it that is named
 _LOUDEST = 5  # lines of the sound
-_MOST_ERROR = 1e-2  # of the energy balance that passes
-_SURE = 0.03  # error of a line by the modal basis that passes
-_BALANCED = 1e-6  # part of the largest load that may be left of the equilibrium
+_MOST_ERROR = 1e-2  # largest error of the energy balance that passes
+_SURE = 0.03  # largest error of a line by the modal basis that passes
+_BALANCED = 1e-6  # largest residual of the equilibrium that passes, as a part of the largest load
 _SAME_POWER = 0.5  # difference of a line's sound power levels by two ways that passes [dB]
 _LEAK = 0.1  # pressure inside the radiating surface over that on it that passes
 _SOURCE_OFF = 1.0  # error of a known source's pressure at a vertex of the radiating surface that passes
@@ -85,7 +85,7 @@ _PICTURES = (
     ),
     Picture("comparison", "Frequencies of the model over measured ones, and their errors."),
 )
-"""The one picture that says most: the first of these that there is."""
+"""Candidates for the picture of the first page, in order of preference: the first that exists is shown."""
 
 
 def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence[str]) -> tuple[Section, ...]:
@@ -96,7 +96,7 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
     case : Case or None
         None leaves the machine out.
     documents : sequence of document
-        Of all commands in the folder, the newest first.
+        Documents of all commands in the folder, the newest first.
     stale : sequence of str
         Sentences on results that do not fit the case any more.
     """
@@ -131,31 +131,31 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
 def _paragraph(
     case: Case, rotors: Sequence["CheckedRotor"], pairs: Sequence["CheckedPair"], documents: Sequence[Document]
 ) -> str:
-    """Return what the machine consists of, in a sentence or two."""
+    """Return the components of the machine in a sentence or two."""
     parts = [
-        counted(number, what)
-        for number, what in ((len(rotors), "shaft"), (len(case.bearing), "bearing"), (len(pairs), "gear pair"))
+        counted(number, noun)
+        for number, noun in ((len(rotors), "shaft"), (len(case.bearing), "bearing"), (len(pairs), "gear pair"))
         if number
     ]
     machine = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1] if parts else ""
     if case.housing is None:
         return f"{machine}; no housing.".capitalize()
-    solved = next((found for document in documents if (found := _modes_of(document))), {})
+    solved = next((modes for document in documents if (modes := _modes_of(document))), {})
     kind = "box" if case.housing.box is not None else "housing from CAD" if case.housing.cad else "meshed housing"
     size = case.housing.box.size if case.housing.box is not None else solved.get("size_m")
     of_size = "" if size is None else f" of {' × '.join(f'{_MM * side:.4g}' for side in size)} mm"
     mass = f", {solved['mass_kg']:.4g} kg" if solved.get("mass_kg") else ""
-    held = len(case.housing.support) + len(case.housing.mount)
-    on = f" on {counted(held, 'support')}" if held else ", free"
+    supports = len(case.housing.support) + len(case.housing.mount)
+    on = f" on {counted(supports, 'support')}" if supports else ", free"
     sensors = f"; {counted(len(case.housing.sensor), 'sensor')}" if case.housing.sensor else ""
     inside = f"{machine} in a " if machine else "A "
     return f"{inside}{kind}{of_size}{mass}, of {case.housing.material}{on}{sensors}."
 
 
 def _modes_of(document: Document) -> Document:
-    """Return the housing's part of a document, which commands on the housing alone are themselves."""
-    found = document.get("housing", document if "certificate" in document and "mesh" in document else {})
-    return found if isinstance(found, dict) else {}
+    """Return the housing's part of a document; documents of commands on the housing alone are one themselves."""
+    housing = document.get("housing", document if "certificate" in document and "mesh" in document else {})
+    return housing if isinstance(housing, dict) else {}
 
 
 def _operation(case: Case) -> str:
@@ -165,34 +165,34 @@ def _operation(case: Case) -> str:
     if not torques or not case.operation.torque:
         return f"Operation: {speed}."
     power = case.operation.speed * abs(case.operation.torque)
-    given = ", ".join(f"{torque.value:+.4g} N·m on {torque.rotor}" for torque in torques)
-    return f"Operation: {speed}, {given}; {power / 1e3:.4g} kW."
+    applied = ", ".join(f"{torque.value:+.4g} N·m on {torque.rotor}" for torque in torques)
+    return f"Operation: {speed}, {applied}; {power / 1e3:.4g} kW."
 
 
 def _under_load(documents: Sequence[Document]) -> list[str]:
     """Return the largest face load factor, and the shortest bearing life of the newest operating point."""
-    load = next((found for document in documents if (found := _load_of(document))), {})
-    said = []
+    load = next((point for document in documents if (point := _load_of(document))), {})
+    clauses = []
     if pairs := [pair for pair in load.get("gear_pairs", ()) if pair.get("k_h_beta") is not None]:
-        worst = max(pairs, key=lambda pair: float(pair["k_h_beta"]))
+        most_uneven = max(pairs, key=lambda pair: float(pair["k_h_beta"]))
         # A thousandth of a micrometre: less is rounding of an equilibrium.
-        out_of_line = round(abs(worst["misalignment_over_face_m"]) * 1e6, 3)
-        said.append(
-            f"K_Hβ {worst['k_h_beta']:.3g} of {worst['driver']} → {worst['driven']}, whose flanks stand "
-            f"{out_of_line:.3g} µm out of line over the face"
+        out_of_line = round(abs(most_uneven["misalignment_over_face_m"]) * 1e6, 3)
+        clauses.append(
+            f"K_Hβ {most_uneven['k_h_beta']:.3g} of {most_uneven['driver']} → {most_uneven['driven']}, whose flanks "
+            f"stand {out_of_line:.3g} µm out of line over the face"
         )
     if bearings := [bearing for bearing in load.get("bearings", ()) if bearing.get("life_h")]:
         shortest = min(bearings, key=lambda bearing: float(bearing["life_h"]))
-        told = min(float(format(shortest["life_h"], ".3g")), LONGEST_LIFE)
-        hours = ("over " if shortest["life_h"] > LONGEST_LIFE else "") + f"{told:,.0f}".replace(",", " ")
-        said.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
-    return [f"Under load: {'; '.join(said)}."] if said else []
+        life = min(float(format(shortest["life_h"], ".3g")), LONGEST_LIFE)
+        hours = ("over " if shortest["life_h"] > LONGEST_LIFE else "") + f"{life:,.0f}".replace(",", " ")
+        clauses.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
+    return [f"Under load: {'; '.join(clauses)}."] if clauses else []
 
 
 def _load_of(document: Document) -> Document:
-    """Return the operating point of a document, which that of ``load`` is itself."""
-    found = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
-    return found if isinstance(found, dict) else {}
+    """Return the operating point of a document; the document of ``load`` is one itself."""
+    load = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
+    return load if isinstance(load, dict) else {}
 
 
 SHAFT_COLUMNS = (
@@ -238,29 +238,29 @@ def _pair(pair: "CheckedPair") -> Document:
 
 
 def _findings(documents: Sequence[Document], stale: Sequence[str]) -> tuple[str | Finding, ...]:
-    """Return the verdict in a sentence, and what it comes from."""
-    found = tuple(_told(documents, stale))
-    passed, failed, warned = (sum(one.passed is kind for one in found) for kind in (True, False, None))
-    if not found:
+    """Return the verdict in a sentence, and the findings that it counts."""
+    findings = tuple(_distinct_findings(documents, stale))
+    passed, failed, warned = (sum(finding.passed is kind for finding in findings) for kind in (True, False, None))
+    if not findings:
         return ()
     verdict = f"{counted(passed, 'check')} passed" + (f", {failed} did not" if failed else ", none failed")
-    return (f"{verdict}; {counted(warned, 'warning') if warned else 'no warnings'}.", *found)
+    return (f"{verdict}; {counted(warned, 'warning') if warned else 'no warnings'}.", *findings)
 
 
-def _told(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
-    """Yield the proofs of all results, each said once, then what does not fit, then the warnings."""
-    told: set[str] = set()
+def _distinct_findings(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
+    """Yield the proofs of all results without repetition, then the stale results, then the warnings."""
+    seen: set[str] = set()
     for document in documents:
         for finding in _proofs(document):
-            if finding.text not in told:
-                told.add(finding.text)
+            if finding.text not in seen:
+                seen.add(finding.text)
                 yield finding
     for sentence in stale:
         yield Finding(sentence, passed=False)
     for document in documents:
         for warning in document.get("warnings", ()):
-            if isinstance(warning, Mapping) and (text := str(warning.get("message", warning))) not in told:
-                told.add(text)
+            if isinstance(warning, Mapping) and (text := str(warning.get("message", warning))) not in seen:
+                seen.add(text)
                 yield Finding(_sentence(text), passed=None, link=(*_chapter(warning.get("name")), "section Warnings"))
 
 
@@ -284,8 +284,10 @@ def _proofs(document: Document) -> Iterator[Finding]:
     rotors = [rotor for rotor in document.get("rotors", ()) if rotor.get("certificate")]
     if rotors:
         missing = [rotor["name"] for rotor in rotors if not rotor["certificate"]["complete"]]
-        said = f"modes are missing of {', '.join(missing)}" if missing else "all bending modes below a limit are found"
-        yield Finding(f"Shafts at rest: {said}.", passed=not missing, link=("section Rotors",))
+        statement = (
+            f"modes are missing of {', '.join(missing)}" if missing else "all bending modes below a limit are found"
+        )
+        yield Finding(f"Shafts at rest: {statement}.", passed=not missing, link=("section Rotors",))
     system = document.get("system", document if "stability" in document else {})
     if certificate := system.get("certificate"):
         yield Finding(
@@ -296,8 +298,8 @@ def _proofs(document: Document) -> Iterator[Finding]:
         )
     if stability := system.get("stability"):
         growing = len(stability["growing"])
-        said = "no mode grows" if stability["stable"] else f"{counted(growing, 'mode')} grow{'s' * (growing == 1)}"
-        yield Finding(f"Stability: {said}.", passed=bool(stability["stable"]), link=("section Coupled system",))
+        statement = "no mode grows" if stability["stable"] else f"{counted(growing, 'mode')} grow{'s' * (growing == 1)}"
+        yield Finding(f"Stability: {statement}.", passed=bool(stability["stable"]), link=("section Coupled system",))
     if (residual := _load_of(document).get("residual")) is not None:
         yield Finding(
             f"Operating point: forces balance to {residual:.0e} of the largest load.",
@@ -323,11 +325,11 @@ def _proofs(document: Document) -> Iterator[Finding]:
 
 
 def _sound_proofs(document: Document) -> Iterator[Finding]:
-    """Yield how well the worst line or mode keeps its sound power, the inside its silence, and a known source."""
+    """Yield the power balance, the pressure inside the surface and the error of a known source, each at its worst."""
     points = document["points"] if document.get("command") == "sweep" else ()
     sounds = [_sound_of(document), *(point.get("sound", {}) for point in points)]
-    balances = [abs(one["power_balance_db"]) for one in sounds if one.get("power_balance_db") is not None]
-    leaks = [one["interior_pressure"] for one in sounds if one.get("interior_pressure") is not None]
+    balances = [abs(sound["power_balance_db"]) for sound in sounds if sound.get("power_balance_db") is not None]
+    leaks = [sound["interior_pressure"] for sound in sounds if sound.get("interior_pressure") is not None]
     if balances:
         yield Finding(
             f"Sound: powers through the surface and into the far field differ by at most {max(balances):.2f} dB.",
@@ -341,25 +343,26 @@ def _sound_proofs(document: Document) -> Iterator[Finding]:
             passed=max(leaks) < _LEAK,
             link=("section Sound", "section Sweep"),
         )
-    sources = [one for one in sounds if one.get("known_source_error") is not None]
+    sources = [sound for sound in sounds if sound.get("known_source_error") is not None]
     if sources:
-        worst = max(sources, key=lambda one: float(one["known_source_error"]))
+        worst_source = max(sources, key=lambda sound: float(sound["known_source_error"]))
         yield Finding(
-            f"Sound: the pressure of a known source inside is off by at most {percent(worst['known_source_error'])} on "
-            f"the radiating surface, {percent(worst['known_source_rms'])} in the root mean square.",
-            passed=worst["known_source_error"] < _SOURCE_OFF,
+            "Sound: the pressure of a known source inside is off by at most "
+            f"{percent(worst_source['known_source_error'])} on the radiating surface, "
+            f"{percent(worst_source['known_source_rms'])} in the root mean square.",
+            passed=worst_source["known_source_error"] < _SOURCE_OFF,
             link=("section Sound", "section Sweep"),
         )
 
 
 def _basis(document: Document) -> Iterator[Finding]:
-    """Yield how far the modal basis may change the lines that are listed here."""
+    """Yield the largest error that the modal basis may leave in the lines that the page lists."""
     lines = leading_lines(document.get("sensors", ()), "peaks", _LINES)
     errors = [line["uncertainty"] for line in lines if "uncertainty" in line]
-    if errors and math.isfinite(worst := max(errors)):
+    if errors and math.isfinite(largest := max(errors)):
         yield Finding(
-            f"Modal basis: the highest lines are known to {percent(worst)} or better.",
-            passed=worst < _SURE,
+            f"Modal basis: the highest lines are known to {percent(largest)} or better.",
+            passed=largest < _SURE,
             link=("section Motion",),
         )
 
@@ -387,9 +390,9 @@ def _highest(rows: Sequence[Document]) -> list[str]:
 
 
 def _sound_of(document: Document) -> Document:
-    """Return the sound's part of a document, which that of the command `sound` is itself."""
-    found = document.get("sound", document if "total_db_a" in document else {})
-    return found if isinstance(found, dict) else {}
+    """Return the sound's part of a document; the document of ``sound`` is one itself."""
+    sound = document.get("sound", document if "total_db_a" in document else {})
+    return sound if isinstance(sound, dict) else {}
 
 
 def _sound(documents: Sequence[Document]) -> tuple[str | Table, ...]:

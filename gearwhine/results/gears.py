@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from gearwhine.solve.gear_pairs import PairAnalysis
 
 _MOST_YIELDING = 0.1
-"""In modules: teeth break before they yield so much."""
+"""Deflection of the teeth above which an overload is warned of, in modules: teeth break before."""
 
 
 def _start(gear: Gear, relief: TipRelief) -> float:
-    """Roll angle at which a tip relief begins, however that is given [rad]."""
+    """Return the roll angle at which a tip relief begins [rad]."""
     return relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius)
 
 
 def _span(row: Any) -> dict[str, Any] | None:
-    # Not every gear can be measured in every way: a face too narrow, teeth too short.
+    # Some measurements are impossible on some gears: the face is too narrow or the teeth are too short.
     with suppress(GearError):
         span = span_measurement(row[1])
         return {"teeth": span.teeth, "length_m": span.length}
@@ -96,7 +96,7 @@ GEAR = (
     Quantity("over_balls", _over_balls),
     Quantity("tip_relief", _relief),
 )
-"""Of a pair's geometry, one of its gears, and whether the case gives the face width: proportions and measures."""
+"""Proportions and measures of a gear; a row is the pair's geometry, the gear, and whether the case gives its width."""
 
 _CIRCLES = (
     *(Column(f"{head} ⌀", f"diameters_m.{key}", ".3f", _MM) for head, key in (("tip", "tip"), ("pitch", "reference"))),
@@ -122,7 +122,7 @@ def _points(path: PathOfContact) -> list[dict[str, Any]]:
     ]
 
 
-def _of_sides(name: str, unit: str, what: str) -> Quantity:
+def _of_sides(name: str, unit: str, quantity: str) -> Quantity:
     """Declare a quantity of the named points on both gears."""
     return Quantity(
         "",
@@ -130,7 +130,7 @@ def _of_sides(name: str, unit: str, what: str) -> Quantity:
         f"contact_point_{name}",
         ("side", "contact_point"),
         unit,
-        f"{what} of the point",
+        f"{quantity} of the point",
     )
 
 
@@ -157,7 +157,7 @@ PATH = (
     _of_sides("radius", "m", "distance from the gear's centre"),
     _of_sides("sliding", "1", "specific sliding"),
 )
-"""Of a path of contact: its named points on both gears."""
+"""Quantities of the named points of a path of contact, on both gears."""
 
 
 def _gears(geometry: GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[Any]:
@@ -169,14 +169,14 @@ GEOMETRY = (
     Rows("gears", _gears, GEAR),
     Quantity("path_of_contact", lambda geometry: _points(path_of_contact(geometry))),
 )
-"""Of a pair's geometry: the shape of both gears, and the named points of their path of contact."""
+"""Shape of both gears of a pair, and the named points of their path of contact."""
 
 _PHASE, _TOOTH = ("mesh_phase",), ("mesh_phase", "tooth_pair")
 CURVES = (
-    Quantity("", lambda found: found.phases, "mesh_phase", _PHASE, "1", "part of the mesh period", common=True),
+    Quantity("", lambda curves: curves.phases, "mesh_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
         "",
-        lambda found: found.stiffness,
+        lambda curves: curves.stiffness,
         "mesh_stiffness",
         _PHASE,
         "N/m",
@@ -184,7 +184,7 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.mesh.tangent_stiffness,
+        lambda curves: curves.mesh.tangent_stiffness,
         "loaded_flank_stiffness",
         _PHASE,
         "N/m",
@@ -192,7 +192,7 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.mesh.transmission_error,
+        lambda curves: curves.mesh.transmission_error,
         "transmission_error",
         _PHASE,
         "m",
@@ -200,7 +200,7 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.unloaded,
+        lambda curves: curves.unloaded,
         "unloaded_transmission_error",
         _PHASE,
         "m",
@@ -208,16 +208,16 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.position,
+        lambda curves: curves.position,
         "tooth_pair_position",
         _TOOTH,
         "1",
         "place on the path of contact in base pitches",
     ),
-    Quantity("", lambda found: found.share, "load_share", _TOOTH, "1", "part of the load on the pair"),
+    Quantity("", lambda curves: curves.share, "load_share", _TOOTH, "1", "part of the load on the pair"),
     Quantity(
         "",
-        lambda found: found.pressure,
+        lambda curves: curves.pressure,
         "contact_pressure",
         _TOOTH,
         "Pa",
@@ -225,7 +225,7 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.face_place,
+        lambda curves: curves.face_place,
         "face_place",
         ("slice",),
         "m",
@@ -233,14 +233,14 @@ CURVES = (
     ),
     Quantity(
         "",
-        lambda found: found.mesh.line_loads,
+        lambda curves: curves.mesh.line_loads,
         "line_load",
         (*_TOOTH, "slice"),
         "N/m",
         "line load of the tooth pair: transverse load per face width",
     ),
 )
-"""Of a pair at even phases of the mesh period."""
+"""Quantities of a pair at even phases of the mesh period."""
 
 HUNTING = (
     Quantity("", lambda mesh: mesh.phases, "hunting_phase", ("hunting_step",), "1", "mesh periods"),
@@ -255,7 +255,7 @@ HUNTING = (
     Quantity("mean", lambda mesh: mesh.mean_transmission_error),
     Quantity("peak_to_peak", lambda mesh: mesh.peak_to_peak_transmission_error),
 )
-"""Over the whole hunting period."""
+"""Transmission error over the whole hunting period."""
 
 _LOADS = ("harris_load",)
 HARRIS_MAP = (
@@ -320,7 +320,7 @@ LOAD_SHARING = (
     ),
     Quantity("", lambda pair: pair.shares[1], "path_load_share", _PATH, "1", "part of the load on a tooth pair there"),
 )
-"""How many pairs of teeth carry for how long, and the part of the load that one has along its path."""
+"""Number of tooth pairs in contact, and the load share of one of them along its path."""
 PRESSURE = (
     Quantity("max", lambda pair: pair.largest_pressure[0]),
     Quantity("at_driver_roll_angle_rad", lambda pair: pair.largest_pressure[1]),
@@ -336,19 +336,19 @@ BACKLASH = (
     ),
     Quantity("normal", lambda pair: pair.solved.backlash * math.cos(pair.solved.geometry.driver.base_helix_angle)),
 )
-"""Backlash that acts (ISO 21771): gap of the back flanks along their line of action in the transverse plane; j_wt on
+"""Acting backlash (ISO 21771): gap of the back flanks along their line of action in the transverse plane; j_wt on
 the working pitch circles; j_bn, the shortest distance of the flanks."""
 
 
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
     """Return the aim of the relief search."""
-    given, optimum = pair.given.relief_aim, pair.optimum
+    aim, optimum = pair.given.relief_aim, pair.optimum
     assert optimum is not None
-    kind = "peak-to-peak" if given is None else "harmonics" if given.sensor is None else "sensor"
+    kind = "peak-to-peak" if aim is None else "harmonics" if aim.sensor is None else "sensor"
     return {
         "kind": kind,
-        "sensor": None if given is None else given.sensor,
-        "weights": None if given is None else {str(n): weight for n, weight in given.weights.items()},
+        "sensor": None if aim is None else aim.sensor,
+        "weights": None if aim is None else {str(n): weight for n, weight in aim.weights.items()},
         "unit": "m/s^2" if kind == "sensor" else "m",
         "without_relief": float(optimum.value_unmodified[0]),
         "best": float(optimum.value[0]),
@@ -443,10 +443,10 @@ PAIR = (
     ),
     Quantity("stiffness", lambda pair: pair.stiffness),
 )
-"""Of one gear pair under the case's torque; angles in rad, positions in base pitches."""
+"""Quantities of one gear pair under the case's torque; angles in rad, positions in base pitches."""
 
 GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
-"""Of all gear pairs of a case."""
+"""Quantities of all gear pairs of a case."""
 
 
 def gears_document(pairs: "Sequence[PairAnalysis]") -> dict[str, Any]:
@@ -475,7 +475,7 @@ def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
         yield {"name": "overload", "message": message}
 
 
-_HARMONICS = 4  # of the transmission error, named
+_HARMONICS = 4  # harmonics of the transmission error that a line lists
 _ALONE = "of transmission error alone: load shuttling excites too, which the aim at a sensor counts"
 _WORTH_IT = 0.9  # a relief with less than this part of the given one's error is worth naming as better
 OVERVIEW = (
@@ -557,7 +557,7 @@ def _roll(key: str, point: Document) -> str:
 
 
 def _sliding(key: str, point: Document) -> str:
-    """To two places; endless where a flank does not move along itself."""
+    """Return the specific sliding to two places; it is infinite where the flank does not roll."""
     value = point[key]
     return f"{value:z.2f}" if value is not None and math.isfinite(value) else "-∞"
 
@@ -577,8 +577,8 @@ def _mesh(pair: Document) -> list[str]:
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
     origin = pair.get("misalignment_from", "default")
     if origin != "default" or pair["mean_force_n"]:
-        taken = pair.get("misalignment_rad")
-        words = misalignment_words(taken, origin, taken if origin == "operating point" else None)
+        misalignment = pair.get("misalignment_rad")
+        words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
         lines.append(words[0].upper() + words[1:])
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
@@ -612,7 +612,7 @@ def _error(error: Document) -> str:
 
 
 def _load(pair: Document) -> list[str]:
-    """Who carries for how long, and how hard the flanks press."""
+    """Return lines on load sharing and contact pressure."""
     lines = []
     if sharing := pair["load_sharing"]:
         parts = ", ".join(f"{count} for {percent(part)}" for count, part in sharing["pairs_in_contact"].items() if part)
@@ -635,20 +635,20 @@ def _best_relief(pair: Document) -> list[str]:
     best = pair["optimal_tip_relief"]
     if best is None:
         return []
-    without, given, least = (
+    without, as_given, least = (
         _MICRO * best[f"peak_to_peak_{which}"] for which in ("without_relief_m", "as_given_m", "m")
     )
     at = f"at {best['torque_n_m']:.4g} N·m"
     alike = ", all teeth alike" if pair["transmission_error_m"]["over_hunting_period"] else ""
     if any(gear["tip_relief"] for gear in pair["gears"]):
         lines = [
-            f"The relief of {_given(pair)} leaves {given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
+            f"The relief of {_reliefs(pair)} leaves {as_given:.2f} µm peak to peak {at}{alike}, none {without:.2f} µm",
         ]
-        # At the least of the torques, any pair is quiet.
+        # Every pair is quiet at the lowest torque.
         if (quietest := pair["harris_map"]["quietest_torque_n_m"]) > pair["harris_map"]["torque_n_m"][0]:
             lines.append(f"  it is quietest near {quietest:.3g} N·m")
     else:
-        lines = [f"Without relief {given:.2f} µm peak to peak {at}{alike}"]
+        lines = [f"Without relief {as_given:.2f} µm peak to peak {at}{alike}"]
     aim = best["aim"]
     if best["length_m"] is None:
         return [*lines, f"No tip relief, the same on both gears, lowers the {_aim_in_words(aim)}: leave it out"]
@@ -663,7 +663,7 @@ def _best_relief(pair: Document) -> list[str]:
         if aim["kind"] == "harmonics":
             lines.append(f"  {_ALONE}")
         return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
-    close = least > _WORTH_IT * given
+    close = least > _WORTH_IT * as_given
     return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]
 
 
@@ -681,7 +681,7 @@ def _value(aim: Document, key: str) -> str:
     return f"{aim[key]:.4g} m/s²" if aim["kind"] == "sensor" else f"{_MICRO * aim[key]:.3f} µm"
 
 
-def _given(pair: Document) -> str:
+def _reliefs(pair: Document) -> str:
     """Return the reliefs of both gears in short, such as ``0.023/0.025 mm from 24°``."""
     reliefs = [gear["tip_relief"] for gear in pair["gears"]]
     amounts = [_MM * relief["amount_m"] if relief else 0.0 for relief in reliefs]
@@ -690,6 +690,6 @@ def _given(pair: Document) -> str:
 
 
 def _alike(values: Sequence[float], form: str, unit: str) -> str:
-    """Two figures with a stroke between, or one where they read the same."""
-    shown = list(dict.fromkeys(f"{value:{form}}" for value in values))
-    return "/".join(shown) + unit
+    """Return both values with a stroke between them, or one value where their texts are equal."""
+    texts = list(dict.fromkeys(f"{value:{form}}" for value in values))
+    return "/".join(texts) + unit

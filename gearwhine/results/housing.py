@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class _Mode(NamedTuple):
-    """Mode of the housing: its number from 1, and all that belongs to it alone."""
+    """Mode of the housing: its number from 1, and its own quantities."""
 
     number: int
     frequency: float
@@ -85,7 +85,7 @@ MODE = (
         "mass-normalised mode shapes at the survey points",
     ),
 )
-"""Of one mode."""
+"""Quantities of one mode."""
 
 COUNT_CERTIFICATE = (
     Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
@@ -104,7 +104,7 @@ MESH_SIZE = (
     Quantity("elements", lambda mesh: mesh.n_elements),
     Quantity("dofs", lambda mesh: 3 * len(mesh.points)),
 )
-"""Of a mesh."""
+"""Quantities of a mesh."""
 
 _MOTIONS = ["x", "y", "z", "rotation_x", "rotation_y"]  # of a bearing
 STATIC_ERROR = (
@@ -146,7 +146,7 @@ ORIGIN = (
     Quantity("seconds_when_solved", lambda solved: ABSENT if solved.source is None else solved.record.notes["seconds"]),
     Quantity("warnings", lambda solved: solved.warnings),
 )
-"""Where the modes come from, for every command that uses them."""
+"""Origin of the modes, for every command that uses them."""
 
 
 def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
@@ -184,7 +184,7 @@ HOUSING: Fields = (
     ),
     Part("", lambda solved: solved, ORIGIN),
 )
-"""Of a solved housing."""
+"""Quantities of a solved housing."""
 
 _SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
 
@@ -216,7 +216,7 @@ def write_shapes(path: Path, housing: "SolvedHousing") -> None:
 
 
 _SHORT = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
-_SHOWN = 1e-3  # of effective mass: less is left blank, so that what counts is seen
+_SHOWN = 1e-3  # smallest share of the effective mass that is shown
 
 
 def report(document: Document) -> Section:
@@ -368,7 +368,7 @@ def static_error_sentence(error: Document) -> str:
 
 
 def _effective_mass(document: Document) -> tuple[Table, ...]:
-    """Effective masses of each mode, and what these, higher ones and the supports have in all."""
+    """Return the effective masses of each mode, and the sums of these, of higher modes and of the supports."""
     mass = document["effective_mass"]
     columns = (
         Column("mode", "mode"),

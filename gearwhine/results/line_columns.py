@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from gearwhine.output.sections import Column, Row
 
 LINE_NAME = Column("what it is", "name")
-"""What a line is, such as ``1× pinion -> wheel``."""
+"""Column of a line's name, such as ``1× pinion -> wheel``."""
 
 
 def line_frequency(link: Callable[[Row], Sequence[str]] | None = None) -> Column:

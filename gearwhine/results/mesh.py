@@ -15,14 +15,14 @@ BORE = (
     Quantity("length_m", lambda row: row[1].length),
     Quantity("axis", lambda row: row[0]),
 )
-"""Of a bore: the axis that it lies along, and the bore."""
+"""Quantities of a bore; a row is its axis and the bore."""
 
 QUALITY = (
     Quantity("volume_m3", lambda quality: quality.volume),
     Quantity("edge_length_m", lambda quality: dict(zip(("min", "median", "max"), quality.edge_length, strict=True))),
     Quantity("shape_number", lambda quality: dict(zip(("min", "median"), quality.shape, strict=True))),
 )
-"""Of the elements: the shape number is 1 at best."""
+"""Quality of the elements: the shape number is 1 at best."""
 
 MESH = (
     Part("mesh", lambda mesh: mesh, MESH_SIZE),
@@ -33,7 +33,7 @@ MESH = (
     Part("", mesh_quality, QUALITY),
     Rows("bores", bores_along_axes, BORE),
 )
-"""Of a mesh: elements by kind, facets of each surface, elements of each volume, quality and bores."""
+"""Quantities of a mesh: elements by kind, facets of each surface, elements of each volume, quality and bores."""
 
 
 def mesh_document(mesh: Mesh, warnings: Sequence[Document]) -> dict[str, Any]:

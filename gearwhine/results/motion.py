@@ -8,9 +8,9 @@ from gearwhine.output.sections import Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
-_TOLD = 0.03  # an error of a line that is worth its place
-_LINES_OF_A_SENSOR = 6  # in the report
-_HIGHEST = 5  # on the terminal
+_LEAST_ERROR = 0.03  # smallest error of a line that is shown
+_LINES_OF_A_SENSOR = 6  # lines of a sensor in the report
+_HIGHEST = 5  # lines of a sensor on the terminal
 
 MESH = (
     Quantity("driver", lambda row: row[0].driver.name, heading="driver"),
@@ -25,7 +25,7 @@ MESH = (
         scale=100.0,
     ),
 )
-"""Of a gear mesh, figures of the motion by contacts, and the number of the contact that its mean load presses."""
+"""Quantities of a gear mesh; a row is the mesh, the motion's figures by contact, and the number of the loaded one."""
 
 BEARING = (
     Quantity("name", lambda row: row[0], heading="bearing"),
@@ -34,7 +34,7 @@ BEARING = (
     Quantity("mean_moment_n_m", lambda row: row[1].mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
     Quantity("rms_moment_n_m", lambda row: row[1].rms[3:]),
 )
-"""Of a bearing's name and the parts of its load: forces along x, y, z and moments about x and y."""
+"""Loads of a bearing: forces along x, y, z and moments about x and y; a row is its name and the parts of its load."""
 
 SENSOR_COLUMNS = (
     Column("sensor", "name"),
@@ -56,7 +56,7 @@ def _paths_of(row: Document) -> tuple[str, ...]:
 
 
 def _shapes_of(row: Document) -> tuple[str, ...]:
-    """Return places that show the housing moving at a line: its operating shape, or the mode that has most of it."""
+    """Return the places of a line's operating shape, and of the housing mode with the largest part of the line."""
     shape = f"picture line-{row['frequency_hz']:.1f}Hz"
     return (shape, *shape_places(row["by_mode"])) if row["by_mode"] is not None else (shape,)
 
@@ -87,7 +87,7 @@ def mesh_sentence(pair: Document) -> str:
 
 
 def leading_lines(sensors: Iterable[Document], key: str, most: int = _LINES_OF_A_SENSOR) -> list[dict[str, Any]]:
-    """Return the highest lines of each sensor as rows, with the housing mode that has most of each, ``by``."""
+    """Return the highest lines of each sensor as rows; ``by`` is the housing mode with the largest part of a line."""
     rows: list[dict[str, Any]] = []
     for sensor in sensors:
         for line in sensor.get(key, ())[:most]:
@@ -105,7 +105,7 @@ def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
 def _line(line: Document) -> str:
     """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
     error = line.get("uncertainty", 0.0)
-    beside = "" if error <= _TOLD else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
+    beside = "" if error <= _LEAST_ERROR else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
     # Two digits, without an exponent where there are more before the point.
     amplitude = float(f"{line['amplitude_m_per_s2']:.2g}")
     return f"{line['frequency_hz']:.0f} ({amplitude:g}{beside})"

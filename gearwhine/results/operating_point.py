@@ -48,14 +48,18 @@ def _list(values: dict[str, float]) -> list[float]:
     return list(values.values())
 
 
-def _of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Quantity:
+def _of_bearing(key: str, of: str, name: str, unit: str, long_name: str) -> Quantity:
     """Declare components along x, y, z of an attribute of a bearing's load."""
-    return Quantity(key, lambda one: _along(getattr(one.load, of)), name, _DIRECTION, unit, what, document=_list)
+    return Quantity(
+        key, lambda bearing: _along(getattr(bearing.load, of)), name, _DIRECTION, unit, long_name, document=_list
+    )
 
 
-def _turns_of_bearing(key: str, of: str, name: str, unit: str, what: str) -> Quantity:
+def _turns_of_bearing(key: str, of: str, name: str, unit: str, long_name: str) -> Quantity:
     """Declare components about x and y of an attribute of a bearing's load."""
-    return Quantity(key, lambda one: _about(getattr(one.load, of)), name, _ROTATION, unit, what, document=_list)
+    return Quantity(
+        key, lambda bearing: _about(getattr(bearing.load, of)), name, _ROTATION, unit, long_name, document=_list
+    )
 
 
 def _force(axis: int) -> Column:
@@ -68,17 +72,17 @@ def _moment(axis: int) -> Column:
 
 def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
     """Take a value of a rolling bearing's ratings; other bearings have none."""
-    return lambda one: None if one.rated is None else of(one.rated)
+    return lambda bearing: None if bearing.rated is None else of(bearing.rated)
 
 
 BEARING = (
-    Quantity("name", lambda one: one.load.name, "loaded_bearing", heading="bearing"),
-    Quantity("shaft", lambda one: one.load.mounted.rotor),
-    Quantity("seat", lambda one: one.load.mounted.seat or "ground"),
+    Quantity("name", lambda bearing: bearing.load.name, "loaded_bearing", heading="bearing"),
+    Quantity("shaft", lambda bearing: bearing.load.mounted.rotor),
+    Quantity("seat", lambda bearing: bearing.load.mounted.seat or "ground"),
     _of_bearing("force_n", "force", "bearing_mean_force", "N", "force of the shaft on the bearing"),
     Quantity(
         "given_load_n",
-        lambda one: ABSENT if one.given_load is None else _along(one.given_load),
+        lambda bearing: ABSENT if bearing.given_load is None else _along(bearing.given_load),
         "bearing_given_load",
         _DIRECTION,
         "N",
@@ -92,7 +96,7 @@ BEARING = (
     _turns_of_bearing("seat_rotation_rad", "seat_motion", "seat_rotation", "rad", "rotation of the seat"),
     Quantity(
         "tilt_rad",
-        lambda one: one.load.tilt,
+        lambda bearing: bearing.load.tilt,
         "bearing_tilt",
         (),
         "rad",
@@ -103,7 +107,7 @@ BEARING = (
     ),
     Quantity(
         "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
-        lambda one: one.load.stiffness,
+        lambda bearing: bearing.load.stiffness,
         "bearing_tangent_stiffness",
         _MOTION,
         "",
@@ -111,7 +115,7 @@ BEARING = (
     ),
     Quantity(
         "peak_pressure_pa",
-        lambda one: one.peak_pressure,
+        lambda bearing: bearing.peak_pressure,
         "bearing_peak_pressure",
         (),
         "Pa",
@@ -122,7 +126,7 @@ BEARING = (
     ),
     Quantity(
         "preload_n",
-        lambda one: one.preload,
+        lambda bearing: bearing.preload,
         "bearing_preload",
         (),
         "N",
@@ -130,10 +134,10 @@ BEARING = (
         heading="preload [N]",
         shown=".0f",
     ),
-    Quantity("most_loaded_element", lambda one: one.most_loaded),
+    Quantity("most_loaded_element", lambda bearing: bearing.most_loaded),
     Quantity(
         "",
-        lambda one: one.element_loads,
+        lambda bearing: bearing.element_loads,
         "bearing_element_load",
         ("rolling_element",),
         "N",
@@ -142,7 +146,7 @@ BEARING = (
     Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
     *life_quantities(lambda key: _rated(attrgetter(key)), "bearing", ("L10\n[h]", "L10r\n[h]")),
 )
-"""Of a bearing at the operating point."""
+"""Quantities of a bearing at the operating point."""
 
 
 def _stiffness(row: Row) -> str:
@@ -165,21 +169,21 @@ _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
 def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
     """Take a value of a pair that carries load; an idle one has none."""
-    return lambda one: value(one) if one.force > 0.0 else None
+    return lambda load: value(load) if load.force > 0.0 else None
 
 
-def _line_load(key: str, name: str, of: Callable[[PairLoad], float], what: str) -> Quantity:
+def _line_load(key: str, name: str, of: Callable[[PairLoad], float], long_name: str) -> Quantity:
     """Declare a line load of a pair: transverse load, along the line of action, per face width."""
-    return Quantity(key, of, name, (), "N/m", what)
+    return Quantity(key, of, name, (), "N/m", long_name)
 
 
 PAIR = (
-    Quantity("", lambda one: f"{one.pair.driver.name} -> {one.pair.driven.name}", "loaded_pair"),
-    Quantity("driver", lambda one: one.pair.driver.name, heading="driver"),
-    Quantity("driven", lambda one: one.pair.driven.name, heading="driven"),
+    Quantity("", lambda load: f"{load.pair.driver.name} -> {load.pair.driven.name}", "loaded_pair"),
+    Quantity("driver", lambda load: load.pair.driver.name, heading="driver"),
+    Quantity("driven", lambda load: load.pair.driven.name, heading="driven"),
     Quantity(
         "force_n",
-        lambda one: one.force,
+        lambda load: load.force,
         "mesh_mean_force",
         (),
         "N",
@@ -187,11 +191,11 @@ PAIR = (
         heading="force\n[N]",
         shown=".0f",
     ),
-    Quantity("thrust_n", lambda one: one.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
-    Quantity("face_width_m", lambda one: one.pair.geometry.face_width),
+    Quantity("thrust_n", lambda load: load.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
+    Quantity("face_width_m", lambda load: load.pair.geometry.face_width),
     Quantity(
         "misalignment_rad",
-        lambda one: one.misalignment,
+        lambda load: load.misalignment,
         "misalignment",
         (),
         "rad",
@@ -199,7 +203,7 @@ PAIR = (
     ),
     Quantity(
         "misalignment_by_cause_rad",
-        lambda one: {cause: one.misalignment_by_cause[cause] for cause in CAUSES},
+        lambda load: {cause: load.misalignment_by_cause[cause] for cause in CAUSES},
         "misalignment_by_cause",
         ("cause",),
         "rad",
@@ -207,14 +211,14 @@ PAIR = (
     ),
     Quantity(
         "misalignment_over_face_m",
-        lambda one: one.misalignment * one.pair.geometry.face_width,
+        lambda load: load.misalignment * load.pair.geometry.face_width,
         heading="misaligned\n[µm]",
         shown="z.2f",
         scale=_MICRO,
     ),
     Quantity(
         "k_h_beta",
-        _of_loaded(lambda one: one.k_h_beta),
+        _of_loaded(lambda load: load.k_h_beta),
         "face_load_factor",
         (),
         "1",
@@ -224,7 +228,7 @@ PAIR = (
     ),
     Quantity(
         "mean_stiffness_n_per_m",
-        _of_loaded(lambda one: one.mean_stiffness),
+        _of_loaded(lambda load: load.mean_stiffness),
         "mesh_mean_stiffness",
         (),
         "N/m",
@@ -235,7 +239,7 @@ PAIR = (
     ),
     Part(
         "transmission_error_m",
-        _of_loaded(lambda one: one.transmission_error),
+        _of_loaded(lambda load: load.transmission_error),
         (
             Quantity("mean", np.mean),
             Quantity("peak_to_peak", np.ptp),
@@ -243,48 +247,53 @@ PAIR = (
     ),
     Part(
         "line_load_n_per_m",
-        _of_loaded(lambda one: one),
+        _of_loaded(lambda load: load),
         (
-            _line_load("mean", "mean_line_load", lambda one: one.line_load.mean(), "mean line load F / b"),
+            _line_load("mean", "mean_line_load", lambda load: load.line_load.mean(), "mean line load F / b"),
             _line_load(
                 "maximum",
                 "maximum_line_load",
-                lambda one: one.k_h_beta * one.line_load.mean(),
+                lambda load: load.k_h_beta * load.line_load.mean(),
                 "maximum line load K_Hbeta F / b",
             ),
             _line_load(
                 "peak",
                 "peak_line_load",
-                lambda one: one.fine.line_load.max(),
+                lambda load: load.fine.line_load.max(),
                 "peak line load: largest over face and mesh period, all tooth pairs together",
             ),
             _line_load(
                 "peak_of_tooth_pair",
                 "peak_line_load_of_tooth_pair",
-                lambda one: one.fine.peak_line_load,
+                lambda load: load.fine.peak_line_load,
                 "peak line load of one tooth pair over its face and the mesh period",
             ),
         ),
     ),
-    Quantity("contact_pressure_max_pa", _of_loaded(lambda one: one.peak_pressure)),
-    Quantity("carrying_part", _of_loaded(lambda one: one.carrying_part)),
+    Quantity("contact_pressure_max_pa", _of_loaded(lambda load: load.peak_pressure)),
+    Quantity("carrying_part", _of_loaded(lambda load: load.carrying_part)),
     Quantity(
-        "", lambda one: one.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
+        "", lambda load: load.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
     ),
     Quantity(
         "",
-        lambda one: one.gap,
+        lambda load: load.gap,
         "face_gap",
         _SLICE,
         "m",
         "gap of the flanks by the deflection of the machine, its mean taken off",
     ),
     Quantity(
-        "", lambda one: one.pair.contact.flank_gap, "flank_gap", _SLICE, "m", "gap of the flanks by their modifications"
+        "",
+        lambda load: load.pair.contact.flank_gap,
+        "flank_gap",
+        _SLICE,
+        "m",
+        "gap of the flanks by their modifications",
     ),
     Quantity(
         "",
-        _of_loaded(lambda one: one.line_load),
+        _of_loaded(lambda load: load.line_load),
         "face_mean_line_load",
         _SLICE,
         "N/m",
@@ -292,36 +301,36 @@ PAIR = (
     ),
     Quantity(
         "",
-        _of_loaded(lambda one: one.fine.line_load),
+        _of_loaded(lambda load: load.fine.line_load),
         "face_line_load",
         (*_PHASE, *_SLICE),
         "N/m",
         "line load: transverse load per face width, all tooth pairs together",
     ),
-    Quantity("", lambda one: one.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
+    Quantity("", lambda load: load.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
     Quantity(
         "",
-        _of_loaded(lambda one: one.transmission_error),
+        _of_loaded(lambda load: load.transmission_error),
         "loaded_transmission_error",
         _PHASE,
         "m",
         "static transmission error under the mean load: of teeth and reliefs, along the line of action",
     ),
 )
-"""Of a gear pair at the operating point."""
+"""Quantities of a gear pair at the operating point."""
 
 TAKEN = (
     Quantity(
         "misalignment_taken_rad",
-        lambda one: one.misalignment.taken,
+        lambda pair: pair.misalignment.taken,
         "misalignment_taken",
         (),
         "rad",
         "misalignment that mesh stiffness and motion take",
     ),
-    Quantity("misalignment_taken_from", lambda one: one.misalignment.origin, "misalignment_taken_from"),
+    Quantity("misalignment_taken_from", lambda pair: pair.misalignment.origin, "misalignment_taken_from"),
 )
-"""Of a gear pair at the operating point and in the case."""
+"""Misalignment that the motion takes of a gear pair."""
 
 _PAIR_COLUMNS = (
     *columns_of(PAIR),
@@ -335,21 +344,21 @@ _CAUSE_COLUMNS = (
 
 _PLACE = ("shaft_place",)
 SHAFT = (
-    Quantity("name", lambda one: one.name, "deflected_shaft", heading="shaft"),
-    Quantity("largest_deflection_m", lambda one: one.largest[0], heading="largest [µm]", shown=".4g", scale=_MICRO),
+    Quantity("name", lambda shaft: shaft.name, "deflected_shaft", heading="shaft"),
+    Quantity("largest_deflection_m", lambda shaft: shaft.largest[0], heading="largest [µm]", shown=".4g", scale=_MICRO),
     Quantity(
         "largest_deflection_at_m",
-        lambda one: one.largest[1],
+        lambda shaft: shaft.largest[1],
         heading="at, from its left end [mm]",
         shown=".4g",
         scale=1e3,
     ),
-    Quantity("twist_rad", lambda one: one.twist, heading="twist [µrad]", shown=".4g", scale=_MICRO),
-    Quantity("", lambda one: one.at, "shaft_position", _PLACE, "m", "distance from the left end of the shaft"),
-    Quantity("", lambda one: one.z, "shaft_z", _PLACE, "m", "z of the machine"),
+    Quantity("twist_rad", lambda shaft: shaft.twist, heading="twist [µrad]", shown=".4g", scale=_MICRO),
+    Quantity("", lambda shaft: shaft.at, "shaft_position", _PLACE, "m", "distance from the left end of the shaft"),
+    Quantity("", lambda shaft: shaft.z, "shaft_z", _PLACE, "m", "z of the machine"),
     Quantity(
         "",
-        lambda one: dict(zip(_AXES, one.motion[:3], strict=True)),
+        lambda shaft: dict(zip(_AXES, shaft.motion[:3], strict=True)),
         "shaft_displacement",
         (*_DIRECTION, *_PLACE),
         "m",
@@ -357,14 +366,14 @@ SHAFT = (
     ),
     Quantity(
         "",
-        lambda one: dict(zip((*_TILTS, "about z"), one.motion[3:], strict=True)),
+        lambda shaft: dict(zip((*_TILTS, "about z"), shaft.motion[3:], strict=True)),
         "shaft_rotation",
         ("shaft_rotation_axis", *_PLACE),
         "rad",
         "rotation of the shaft",
     ),
 )
-"""Of a deflected shaft."""
+"""Quantities of a deflected shaft."""
 
 TORQUE = (
     Quantity("torque_n_m", lambda row: row[0], "operating_torque", (), "N m", "torque of the first driver"),
@@ -372,25 +381,25 @@ TORQUE = (
         "gear_pairs",
         lambda row: row[1].pairs,
         (
-            Quantity("driver", lambda one: one.pair.driver.name),
-            Quantity("driven", lambda one: one.pair.driven.name),
-            Quantity("misalignment_rad", lambda one: one.misalignment),
-            Quantity("k_h_beta", _of_loaded(lambda one: one.k_h_beta)),
-            Quantity("mean_stiffness_n_per_m", _of_loaded(lambda one: one.mean_stiffness)),
-            Quantity("transmission_error_peak_to_peak_m", _of_loaded(lambda one: np.ptp(one.transmission_error))),
+            Quantity("driver", lambda load: load.pair.driver.name),
+            Quantity("driven", lambda load: load.pair.driven.name),
+            Quantity("misalignment_rad", lambda load: load.misalignment),
+            Quantity("k_h_beta", _of_loaded(lambda load: load.k_h_beta)),
+            Quantity("mean_stiffness_n_per_m", _of_loaded(lambda load: load.mean_stiffness)),
+            Quantity("transmission_error_peak_to_peak_m", _of_loaded(lambda load: np.ptp(load.transmission_error))),
         ),
     ),
 )
-"""Of a torque and the operating point under it."""
+"""Quantities of an operating point; a row is its torque and its solution."""
 
 _HZ = 0.5 / np.pi
 
 SENSOR_LINE = (
-    Quantity("sensor", lambda one: one[0].output.sensor, "line_sensor", heading="sensor"),
-    Quantity("excitation", lambda one: one[1], "line_excitation", heading="excitation"),
+    Quantity("sensor", lambda row: row[0].output.sensor, "line_sensor", heading="sensor"),
+    Quantity("excitation", lambda row: row[1], "line_excitation", heading="excitation"),
     Quantity(
         "frequency_hz",
-        lambda one: one[0].frequency * _HZ,
+        lambda row: row[0].frequency * _HZ,
         "line_frequency",
         (),
         "Hz",
@@ -400,7 +409,7 @@ SENSOR_LINE = (
     ),
     Quantity(
         "amplitude_m_per_s2",
-        lambda one: one[0].value,
+        lambda row: row[0].value,
         "line_amplitude",
         (),
         "m/s2",
@@ -408,15 +417,15 @@ SENSOR_LINE = (
         heading="[m/s²]",
         shown=".3g",
     ),
-    Quantity("ranked", lambda one: one[2]),
+    Quantity("ranked", lambda row: row[2]),
 )
-"""Of a sensor's line, the mesh harmonics that drive it, and whether parameters are ranked by it."""
+"""Quantities of a sensor's line; a row is the line, its mesh harmonics, and whether parameters are ranked by it."""
 
 SOUND_LINE = (
-    Quantity("excitation", lambda one: one[1], "loudest_line_excitation", heading="excitation"),
+    Quantity("excitation", lambda row: row[1], "loudest_line_excitation", heading="excitation"),
     Quantity(
         "frequency_hz",
-        lambda one: one[0].line.frequency * _HZ,
+        lambda row: row[0].line.frequency * _HZ,
         "loudest_line_frequency",
         (),
         "Hz",
@@ -426,7 +435,7 @@ SOUND_LINE = (
     ),
     Quantity(
         "",
-        lambda one: one[0].line.value,
+        lambda row: row[0].line.value,
         "loudest_line_power",
         (),
         "W",
@@ -434,25 +443,25 @@ SOUND_LINE = (
     ),
     Quantity(
         "sound_power_db",
-        lambda one: float(power_level(one[0].line.value)),
+        lambda row: float(power_level(row[0].line.value)),
         heading="L_W [dB]",
         shown=".1f",
     ),
     Quantity(
         "sound_power_db_a",
-        lambda one: float(power_level(one[0].weighting * one[0].line.value)),
+        lambda row: float(power_level(row[0].weighting * row[0].line.value)),
         heading="L_WA [dB]",
         shown=".1f",
     ),
-    Quantity("ranked", lambda one: one[2]),
+    Quantity("ranked", lambda row: row[2]),
 )
-"""Of one of the loudest lines, the mesh harmonics that drive it, and whether parameters are ranked by it."""
+"""Quantities of a loudest line; a row is the line, its mesh harmonics, and whether parameters are ranked by it."""
 
 _LEVELS = (
-    Quantity("level_db", lambda one: one.level),
-    Quantity("first_order_db", lambda one: one.first_order_level),
-    Quantity("reverse_level_db", lambda one: one.reverse_level),
-    Quantity("first_order_is_off", lambda one: one.first_order_is_off),
+    Quantity("level_db", lambda change: change.level),
+    Quantity("first_order_db", lambda change: change.first_order_level),
+    Quantity("reverse_level_db", lambda change: change.reverse_level),
+    Quantity("first_order_is_off", lambda change: change.first_order_is_off),
 )
 
 INFLUENCE = (
@@ -465,11 +474,11 @@ INFLUENCE = (
         "lines",
         lambda row: row[2].sensor_changes(row[0]) if row[2].sensor_lines else ABSENT,
         (
-            Quantity("sensor", lambda one: one.line.output.sensor),
-            Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
-            Quantity("amplitude_m_per_s2", lambda one: one.change),
-            Quantity("first_order_m_per_s2", lambda one: one.first_order),
-            Quantity("reverse_amplitude_m_per_s2", lambda one: _unless_none(one.reverse)),
+            Quantity("sensor", lambda change: change.line.output.sensor),
+            Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
+            Quantity("amplitude_m_per_s2", lambda change: change.change),
+            Quantity("first_order_m_per_s2", lambda change: change.first_order),
+            Quantity("reverse_amplitude_m_per_s2", lambda change: _unless_none(change.reverse)),
             *_LEVELS,
         ),
     ),
@@ -477,10 +486,10 @@ INFLUENCE = (
         "sound",
         lambda row: row[2].sound_changes(row[0]) if row[2].loudest_lines else ABSENT,
         (
-            Quantity("frequency_hz", lambda one: one.line.frequency * _HZ),
-            Quantity("power_w", lambda one: one.change),
-            Quantity("first_order_w", lambda one: one.first_order),
-            Quantity("reverse_power_w", lambda one: _unless_none(one.reverse)),
+            Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
+            Quantity("power_w", lambda change: change.change),
+            Quantity("first_order_w", lambda change: change.first_order),
+            Quantity("reverse_power_w", lambda change: _unless_none(change.reverse)),
             *_LEVELS,
         ),
     ),
@@ -493,17 +502,17 @@ INFLUENCE = (
         "gear_pairs",
         lambda row: zip(row[1], row[0].changes.tolist(), strict=True),
         (
-            Quantity("driver", lambda one: one[0].pair.driver.name),
-            Quantity("driven", lambda one: one[0].pair.driven.name),
-            Quantity("misalignment_rad", lambda one: one[1][0]),
-            Quantity("k_h_beta", lambda one: _unless_idle(one[1][1])),
-            Quantity("transmission_error_peak_to_peak_m", lambda one: _unless_idle(one[1][2])),
+            Quantity("driver", lambda row: row[0].pair.driver.name),
+            Quantity("driven", lambda row: row[0].pair.driven.name),
+            Quantity("misalignment_rad", lambda row: row[1][0]),
+            Quantity("k_h_beta", lambda row: _unless_idle(row[1][1])),
+            Quantity("transmission_error_peak_to_peak_m", lambda row: _unless_idle(row[1][2])),
         ),
     ),
 )
-"""Of a parameter's influence, the gear pairs and the sensitivity: their changes by a step of it.
+"""Changes by a step of a parameter; a row is the parameter's influence, the gear pairs and the sensitivity.
 
-Those of gear pairs are to first order, so that the reverse step has the opposite ones.
+Changes of gear pairs are to first order, so that the reverse step has the opposite ones.
 """
 
 
@@ -515,73 +524,83 @@ def _unless_idle(value: float) -> Any:
     return ABSENT if np.isnan(value) else value
 
 
-def _influence(name: str, unit: str, what: str, column: int) -> Quantity:
+def _influence(name: str, unit: str, long_name: str, column: int) -> Quantity:
     """Declare a change of every gear pair by every parameter's step, for the file."""
 
-    def taken(solved: "SolvedLoad") -> Any:
+    def changes(solved: "SolvedLoad") -> Any:
         if solved.sensitivity is None or not solved.point.pairs:
             return None
-        return np.array([one.changes[:, column] for one in solved.sensitivity.influences])
+        return np.array([influence.changes[:, column] for influence in solved.sensitivity.influences])
 
-    what = f"change of the {what} by a step of the parameter, to first order"
-    return Quantity("", taken, f"{name}_change", ("influence", "loaded_pair"), unit, what)
+    long_name = f"change of the {long_name} by a step of the parameter, to first order"
+    return Quantity("", changes, f"{name}_change", ("influence", "loaded_pair"), unit, long_name)
 
 
-def _line_changes(name: str, of: str, what: str, unit: str, changes: str, dimension: str) -> Quantity:
+def _line_changes(name: str, of: str, long_name: str, unit: str, changes: str, dimension: str) -> Quantity:
     """Declare changes of every line by every parameter's step, for the file."""
 
-    def taken(solved: "SolvedLoad") -> Any:
-        found = solved.sensitivity
-        if found is None or not getattr(found, f"{dimension}s"):
+    def values(solved: "SolvedLoad") -> Any:
+        sensitivity = solved.sensitivity
+        if sensitivity is None or not getattr(sensitivity, f"{dimension}s"):
             return None
-        return np.array([[getattr(line, of) for line in getattr(found, changes)(one)] for one in found.influences])
+        return np.array(
+            [
+                [getattr(line, of) for line in getattr(sensitivity, changes)(influence)]
+                for influence in sensitivity.influences
+            ]
+        )
 
     how = "to first order" if of == "first_order" else "the response solved anew"
     step = "reverse step" if of == "reverse" else "step"
-    what = f"change of the line's {what} by a {step} of the parameter, {how}"
-    return Quantity("", taken, name, ("influence", dimension), unit, what)
+    long_name = f"change of the line's {long_name} by a {step} of the parameter, {how}"
+    return Quantity("", values, name, ("influence", dimension), unit, long_name)
 
 
 def _sensor_lines(solved: "SolvedLoad") -> Any:
     """Lines of the sensors with their causes, where there are any."""
-    found = solved.sensitivity
-    if found is None or found.lines is None or not found.sensor_lines:
+    sensitivity = solved.sensitivity
+    if sensitivity is None or sensitivity.lines is None or not sensitivity.sensor_lines:
         return ABSENT
-    return [(one, found.lines.cause(one), n == found.line) for n, one in enumerate(found.sensor_lines)]
+    return [
+        (line, sensitivity.lines.cause(line), n == sensitivity.line) for n, line in enumerate(sensitivity.sensor_lines)
+    ]
 
 
 def _loudest_lines(solved: "SolvedLoad") -> Any:
     """Loudest lines with their causes, where there are any."""
-    found = solved.sensitivity
-    if found is None or found.lines is None or not found.loudest_lines:
+    sensitivity = solved.sensitivity
+    if sensitivity is None or sensitivity.lines is None or not sensitivity.loudest_lines:
         return ABSENT
-    ranked = (found.sound_weights > 0.0).tolist()
-    return [(one, found.lines.cause(one.line), own) for one, own in zip(found.loudest_lines, ranked, strict=True)]
+    ranked = (sensitivity.sound_weights > 0.0).tolist()
+    return [
+        (loud, sensitivity.lines.cause(loud.line), is_ranked)
+        for loud, is_ranked in zip(sensitivity.loudest_lines, ranked, strict=True)
+    ]
 
 
 def _loudest_level(solved: "SolvedLoad") -> Any:
     """A-weighted sound power level of the loudest lines together, where there are any [dB]."""
-    found = _loudest_lines(solved)
-    if found is ABSENT:
+    lines = _loudest_lines(solved)
+    if lines is ABSENT:
         return ABSENT
-    return float(power_level(sum(one.weighting * one.line.value for one, _, _ in found)))
+    return float(power_level(sum(loud.weighting * loud.line.value for loud, _, _ in lines)))
 
 
 def _lines_without(solved: "SolvedLoad") -> Any:
-    found = solved.sensitivity
-    return ABSENT if found is None or found.lines is None else found.lines.held
+    sensitivity = solved.sensitivity
+    return ABSENT if sensitivity is None or sensitivity.lines is None else sensitivity.lines.held
 
 
-def _over_torque(name: str, unit: str, what: str, of: Any) -> Quantity:
+def _over_torque(name: str, unit: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every gear pair over torque, for the file."""
 
-    def taken(solved: "SolvedLoad") -> Any:
+    def values(solved: "SolvedLoad") -> Any:
         if not solved.over_torque or not solved.point.pairs:
             return None
         rows = [[of(pair) for pair in point.pairs] for point in solved.over_torque.values()]
         return np.array(rows, dtype=np.float64)  # NaN of pairs that carry nothing
 
-    return Quantity("", taken, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{what} over torque")
+    return Quantity("", values, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{long_name} over torque")
 
 
 _OF_SENSORS = ("amplitude of acceleration", "m/s2", "sensor_changes", "sensor_line")
@@ -599,7 +618,7 @@ LOAD = (
     Quantity("", lambda solved: list(_MOTIONS), _MOTION[1], _MOTION[1:]),
     Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
-    Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda one: one.load, PAIR), *TAKEN), "loaded_pair"),
+    Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda pair: pair.load, PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
@@ -610,7 +629,7 @@ LOAD = (
         lambda solved: (
             ABSENT
             if solved.sensitivity is None
-            else [(one, solved.point.pairs, solved.sensitivity) for one in solved.sensitivity.influences]
+            else [(influence, solved.point.pairs, solved.sensitivity) for influence in solved.sensitivity.influences]
         ),
         INFLUENCE,
     ),
@@ -619,7 +638,10 @@ LOAD = (
         lambda solved: (
             None
             if solved.sensitivity is None or not solved.point.pairs
-            else [f"{one.kind}: {one.parameter}, {one.step_text}" for one in solved.sensitivity.influences]
+            else [
+                f"{influence.kind}: {influence.parameter}, {influence.step_text}"
+                for influence in solved.sensitivity.influences
+            ]
         ),
         "influence",
         ("influence",),
@@ -651,7 +673,7 @@ LOAD = (
         _of_loaded(lambda pair: np.ptp(pair.transmission_error)),
     ),
 )
-"""Of the operating point."""
+"""Quantities of the operating point."""
 
 
 def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
@@ -667,7 +689,7 @@ LOAD_OPTIONS = (
         "load-sensitivity-*.png",
     ),
 )
-"""Of the operating point."""
+"""Options of the operating point."""
 
 LOAD_SAME = ("seats", "bearings", "gear_pairs", "shafts")
 """Keys of the operating point that no option changes."""
@@ -681,43 +703,44 @@ def load_part(solved: "SolvedLoad") -> dict[str, Any]:
 def brief(load: Document) -> Iterator[str]:
     """Yield the operating point in sentences, for the terminal of another analysis."""
     forces = ", ".join(
-        f"{one['name']} {math.hypot(*one['force_n'][:2]):.4g} N" for one in load["bearings"][:_MOST_BEARINGS]
+        f"{bearing['name']} {math.hypot(*bearing['force_n'][:2]):.4g} N"
+        for bearing in load["bearings"][:_MOST_BEARINGS]
     )
     more = len(load["bearings"]) - _MOST_BEARINGS
     others = f" and of {more} more bearings" if more > 0 else ""
     yield f"Operating point {_seats(load)}: radial loads of {forces}{others}"
-    yield from _taken(load)
+    yield from _misalignments(load)
 
 
-def _taken(load: Document) -> Iterator[str]:
-    """Yield the misalignment that the motion takes of every pair, beside the one found."""
+def _misalignments(load: Document) -> Iterator[str]:
+    """Yield the misalignment that the motion takes of every pair, beside that of the operating point."""
     for pair in load["gear_pairs"]:
         if "misalignment_taken_from" not in pair:  # in summaries of earlier versions
             continue
-        taken = misalignment_words(
+        words = misalignment_words(
             pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
         )
-        yield f"  {pair['driver']} → {pair['driven']}: {taken}"
+        yield f"  {pair['driver']} → {pair['driven']}: {words}"
 
 
-def misalignment_words(taken: float | None, origin: str, found: float | None) -> str:
-    """Return the misalignment that is taken, its origin, and what the operating point has in its place.
+def misalignment_words(misalignment: float | None, origin: str, at_operating_point: float | None) -> str:
+    """Return the misalignment that the motion takes, its origin, and that of the operating point.
 
     Parameters
     ----------
-    taken, found : float or None
+    misalignment, at_operating_point : float or None
         [rad]; None where the operating point is not solved.
     origin : str
         See :class:`gearwhine.from_case.gear_pairs.TakenMisalignment`.
     """
-    beside = "" if found is None else f" (found: {_MICRO * found:z.2f} µrad)"
+    beside = "" if at_operating_point is None else f" (found: {_MICRO * at_operating_point:z.2f} µrad)"
     if origin == "default":
         return f"misalignment taken as 0, as the case gives none{beside}"
     if origin == "case":
-        return f"misalignment of {_MICRO * (taken or 0.0):z.4g} µrad taken, as the case gives it{beside}"
-    if found is None:
+        return f"misalignment of {_MICRO * (misalignment or 0.0):z.4g} µrad taken, as the case gives it{beside}"
+    if at_operating_point is None:
         return "misalignment left to the operating point"
-    return f"misalignment of {_MICRO * found:z.2f} µrad taken, as the operating point has it"
+    return f"misalignment of {_MICRO * at_operating_point:z.2f} µrad taken, as the operating point has it"
 
 
 def _seats(load: Document) -> str:
@@ -785,22 +808,26 @@ _INFLUENCE_COLUMNS = (
 
 def _influences(document: Document) -> Iterator[str | Table]:
     """Yield the changes of the gear pairs by the strongest parameters, of the housing and of the bearings."""
-    for of_bearings, what in ((False, "the housing"), (True, "a bearing")):
-        found = [one for one in document.get("sensitivity", ()) if one["kind"].startswith("bearing") is of_bearings]
+    for of_bearings, place in ((False, "the housing"), (True, "a bearing")):
+        influences = [
+            influence
+            for influence in document.get("sensitivity", ())
+            if influence["kind"].startswith("bearing") is of_bearings
+        ]
         rows = [
-            {key: one[key] for key in _STEP_KEYS if key in one}
+            {key: influence[key] for key in _STEP_KEYS if key in influence}
             | {"pair": f"{pair['driver']} → {pair['driven']}"}
             | pair
-            for one in found[:_MOST_INFLUENCES]
-            for pair in one["gear_pairs"]
+            for influence in influences[:_MOST_INFLUENCES]
+            for pair in influence["gear_pairs"]
         ]
         yield from table_of(
             _INFLUENCE_COLUMNS,
             rows,
-            f"Change by a step of one parameter of {what}, to first order; the opposite by the reverse step",
+            f"Change by a step of one parameter of {place}, to first order; the opposite by the reverse step",
         )
-        if rows and len(found) > _MOST_INFLUENCES:
-            yield f"{len(found) - _MOST_INFLUENCES} weaker parameters of {what} are in the files only"
+        if rows and len(influences) > _MOST_INFLUENCES:
+            yield f"{len(influences) - _MOST_INFLUENCES} weaker parameters of {place} are in the files only"
 
 
 def _first_order(row: Document) -> str:
@@ -828,24 +855,24 @@ def _lines(document: Document) -> Iterator[str | Table]:
     if lines:
         caption = "Sensors' lines at mesh harmonics, linear about the mean load"
         yield from table_of(columns_of(SENSOR_LINE), lines, caption)
-        number = next(n for n, one in enumerate(lines) if one["ranked"])
+        number = next(n for n, row in enumerate(lines) if row["ranked"])
         chosen = f"the line of {lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
-        yield from _ranked(document, chosen, lambda one: one["lines"][number])
+        yield from _ranked(document, chosen, lambda row: row["lines"][number])
     if loudest:
         caption = "Loudest mesh harmonics, A-weighted, linear about the mean load: sound power level re 1 pW"
         yield from table_of(columns_of(SOUND_LINE), loudest, caption)
-        ranked = [n for n, one in enumerate(loudest) if one["ranked"]]
+        ranked = [n for n, row in enumerate(loudest) if row["ranked"]]
         if len(ranked) > 1:
-            what = f"the A-weighted sound power of {counted(len(loudest), 'line')} together"
-            yield from _ranked(document, what, lambda one: one["sound_a"])
+            quantity = f"the A-weighted sound power of {counted(len(loudest), 'line')} together"
+            yield from _ranked(document, quantity, lambda row: row["sound_a"])
         else:
             chosen = f"the sound power at {loudest[ranked[0]]['frequency_hz']:.0f} Hz"
-            yield from _ranked(document, chosen, lambda one: one["sound"][ranked[0]])
+            yield from _ranked(document, chosen, lambda row: row["sound"][ranked[0]])
     if lines or loudest:
-        if any(_is_off(one) for one in document["sensitivity"]):
+        if any(_is_off(row) for row in document["sensitivity"]):
             yield _OFF_NOTE
-        held = document["lines_without"]
-        fixed = "" if held is None else f"; the case fixes {held}, which do not follow the walls"
+        case_fixes = document["lines_without"]
+        fixed = "" if case_fixes is None else f"; the case fixes {case_fixes}, which do not follow the walls"
         surface = ", and the radiating surface is held" if loudest else ""
         yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{surface}{fixed}"
 
@@ -853,21 +880,21 @@ def _lines(document: Document) -> Iterator[str | Table]:
 def _is_off(row: Document) -> bool:
     """Whether any of the lines at a step of a parameter is far from the first order."""
     return any(
-        one.get("first_order_is_off")
-        for one in (*row.get("lines", ()), *row.get("sound", ()), row.get("sound_a") or {})
+        line.get("first_order_is_off")
+        for line in (*row.get("lines", ()), *row.get("sound", ()), row.get("sound_a") or {})
     )
 
 
-def _ranked(document: Document, what: str, change: Callable[[Document], dict[str, Any]]) -> Iterator[str | Table]:
-    """Yield the strongest parameters of the housing and of the bearings by what they change in a level."""
-    for of_bearings, of in ((False, "the housing"), (True, "a bearing")):
+def _ranked(document: Document, quantity: str, change: Callable[[Document], dict[str, Any]]) -> Iterator[str | Table]:
+    """Yield the parameters of the housing and of the bearings that change a level most."""
+    for of_bearings, place in ((False, "the housing"), (True, "a bearing")):
         rows = [
-            {key: one[key] for key in _STEP_KEYS if key in one} | change(one)
-            for one in document["sensitivity"]
-            if one["kind"].startswith("bearing") is of_bearings
+            {key: influence[key] for key in _STEP_KEYS if key in influence} | change(influence)
+            for influence in document["sensitivity"]
+            if influence["kind"].startswith("bearing") is of_bearings
         ]
         rows.sort(key=lambda row: -max(abs(row["level_db"]), abs(row.get("reverse_level_db") or 0.0)))
-        caption = f"Change of {what} by a step of one parameter of {of}"
+        caption = f"Change of {quantity} by a step of one parameter of {place}"
         yield from table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
 
 
@@ -885,7 +912,7 @@ def _content(document: Document) -> Iterator[str | Table]:
         _PAIR_COLUMNS, document["gear_pairs"], "Gear pairs, means over the mesh period; misaligned as unmodified flanks"
     )
     yield from table_of(_CAUSE_COLUMNS, document["gear_pairs"], "Misalignment of the flanks, open towards +z [µrad]")
-    yield from _taken(document)
+    yield from _misalignments(document)
     rows = [
         {"torque_n_m": point["torque_n_m"], "pair": f"{pair['driver']} → {pair['driven']}"} | pair
         for point in document.get("over_torque", ())

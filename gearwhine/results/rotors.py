@@ -30,30 +30,30 @@ def _in_rpm(speed: float | None) -> float | None:
 
 
 def _strain_shares(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
-    """Shares of each whirl mode's strain energy, in the mean of a cycle, a row for each mode, by kind of part."""
-    one, whirl = row
-    shares = whirl.strain_energy_shares(one.rotor.joints)
+    """Return the shares in each whirl mode's strain energy by kind of part, mean over a cycle; a row for each mode."""
+    solved, whirl = row
+    shares = whirl.strain_energy_shares(solved.rotor.joints)
     parts = {"segment": shares.lengths, "bearing": shares.bearings}
-    pedestals = any(bearing.pedestal is not None for bearing in one.bearings)
+    pedestals = any(bearing.pedestal is not None for bearing in solved.bearings)
     return parts | ({"pedestal": shares.pedestals} if pedestals else {})
 
 
 def _most_strained(row: tuple["SolvedRotor", Any]) -> Any:
     """Part with the largest share of the strain energy of each whirl mode; None for a mode that strains nothing.
 
-    It stands at the one speed that terminal and report show: operation, or else the last of the sweep.
+    Only the speed that terminal and report show has it: operation, or else the last of the sweep.
     """
-    one, whirl = row
-    if whirl is not one.whirl[0 if one.operation is not None else -1]:
+    solved, whirl = row
+    if whirl is not solved.whirl[0 if solved.operation is not None else -1]:
         return ABSENT
-    held = [bearing.name for bearing in one.bearings]
+    bearing_names = [bearing.name for bearing in solved.bearings]
     names = {
-        "segment": [f"segment {number}" for number in range(1, len(one.rotor.segments) + 1)],
-        "bearing": held,
-        "pedestal": [f"pedestal of {name}" for name in held],
+        "segment": [f"segment {number}" for number in range(1, len(solved.rotor.segments) + 1)],
+        "bearing": bearing_names,
+        "pedestal": [f"pedestal of {name}" for name in bearing_names],
     }
     shares = _strain_shares(row)
-    found = []
+    most_strained = []
     for mode in range(len(shares["segment"])):
         parts = [
             (float(share), name)
@@ -61,8 +61,8 @@ def _most_strained(row: tuple["SolvedRotor", Any]) -> Any:
             for share, name in zip(of[mode], names[kind], strict=True)
         ]
         share, name = max(parts)
-        found.append({"part": name, "share": share} if share > 0.0 else None)
-    return found
+        most_strained.append({"part": name, "share": share} if share > 0.0 else None)
+    return most_strained
 
 
 def _strain(kind: str) -> Quantity:
@@ -78,17 +78,17 @@ def _strain(kind: str) -> Quantity:
 
 
 def _crossings(key: str, of: Any) -> tuple[Rows, Quantity]:
-    """Damped critical speeds of a rotor for one order, or why they are not known; ``of`` takes (rotor, crossings)."""
+    """Declare damped critical speeds of a rotor for one order, or why there are none; ``of`` returns both of a row."""
 
-    def known(whole: Any) -> list[tuple["SolvedRotor", Any]] | None:
-        one, found = of(whole)
-        return None if isinstance(found, str) else [(one, each) for each in found]
+    def rows(row: Any) -> list[tuple["SolvedRotor", Any]] | None:
+        solved, crossings = of(row)
+        return None if isinstance(crossings, str) else [(solved, crossing) for crossing in crossings]
 
-    def unknown(whole: Any) -> "Crossings | None":
-        found: Crossings = of(whole)[1]
-        return found if isinstance(found, str) else None
+    def reason(row: Any) -> "Crossings | None":
+        crossings: Crossings = of(row)[1]
+        return crossings if isinstance(crossings, str) else None
 
-    return Rows(key, known, CROSSING), Quantity(f"why_no_{key}", unknown)
+    return Rows(key, rows, CROSSING), Quantity(f"why_no_{key}", reason)
 
 
 CROSSING = (
@@ -98,7 +98,7 @@ CROSSING = (
     Quantity("log_decrement", lambda row: row[1].log_decrement),
     Quantity("margin", lambda row: abs(row[1].speed / row[0].operation) - 1.0 if row[0].operation else None),
 )
-"""Of a damped critical speed: the rotor, and the crossing of its Campbell diagram."""
+"""Quantities of a damped critical speed; a row is the solved rotor and the crossing of its Campbell diagram."""
 
 WHIRL = (
     Quantity("", lambda row: f"{row[0].rotor.name} at {row[1].speed * RPM:.6g} rpm", "whirl_state"),
@@ -121,16 +121,21 @@ WHIRL = (
     _strain("bearing"),
     _strain("pedestal"),
 )
-"""Of the rotor and its whirl modes at one speed."""
+"""Quantities of whirl at one speed; a row is the solved rotor and its whirl modes."""
 
 _STEPS = ("campbell_step", "whirl_branch")
 CAMPBELL = (
     Quantity(
-        "speed_rpm", lambda one: one.campbell.speeds * RPM, "campbell_speed", _STEPS[:1], "rpm", "speed of the rotor"
+        "speed_rpm",
+        lambda solved: solved.campbell.speeds * RPM,
+        "campbell_speed",
+        _STEPS[:1],
+        "rpm",
+        "speed of the rotor",
     ),
     Quantity(
         "",
-        lambda one: one.campbell.frequencies / HERTZ,
+        lambda solved: solved.campbell.frequencies / HERTZ,
         "campbell_frequency",
         _STEPS,
         "Hz",
@@ -138,7 +143,7 @@ CAMPBELL = (
     ),
     Quantity(
         "",
-        lambda one: one.campbell.log_decrements,
+        lambda solved: solved.campbell.log_decrements,
         "campbell_log_decrement",
         _STEPS,
         "1",
@@ -146,7 +151,7 @@ CAMPBELL = (
     ),
     Quantity(
         "",
-        lambda one: one.campbell.direction,
+        lambda solved: solved.campbell.direction,
         "campbell_direction",
         _STEPS,
         "1",
@@ -154,18 +159,18 @@ CAMPBELL = (
     ),
     Quantity(
         "",
-        lambda one: one.campbell.axial_share,
+        lambda solved: solved.campbell.axial_share,
         "campbell_axial_share",
         _STEPS,
         "1",
         "share of motion along the axis in the kinetic energy of whirl",
     ),
-    Quantity("unstable_from_rpm", lambda one: _in_rpm(one.campbell.unstable_from)),
-    Quantity("proved_at_rpm", lambda one: one.campbell.speeds[one.campbell.proved] * RPM),
-    *_crossings("critical_speeds", lambda one: (one, one.crossings)),
+    Quantity("unstable_from_rpm", lambda solved: _in_rpm(solved.campbell.unstable_from)),
+    Quantity("proved_at_rpm", lambda solved: solved.campbell.speeds[solved.campbell.proved] * RPM),
+    *_crossings("critical_speeds", lambda solved: (solved, solved.crossings)),
     Rows(
         "orders",
-        lambda one: [(one, order, found) for order, found in one.orders.items()],
+        lambda solved: [(solved, order, crossings) for order, crossings in solved.orders.items()],
         (
             Quantity("order", lambda row: row[1]),
             *_crossings("critical_speeds", lambda row: (row[0], row[2])),
@@ -191,8 +196,8 @@ def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
     operation = row[0].operation
     if not operation:
         return None
-    found = characteristic_frequencies(_loaded(row).bearing.rows[0], operation)
-    return {name: frequency / HERTZ for name, frequency in found.named().items()}
+    frequencies = characteristic_frequencies(_loaded(row).bearing.rows[0], operation)
+    return {name: frequency / HERTZ for name, frequency in frequencies.named().items()}
 
 
 ROLLING = (
@@ -226,25 +231,25 @@ ROLLING = (
     Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
     Quantity("residual", lambda row: _loaded(row).residual),
 )
-"""Of a rotor and the name of one of its rolling bearings, under its load."""
+"""Quantities of a rolling bearing under its load; a row is the solved rotor and the name of the bearing."""
 
 _PLANE = Quantity("", lambda _: ["x", "y"], "plane", ("plane",), common=True)
 _SAG = ("static_step",)
 STATIC = (
-    Quantity("gravity_m_per_s2", lambda one: one.weight.deflection.gravity),
+    Quantity("gravity_m_per_s2", lambda solved: solved.weight.deflection.gravity),
     Rows(
         "forces",
-        lambda one: one.weight.forces,
+        lambda solved: solved.weight.forces,
         (
             Quantity("at_m", lambda force: force.at),
             Quantity("force_n", lambda force: [force.x, force.y, force.z]),
         ),
     ),
-    Quantity("bearings_at_rpm", lambda one: None if one.rest_speed is None else _in_rpm(one.weight.speed)),
+    Quantity("bearings_at_rpm", lambda solved: None if solved.rest_speed is None else _in_rpm(solved.weight.speed)),
     Rows(
         "bearings",
-        lambda one: list(
-            zip(one.weight.deflection.bearings, one.weight.deflection.bearing_loads, strict=True),
+        lambda solved: list(
+            zip(solved.weight.deflection.bearings, solved.weight.deflection.bearing_loads, strict=True),
         ),
         (
             Quantity("name", lambda row: row[0], heading="bearing carries"),
@@ -252,12 +257,12 @@ STATIC = (
             Quantity("moment_n_m", lambda row: row[1][3:]),
         ),
     ),
-    Quantity("largest_deflection_m", lambda one: one.weight.largest[0]),
-    Quantity("largest_deflection_at_m", lambda one: one.weight.largest[1]),
-    Quantity("", lambda one: one.weight.places, "static_place", _SAG, "m", "distance from the rotor's left end"),
+    Quantity("largest_deflection_m", lambda solved: solved.weight.largest[0]),
+    Quantity("largest_deflection_at_m", lambda solved: solved.weight.largest[1]),
+    Quantity("", lambda solved: solved.weight.places, "static_place", _SAG, "m", "distance from the rotor's left end"),
     Quantity(
         "",
-        lambda one: one.weight.displacement,
+        lambda solved: solved.weight.displacement,
         "static_deflection",
         ("plane", *_SAG),
         "m",
@@ -296,7 +301,7 @@ PROBE = (
     Quantity("operation_amplitude_m", lambda row: None if row[1] is None else np.abs(row[1].amplitude[0])),
     Quantity("operation_phase_lag_deg", lambda row: None if row[1] is None else np.degrees(row[1].phase_lag[0])),
 )
-"""Of a probe: its reading over speed, and at operation."""
+"""Quantities of a probe; a row is its reading over speed, and the one at operation."""
 
 
 def _readings(response: Any) -> list[tuple[Any, Any]]:
@@ -305,7 +310,7 @@ def _readings(response: Any) -> list[tuple[Any, Any]]:
 
 
 def _range(unit: str, of: Any) -> tuple[Quantity, Quantity]:
-    """Declare the ends of the abscissa of curves that the file holds."""
+    """Declare the ends of the abscissa of a response's curves."""
     return Quantity(f"from_{unit}", lambda solved: of(solved)[0]), Quantity(f"to_{unit}", lambda solved: of(solved)[-1])
 
 
@@ -382,7 +387,7 @@ TORSION_PROBE = (
     Quantity("largest_torque_n_m", lambda reading: reading.largest_torque[0]),
     Quantity("largest_torque_at_hz", lambda reading: reading.largest_torque[1] / HERTZ),
 )
-"""Of a probe: angle and torque over frequency."""
+"""Angle and torque at a probe over frequency."""
 
 TORSION = (
     *_range("hz", lambda solved: solved.response.frequencies / HERTZ),
@@ -393,14 +398,14 @@ TORSION = (
     Quantity("largest_torque_at_m", lambda solved: solved.worst[1]),
     Quantity("largest_torque_at_hz", lambda solved: solved.worst[2] / HERTZ),
 )
-"""Torsional response to torques that swing."""
+"""Torsional response to harmonic torques."""
 
 
 def _rest_strain(kind: str, place: int) -> Quantity:
     """Declare the shares of one kind of part in the strain energy of planar modes."""
     return Quantity(
         "",
-        lambda one: one.lateral.strain_energy_shares(one.rotor.joints)[place],
+        lambda solved: solved.lateral.strain_energy_shares(solved.rotor.joints)[place],
         f"rotor_{kind}_strain_share",
         ("lateral_mode", f"strained_{kind}"),
         "1",
@@ -412,7 +417,7 @@ def _critical_speed_map(whirl: str, direction: int) -> Quantity:
     """Critical speeds over the stiffness of all bearings, in one sense of whirl."""
     return Quantity(
         f"{whirl}_critical_speeds_rpm",
-        lambda found: found.speeds * RPM if found.direction == direction else ABSENT,
+        lambda speed_map: speed_map.speeds * RPM if speed_map.direction == direction else ABSENT,
         "map_critical_speed",
         ("map_step", "map_curve"),
         "rpm",
@@ -423,7 +428,7 @@ def _critical_speed_map(whirl: str, direction: int) -> Quantity:
 STIFFNESS_MAP = (
     Quantity(
         "stiffness_n_per_m",
-        lambda found: found.stiffnesses,
+        lambda speed_map: speed_map.stiffnesses,
         "map_stiffness",
         ("map_step",),
         "N/m",
@@ -435,13 +440,13 @@ STIFFNESS_MAP = (
 )
 
 ROTOR = (
-    Quantity("name", lambda one: one.rotor.name, "rotor", heading="rotor"),
-    Quantity("mass_kg", lambda one: one.rotor.mass, heading="mass [kg]", shown=".3f"),
-    Quantity("length_m", lambda one: one.rotor.length),
-    Quantity("bearings", lambda one: [bearing.name for bearing in one.bearings]),
+    Quantity("name", lambda solved: solved.rotor.name, "rotor", heading="rotor"),
+    Quantity("mass_kg", lambda solved: solved.rotor.mass, heading="mass [kg]", shown=".3f"),
+    Quantity("length_m", lambda solved: solved.rotor.length),
+    Quantity("bearings", lambda solved: [bearing.name for bearing in solved.bearings]),
     Quantity(
         "",
-        lambda one: one.rest.frequencies / HERTZ,
+        lambda solved: solved.rest.frequencies / HERTZ,
         "rotor_rest_frequency",
         ("rest_mode",),
         "Hz",
@@ -449,14 +454,14 @@ ROTOR = (
     ),
     Quantity(
         "lateral_hz",
-        lambda one: one.rest.frequencies[one.lateral_at_rest] / HERTZ,
+        lambda solved: solved.rest.frequencies[solved.lateral_at_rest] / HERTZ,
         heading="bending at rest [Hz]",
         shown=".1f",
     ),
-    Quantity("lateral_axial_share", lambda one: one.rest.axial_share[one.lateral_at_rest]),
+    Quantity("lateral_axial_share", lambda solved: solved.rest.axial_share[solved.lateral_at_rest]),
     Quantity(
         "torsional_hz",
-        lambda one: one.torsional.frequencies / HERTZ,
+        lambda solved: solved.torsional.frequencies / HERTZ,
         "rotor_torsional_frequency",
         ("torsional_mode",),
         "Hz",
@@ -464,11 +469,11 @@ ROTOR = (
         heading="torsion [Hz]",
         shown=".1f",
     ),
-    Quantity("axial_hz", lambda one: one.axial / HERTZ, heading="along the axis [Hz]", shown=".1f"),
-    Quantity("", lambda one: one.places, "rotor_place", ("place",), "m", "distance from the rotor's left end"),
+    Quantity("axial_hz", lambda solved: solved.axial / HERTZ, heading="along the axis [Hz]", shown=".1f"),
+    Quantity("", lambda solved: solved.places, "rotor_place", ("place",), "m", "distance from the rotor's left end"),
     Quantity(
         "",
-        lambda one: one.lateral.evaluate(one.places)[0],
+        lambda solved: solved.lateral.evaluate(solved.places)[0],
         "rotor_lateral_shape",
         ("lateral_mode", "place"),
         "kg-0.5",
@@ -476,7 +481,7 @@ ROTOR = (
     ),
     Quantity(
         "",
-        lambda one: one.torsional.evaluate(one.places),
+        lambda solved: solved.torsional.evaluate(solved.places),
         "rotor_torsional_shape",
         ("torsional_mode", "place"),
         "kg-0.5 m-1",
@@ -484,12 +489,12 @@ ROTOR = (
     ),
     _rest_strain("segment", 0),
     _rest_strain("bearing", 1),
-    Quantity("rest_bearings_at_rpm", lambda one: _in_rpm(one.rest_speed)),
-    Quantity("operation_rpm", lambda one: _in_rpm(one.operation)),
-    Rows("whirl", lambda one: [(one, whirl) for whirl in one.whirl], WHIRL, "whirl_state"),
+    Quantity("rest_bearings_at_rpm", lambda solved: _in_rpm(solved.rest_speed)),
+    Quantity("operation_rpm", lambda solved: _in_rpm(solved.operation)),
+    Rows("whirl", lambda solved: [(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
     Quantity(
         "",
-        lambda one: one.whirl_deflection,
+        lambda solved: solved.whirl_deflection,
         "rotor_whirl_deflection",
         ("whirl_mode", "place"),
         "kg-0.5",
@@ -497,75 +502,75 @@ ROTOR = (
     ),
     Quantity(
         "",
-        lambda one: one.whirl_moment,
+        lambda solved: solved.whirl_moment,
         "rotor_whirl_moment",
         ("whirl_mode", "place"),
         "N kg-0.5",
         "largest bending moment over a cycle of the whirl modes at operation, of unit norm in mass",
     ),
     Quantity(
-        "critical_speeds_rpm", lambda one: one.critical.speeds * RPM, heading="critical speeds [rpm]", shown=".0f"
+        "critical_speeds_rpm", lambda solved: solved.critical.speeds * RPM, heading="critical speeds [rpm]", shown=".0f"
     ),
-    Quantity("critical_directions", lambda one: one.critical.direction.round(6)),
-    Quantity("critical_axial_share", lambda one: one.critical.axial_share),
-    Quantity("critical_margins", lambda one: one.margins),
-    Part("campbell", lambda one: None if one.campbell is None else one, CAMPBELL),
-    Part("static", lambda one: ABSENT if isinstance(one.weight, str) else one, STATIC),
+    Quantity("critical_directions", lambda solved: solved.critical.direction.round(6)),
+    Quantity("critical_axial_share", lambda solved: solved.critical.axial_share),
+    Quantity("critical_margins", lambda solved: solved.margins),
+    Part("campbell", lambda solved: None if solved.campbell is None else solved, CAMPBELL),
+    Part("static", lambda solved: ABSENT if isinstance(solved.weight, str) else solved, STATIC),
     Part(
         "static",
-        lambda one: one if isinstance(one.weight, str) else ABSENT,
-        (Quantity("bearings", lambda one: None), Quantity("why_not", lambda one: one.weight)),
+        lambda solved: solved if isinstance(solved.weight, str) else ABSENT,
+        (Quantity("bearings", lambda solved: None), Quantity("why_not", lambda solved: solved.weight)),
     ),
-    Part("unbalance_response", lambda one: one.response, RESPONSE),
-    Rows("rolling_bearings", lambda one: [(one, name) for name in one.rolling], ROLLING, "rolling_bearing"),
+    Part("unbalance_response", lambda solved: solved.response, RESPONSE),
+    Rows("rolling_bearings", lambda solved: [(solved, name) for name in solved.rolling], ROLLING, "rolling_bearing"),
     Quantity(
-        "damping", lambda one: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
+        "damping", lambda solved: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
     ),
-    Part("torsional_response", lambda one: one.torsion, TORSION),
-    Part("stiffness_map", lambda one: one.stiffness_map, STIFFNESS_MAP),
-    Part("certificate", lambda one: one.rest.certificate, COUNT_CERTIFICATE),
+    Part("torsional_response", lambda solved: solved.torsion, TORSION),
+    Part("stiffness_map", lambda solved: solved.stiffness_map, STIFFNESS_MAP),
+    Part("certificate", lambda solved: solved.rest.certificate, COUNT_CERTIFICATE),
 )
-"""Of one rotor on grounded bearings."""
+"""Quantities of one rotor on grounded bearings."""
 
 
-def _numbers(dimension: str, of: Any, what: str) -> Quantity:
-    """Numbers along the modes of the rotor that has most, from 1."""
+def _numbers(dimension: str, of: Any, kind: str) -> Quantity:
+    """Declare the numbers of modes, from 1; as many as the rotor with most modes has."""
 
-    def taken(solved: Any) -> Any:
+    def numbers(solved: Any) -> Any:
         count = max((len(modes) for modes in map(of, solved) if modes is not None), default=0)
         return np.arange(1, count + 1) if count else None
 
-    return Quantity("", taken, dimension, (dimension,), "1", f"number of the {what}")
+    return Quantity("", numbers, dimension, (dimension,), "1", f"number of the {kind}")
 
 
 ROTORS = (
-    _numbers("rest_mode", lambda one: one.rest.frequencies, "lateral mode at rest"),
-    _numbers("lateral_mode", lambda one: one.lateral.frequencies, "lateral mode"),
-    _numbers("torsional_mode", lambda one: one.torsional.frequencies, "torsional mode"),
-    _numbers("whirl_mode", lambda one: one.whirl_deflection, "whirl mode"),
+    _numbers("rest_mode", lambda rotor: rotor.rest.frequencies, "lateral mode at rest"),
+    _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode"),
+    _numbers("torsional_mode", lambda rotor: rotor.torsional.frequencies, "torsional mode"),
+    _numbers("whirl_mode", lambda rotor: rotor.whirl_deflection, "whirl mode"),
     Rows("rotors", lambda solved: solved, ROTOR, "rotor"),
 )
-"""Of all rotors of a case."""
+"""Quantities of all rotors of a case."""
 
 
 def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
     """Return the rotors as the command's JSON, with warnings."""
     warnings = [
-        warning("rotating damping", _ROTATING.format(one.rotor.name), rotor=one.rotor.name)
-        for one in solved
-        if one.damps_across
+        warning("rotating damping", _ROTATING.format(rotor.rotor.name), rotor=rotor.rotor.name)
+        for rotor in solved
+        if rotor.damps_across
     ]
     return document_of(ROTORS, solved) | {"warnings": warnings}
 
 
 _MOST = 12  # rows of a table
-_MAP_ROWS = 5  # of the critical-speed map
-_REACH = 2.0  # critical speeds beyond so many times the speed of operation are only counted
-_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # parts of the kinetic energy: of a motion called axial, and worth a word
+_MAP_ROWS = 5  # rows of the critical-speed map
+_REACH = 2.0  # multiple of the speed of operation above which critical speeds are only counted
+_MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # axial share of kinetic energy from which a motion is axial, or partly so
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
-_ROUNDING = 1e-9  # a torque that is no more than this part of the largest is none
-_SAME = 1e-9  # two frequencies nearer than this part of them are one that both planes have
+_ROUNDING = 1e-9  # part of the largest torque up to which a torque counts as zero
+_SAME = 1e-9  # relative difference up to which two frequencies are one of both planes
 
 
 def report(document: Document) -> Section:
@@ -615,8 +620,8 @@ def _content(rotor: Document) -> Iterator[str | Table]:
         yield from table_of(_PROBES, response["probes"][:_MOST], "Response to unbalance and bow")
     if response := rotor["torsional_response"]:
         yield from _torsion(response)
-    if found := rotor["stiffness_map"]:
-        yield from _map(found)
+    if speed_map := rotor["stiffness_map"]:
+        yield from _map(speed_map)
     if campbell := rotor["campbell"]:
         yield _stability(campbell)
     certificate = rotor["certificate"]
@@ -631,9 +636,9 @@ def _at_rest(rotor: Document) -> tuple[Table, ...]:
     bending = list(_bending(rotor["lateral_hz"], rotor["lateral_axial_share"]))
     torsion = [(hertz, "torsion" if hertz > 0.0 else "turns freely") for hertz in rotor["torsional_hz"]]
     axial = [(hertz, "axial") for hertz in rotor["axial_hz"]]
-    known = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
-    found = sorted([*bending, *torsion, *axial], key=lambda row: row[0])
-    rows = [{"frequency_hz": hertz, "kind": kind} for hertz, kind in found if hertz <= known]
+    highest = min(rows[-1][0] for rows in (bending, torsion) if rows) if bending or torsion else 0.0
+    by_frequency = sorted([*bending, *torsion, *axial], key=lambda row: row[0])
+    rows = [{"frequency_hz": hertz, "kind": kind} for hertz, kind in by_frequency if hertz <= highest]
     columns = (Column("frequency [Hz]", "frequency_hz", ".5g"), Column("kind", "kind"))
     return table_of(columns, rows[:_MOST], f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}")
 
@@ -709,7 +714,9 @@ def _critical_speeds(rotor: Document) -> Iterator[str | Table]:
         if campbell is not None:
             yield f"No damped critical speeds: {campbell['why_no_critical_speeds']}"
     else:
-        rows = [one | {"way": _turning(campbell) * one["direction"]} for one in campbell["critical_speeds"]]
+        rows = [
+            crossing | {"way": _turning(campbell) * crossing["direction"]} for crossing in campbell["critical_speeds"]
+        ]
         yield from table_of(_CRITICAL_COLUMNS, rows[:_MOST], f"Critical speeds from {_span(campbell)}")
         if not rows:
             undamped = rotor["critical_speeds_rpm"]
@@ -721,7 +728,7 @@ def _critical_speeds(rotor: Document) -> Iterator[str | Table]:
 
 
 def _undamped(rotor: Document) -> Iterator[str | Table]:
-    """Undamped critical speeds, and how far they are from the speed of operation; with one only the first beyond."""
+    """Yield undamped critical speeds and their margins; of those far above operation only the first."""
     speeds, margins = rotor["critical_speeds_rpm"], rotor["critical_margins"]
     values = zip(
         speeds,
@@ -730,7 +737,7 @@ def _undamped(rotor: Document) -> Iterator[str | Table]:
         [None] * len(speeds) if margins is None else margins,
         strict=True,
     )
-    rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), one, strict=True)) for one in values]
+    rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), row, strict=True)) for row in values]
     reach = len(rows) if margins is None else sum(margin <= _REACH - 1.0 for margin in margins) + 1
     yield from table_of(_CRITICAL_COLUMNS, rows[: min(reach, _MOST)], "Undamped critical speeds")
     yield from _nearest(rows)
@@ -741,7 +748,7 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
     # Circular backward whirl takes no work from unbalance.
     excited = [row for row in rows if row["margin"] is not None and row["way"] >= -1.0 + _PLANAR]
     if excited:
-        row = min(excited, key=lambda one: (abs(one["margin"]), abs(one["speed_rpm"])))
+        row = min(excited, key=lambda crossing: (abs(crossing["margin"]), abs(crossing["speed_rpm"])))
         speed, margin = abs(row["speed_rpm"]), row["margin"]
         yield f"Of those that unbalance excites, {speed:.5g} rpm is nearest: {_beside(margin)} operation"
 
@@ -749,13 +756,13 @@ def _nearest(rows: Sequence[Document]) -> Iterator[str]:
 def _orders(campbell: Document) -> Iterator[str | Table]:
     """Yield the crossings of whirl frequencies with other multiples of the speed of rotation."""
     rows: list[dict[str, Any]] = []
-    for one in campbell["orders"]:
-        order = f"{one['order']:g}×"
-        if one["critical_speeds"] is None:
-            rows.append({"order": order, "speed": one["why_no_critical_speeds"], "whirl": ""})
-        for each in one["critical_speeds"] or ():
-            whirl = _whirl_name(_turning(campbell) * each["direction"], each)
-            rows.append({"order": order, "speed": f"{abs(each['speed_rpm']):.5g}", "whirl": whirl})
+    for entry in campbell["orders"]:
+        order = f"{entry['order']:g}×"
+        if entry["critical_speeds"] is None:
+            rows.append({"order": order, "speed": entry["why_no_critical_speeds"], "whirl": ""})
+        for crossing in entry["critical_speeds"] or ():
+            whirl = _whirl_name(_turning(campbell) * crossing["direction"], crossing)
+            rows.append({"order": order, "speed": f"{abs(crossing['speed_rpm']):.5g}", "whirl": whirl})
     columns = (Column("order", "order"), Column("speed [rpm]", "speed"), Column("whirl", "whirl"))
     yield from table_of(columns, rows[: 2 * _MOST], f"Other orders from {_span(campbell)}")
     if not rows:
@@ -767,7 +774,7 @@ def _weight(static: Document) -> Iterator[str | Table]:
     if static["bearings"] is None:
         yield f"No static deflection: {static['why_not']}"
         return
-    along = any(one["load_n"][2] for one in static["bearings"])
+    along = any(bearing["load_n"][2] for bearing in static["bearings"])
     columns = (
         Column("bearing carries", "name"),
         *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xyz" if along else "xy")),
@@ -823,10 +830,10 @@ def _torsion(response: Document) -> Iterator[str | Table]:
     )
 
 
-def _map(found: Document) -> tuple[Table, ...]:
+def _map(speed_map: Document) -> tuple[Table, ...]:
     """Critical speeds from the softest to the stiffest bearings; the rest is in the files."""
-    whirl = "forward" if "forward_critical_speeds_rpm" in found else "backward"
-    stiffnesses, speeds = found["stiffness_n_per_m"], found[f"{whirl}_critical_speeds_rpm"]
+    whirl = "forward" if "forward_critical_speeds_rpm" in speed_map else "backward"
+    stiffnesses, speeds = speed_map["stiffness_n_per_m"], speed_map[f"{whirl}_critical_speeds_rpm"]
     chosen = sorted({round(part * (len(stiffnesses) - 1) / (_MAP_ROWS - 1)) for part in range(_MAP_ROWS)})
     rows = [
         {
@@ -855,7 +862,7 @@ def _whirl_name(direction: float, row: Document) -> str:
 
 
 def _with_axial(share: float) -> str:
-    """Return the axial share of a lateral motion, where it is worth a word."""
+    """Return the axial share of a lateral motion in words; empty where it is small."""
     return f", {100.0 * share:.0f} % along the axis" if share >= _PARTLY_AXIAL else ""
 
 

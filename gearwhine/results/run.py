@@ -60,7 +60,7 @@ NAMED = (
     Quantity("order", lambda row: row[1].order),
     Quantity("near_mode", _near_mode),
 )
-"""Of a peak, its name and the coupled modes."""
+"""Quantities of a named peak; a row is the peak, its name and the coupled modes."""
 
 CONTRIBUTION = (
     Quantity("name", lambda part: part.name),
@@ -82,7 +82,7 @@ TRACED = (
         ),
     ),
 )
-"""Of a peak, its traced line and the coupled modes."""
+"""Quantities of a traced peak; a row is the peak, its traced line and the coupled modes."""
 
 
 def _peak(key: str) -> tuple[Quantity, Quantity]:
@@ -123,7 +123,7 @@ SENSOR = (
         _sidebands("m_per_s2"),
     ),
 )
-"""Of the transient, its signature where lines are traced, and the name of a sensor."""
+"""Quantities of a sensor; a row is the transient, its signature where lines are traced, and the sensor's name."""
 
 
 def _friction(row: Any) -> Any:
@@ -132,7 +132,7 @@ def _friction(row: Any) -> Any:
 
 
 def _contact(row: Any) -> str:
-    """Name of the contact that the mean load presses."""
+    """Return the name of the contact that the mean load presses."""
     return str(row[0].machine.system.contacts[row[2]].name)
 
 
@@ -159,16 +159,16 @@ PAIR = (
         "friction",
         _friction,
         (
-            Quantity("mean_power_w", lambda found: found[:, 1].mean()),
-            Quantity("peak_power_w", lambda found: found[:, 1].max()),
-            Quantity("peak_force_n", lambda found: np.abs(found[:, 0]).max()),
+            Quantity("mean_power_w", lambda friction: friction[:, 1].mean()),
+            Quantity("peak_power_w", lambda friction: friction[:, 1].max()),
+            Quantity("peak_force_n", lambda friction: np.abs(friction[:, 0]).max()),
         ),
     ),
     Quantity("back_flank_peak_force_n", lambda row: row[0].back_flank_peak(row[3])),
     Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _name, NAMED))),
     Rows("sidebands", _force_sidebands, _sidebands("n")),
 )
-"""Of the transient, its signature, the number of the contact that is pressed, and the number of the gear pair."""
+"""Quantities of a gear pair; a row is the transient, its signature, the loaded contact's number and the pair's."""
 MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
 
 CONVENTIONS = {
@@ -219,11 +219,11 @@ ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lo
 
 
 def _trusted(row: Any) -> dict[str, Any]:
-    """Up to which frequency a spectrum of the transient is complete: beyond it modes are missing."""
+    """Return the frequency up to which a spectrum of the transient is complete [Hz]: above it modes are missing."""
     return {"trusted_below_hz": float(row[0].trusted_limit)}
 
 
-def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[Quantity, ...]:
+def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tuple[Quantity, ...]:
     """Peak amplitudes and phases of the spectra of like signals."""
 
     def of_each(row: Any, part: str) -> dict[str, Any] | None:
@@ -231,14 +231,14 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[
 
     def attributes(row: Any) -> dict[str, Any]:
         first, sampling = next(iter(of(row[0]).values())), row[0].record.sampling
-        told: dict[str, Any] = {"window": first.window} | _trusted(row)
+        values: dict[str, Any] = {"window": first.window} | _trusted(row)
         if sampling.is_long:
-            told |= {
+            values |= {
                 "averages": first.averages,
                 "averaged_samples": sampling.stretch,
                 "averaging": "root mean square over stretches of whole revolutions, the last of the record",
             }
-        return told
+        return values
 
     return (
         Quantity(
@@ -254,7 +254,7 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[
             name,
             (dimension, "frequency"),
             unit,
-            f"peak amplitude of {what}",
+            f"peak amplitude of {quantity}",
             attributes=attributes,
         ),
         Quantity(
@@ -263,22 +263,22 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, what: str) -> tuple[
             f"{name}_phase",
             (dimension, "frequency"),
             "rad",
-            f"phase of {what}",
+            f"phase of {quantity}",
             attributes=_trusted,
         ),
     )
 
 
-def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, what: str) -> Quantity:
+def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quantity: str) -> Quantity:
     """Peak amplitudes of the loads on bearings; ``rows`` of x, y, z and the moments about x and y."""
     return Quantity(
         "",
-        lambda found: {label: load[rows] for label, load in found[1].bearing_amplitudes(found[0]).items()} or None,
+        lambda row: {label: load[rows] for label, load in row[1].bearing_amplitudes(row[0]).items()} or None,
         f"bearing_{name}_spectrum",
         ("bearing", *axis, "frequency"),
         unit,
-        f"peak amplitude of the {what}",
-        attributes=lambda found: {"window": next(iter(found[1].bearing_spectra.values())).window} | _trusted(found),
+        f"peak amplitude of the {quantity}",
+        attributes=lambda row: {"window": next(iter(row[1].bearing_spectra.values())).window} | _trusted(row),
     )
 
 
@@ -316,12 +316,12 @@ LINES = (
         "part of a bearing's force in the line",
     ),
 )
-"""Of the lines of all sensors with their parts."""
+"""Quantities of the lines of all sensors with their parts."""
 
 
 def _modal_spectrum(row: Any) -> Any:
-    found = row[0].modal_spectrum()
-    return None if found is None else (*found, float(row[0].trusted_limit))
+    spectrum = row[0].modal_spectrum()
+    return None if spectrum is None else (*spectrum, float(row[0].trusted_limit))
 
 
 MODAL = (
@@ -337,7 +337,7 @@ MODAL = (
         attributes=lambda row: {"window": row[1].window, "trusted_below_hz": row[2]},
     ),
 )
-"""Of the names of modal coordinates, their spectrum, and the frequency up to which it is complete [Hz]."""
+"""Modal spectrum; a row is the coordinates' names, their spectrum, and the frequency up to which it is whole [Hz]."""
 
 HOUSING_LINES = (
     Quantity("", lambda row: row[0], "housing_line", ("housing_line",), *_HERTZ_LONG),
@@ -352,7 +352,7 @@ HOUSING_LINES = (
         attributes=lambda row: {"window": row[2]},
     ),
 )
-"""Of frequencies up to where the modes are complete, the lines there, and their window: operating shapes follow."""
+"""Spectrum of the housing modes, for operating shapes; a row is frequencies up to the limit, lines and window."""
 
 TRANSIENT: Fields = (
     Quantity("speed_rpm", lambda row: row[0].speed * RPM),
@@ -382,7 +382,7 @@ TRANSIENT: Fields = (
             *SIGNATURE,
             Quantity(
                 "",
-                lambda row: next((one.frequencies for one in row[1].bearing_spectra.values()), None),
+                lambda row: next((spectrum.frequencies for spectrum in row[1].bearing_spectra.values()), None),
                 "frequency",
                 ("frequency",),
                 *_HERTZ_LONG,
@@ -398,7 +398,7 @@ TRANSIENT: Fields = (
         ),
     ),
 )
-"""Of the transient and, where lines are traced, their signature."""
+"""Quantities of a transient; a row is the transient and, where lines are traced, their signature."""
 
 
 def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | None" = None) -> dict[str, Any]:
@@ -417,15 +417,17 @@ ORDER = (
 )
 
 
-def _run_table(name: str, tables: str, dimensions: tuple[str, ...], what: str) -> Quantity:
+def _run_table(name: str, tables: str, dimensions: tuple[str, ...], quantity: str) -> Quantity:
     return Quantity(
         "",
-        lambda found: np.array([one.amplitude for one in getattr(found, tables).values()], dtype=np.float32),
+        lambda signature: np.array(
+            [table.amplitude for table in getattr(signature, tables).values()], dtype=np.float32
+        ),
         name,
         ("run_signal", *dimensions),
         "",
-        f"peak amplitude {what}",
-        attributes=lambda found: {"window": "hann"},
+        f"peak amplitude {quantity}",
+        attributes=lambda signature: {"window": "hann"},
     )
 
 
@@ -434,35 +436,52 @@ def _first(tables: Any) -> Any:
 
 
 RUN_SIGNATURE = (
-    Quantity("from_rpm", lambda found: found.speeds_rpm[0]),
-    Quantity("to_rpm", lambda found: found.speeds_rpm[-1]),
-    Quantity("stretches", lambda found: len(found.speeds_rpm)),
-    Quantity("orders", lambda found: found.highest()),
-    Quantity("", lambda found: list(found.spectra), "run_signal", ("run_signal",)),
-    Quantity(
-        "", lambda found: found.speeds_rpm, "run_speed", ("run_speed",), "rpm", "speed in the middle of each stretch"
-    ),
-    Quantity("", lambda found: _first(found.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG),
+    Quantity("from_rpm", lambda signature: signature.speeds_rpm[0]),
+    Quantity("to_rpm", lambda signature: signature.speeds_rpm[-1]),
+    Quantity("stretches", lambda signature: len(signature.speeds_rpm)),
+    Quantity("orders", lambda signature: signature.highest()),
+    Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
     Quantity(
         "",
-        lambda found: 60.0 * _first(found.orders).speeds,
+        lambda signature: signature.speeds_rpm,
+        "run_speed",
+        ("run_speed",),
+        "rpm",
+        "speed in the middle of each stretch",
+    ),
+    Quantity(
+        "", lambda signature: _first(signature.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG
+    ),
+    Quantity(
+        "",
+        lambda signature: 60.0 * _first(signature.orders).speeds,
         "order_speed",
         ("order_speed",),
         "rpm",
         "speed of the leading shaft over each window",
     ),
     Quantity(
-        "", lambda found: _first(found.orders).orders, "order", ("order",), "1", "cycles each turn of the leading shaft"
+        "",
+        lambda signature: _first(signature.orders).orders,
+        "order",
+        ("order",),
+        "1",
+        "cycles each turn of the leading shaft",
     ),
     Quantity(
-        "", lambda found: list(found.units.values()), "run_unit", ("run_signal",), "", "unit of the signal's amplitudes"
+        "",
+        lambda signature: list(signature.units.values()),
+        "run_unit",
+        ("run_signal",),
+        "",
+        "unit of the signal's amplitudes",
     ),
     _run_table("run_spectrum", "spectra", ("run_speed", "run_frequency"), "of stretches along the run"),
     _run_table("run_orders", "orders", ("order_speed", "order"), "by order along the run"),
-    Quantity("", lambda found: list(found.named), "named_order", ("named_order",)),
+    Quantity("", lambda signature: list(signature.named), "named_order", ("named_order",)),
     Quantity(
         "",
-        lambda found: list(found.named.values()),
+        lambda signature: list(signature.named.values()),
         "run_order_number",
         ("named_order",),
         "1",
@@ -470,20 +489,20 @@ RUN_SIGNATURE = (
     ),
     Quantity(
         "",
-        lambda found: found.followed().astype(np.float32),
+        lambda signature: signature.followed().astype(np.float32),
         "run_order_amplitude",
         ("run_signal", "named_order", "order_speed"),
         "",
         "peak amplitude of a shaft's or a mesh's order along the run",
-        attributes=lambda found: {"window": "hann"},
+        attributes=lambda signature: {"window": "hann"},
     ),
 )
-"""Of spectra along a run and orders over its speed, of all signals."""
+"""Spectra along a run and orders over its speed, of all signals."""
 
 
-def run_signature_document(found: "RunSignature") -> dict[str, Any]:
+def run_signature_document(signature: "RunSignature") -> dict[str, Any]:
     """Return the orders of a run as the command's JSON: where each of them is highest."""
-    return document_of(RUN_SIGNATURE, found)
+    return document_of(RUN_SIGNATURE, signature)
 
 
 _MODAL = HistoryQuantity(
@@ -495,30 +514,30 @@ _MODAL = HistoryQuantity(
 class HistoryStream:
     """Histories of a transient, which are written piece by piece.
 
-    In single precision, seven digits, since there are many; times in double.
+    Histories have single precision, seven digits, since there are many; times have double precision.
     """
 
     solved: "SolvedTransient"
 
     def labels(self) -> Variables:
         """Coordinates: the names of the signals."""
-        found: Variables = {}
+        coordinates: Variables = {}
         for history, values in _recorded(self.solved.signals):
-            found |= history.coordinates(list(values))
-        return found
+            coordinates |= history.coordinates(list(values))
+        return coordinates
 
     def append_to(self, path: Path) -> None:
         """Append the histories to a file that holds their coordinates, one piece at a time."""
         record = self.solved.record
         with h5netcdf.File(path, "a") as file:
-            # As xarray does for whatever else is in the file.
+            # As xarray does for the file's other variables.
             beside = {"coordinates": "speed"} if "speed" in file.variables else {}
             file.dimensions["time"] = record.samples
             times = file.create_variable("time", ("time",), "f8", fillvalue=np.nan)
             times.attrs.update(_TIME)
             for history, _ in _recorded(self.solved.signals):
                 variable = file.create_variable(history.name, history.dimensions, "f4", fillvalue=np.float32(np.nan))
-                variable.attrs.update(self._told(history) | beside)
+                variable.attrs.update(self._attributes(history) | beside)
             done = 0
             for piece in record.pieces():
                 span = slice(done, done + len(piece.times))
@@ -529,26 +548,26 @@ class HistoryStream:
 
     def add_to(self, variables: Variables) -> None:
         """Add the histories in memory, as :meth:`append_to` writes them."""
-        times, found = [], {}  # type: list[Any], dict[str, list[Any]]
+        times, values_by_name = [], {}  # type: list[Any], dict[str, list[Any]]
         for piece in self.solved.record.pieces():
             times.append(piece.times)
             for history, values in _recorded(piece):
-                found.setdefault(history.name, []).append(np.array(list(values.values()), dtype=np.float32))
+                values_by_name.setdefault(history.name, []).append(np.array(list(values.values()), dtype=np.float32))
         variables["time"] = ("time", np.concatenate(times), dict(_TIME))
         for history, _ in _recorded(self.solved.signals):
             variables[history.name] = (
                 history.dimensions,
-                np.concatenate(found[history.name], axis=1),
-                self._told(history),
+                np.concatenate(values_by_name[history.name], axis=1),
+                self._attributes(history),
             )
 
-    def _told(self, history: HistoryQuantity) -> dict[str, Any]:
-        """Labels of a history; of one that was filtered also by how much."""
-        told: dict[str, Any] = {"units": history.unit, "long_name": history.what}
+    def _attributes(self, history: HistoryQuantity) -> dict[str, Any]:
+        """Return the attributes of a history; a filtered one also has its decimation and frequency limit."""
+        attributes: dict[str, Any] = {"units": history.unit, "long_name": history.what}
         sampling = self.solved.record.sampling
         if sampling.is_long:
-            told |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}
-        return told
+            attributes |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}
+        return attributes
 
 
 _TIME = {"units": "s", "long_name": "time from static equilibrium"}
@@ -556,9 +575,9 @@ _TIME = {"units": "s", "long_name": "time from static equilibrium"}
 
 def _recorded(signals: "Signals") -> list[tuple[HistoryQuantity, Any]]:
     """Return every recorded history with the values of each of its signals."""
-    found = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
-    found.append((_MODAL, signals.modal.coordinates))
-    return [(history, values) for history, values in found if values]
+    recorded = [(history, history.of(signals.histories)) for history in HISTORY_QUANTITIES]
+    recorded.append((_MODAL, signals.modal.coordinates))
+    return [(history, values) for history, values in recorded if values]
 
 
 _STEPS = {"newmark": "steps", "exact": "exact elements"}
@@ -634,8 +653,8 @@ def _basis_error(document: Document) -> list[str]:
     """Return lines on the modal truncation error in responses, the largest in each band."""
     parts = []
     for band in document.get("basis_error", ()):
-        worst = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
-        parts.append(f"{100.0 * worst:.2g} % up to {band['to_hz']:.0f} Hz")
+        largest = max((sensor["largest"] for sensor in band["sensors"]), default=0.0)
+        parts.append(f"{100.0 * largest:.2g} % up to {band['to_hz']:.0f} Hz")
     return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
 
 

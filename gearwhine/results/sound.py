@@ -33,11 +33,11 @@ _METHODS = {
 }
 _LISTED = 3  # faces, lines or microphones that a sentence lists, and lines listed for each microphone
 _TERMINAL_LINES = 12  # lines in the table of the terminal
-_BRIEF_LINES = 5  # the same beside another analysis
+_BRIEF_LINES = 5  # lines in that table beside another analysis
 _LEAST_LEFT_OUT = 1e-3  # part of the power from which lines left out are mentioned
 _MODE_NAME = "housing mode "
 _LOCAL = "local compliance"
-_LEAST_SHARE = 0.02  # of a power, from which a mode, bearing or face is listed
+_LEAST_SHARE = 0.02  # share of a power from which a mode, bearing or face is listed
 
 
 def _largest_error(error: "SourceError | None") -> float | None:
@@ -49,19 +49,22 @@ def _rms_error(error: "SourceError | None") -> float | None:
 
 
 SURFACE = (
-    Quantity("triangles", lambda one: sum(len(part.surface.triangles) for part in one.elements)),
-    Quantity("area_m2", lambda one: sum(part.surface.area for part in one.elements)),
-    Quantity("caps_m2", lambda one: one.cap_area),
-    Quantity("velocity_error", lambda one: one.transfer_error),
-    Quantity("resolved_below_hz", lambda one: one.highest_frequency if np.isfinite(one.highest_frequency) else None),
+    Quantity("triangles", lambda radiation: sum(len(part.surface.triangles) for part in radiation.elements)),
+    Quantity("area_m2", lambda radiation: sum(part.surface.area for part in radiation.elements)),
+    Quantity("caps_m2", lambda radiation: radiation.cap_area),
+    Quantity("velocity_error", lambda radiation: radiation.transfer_error),
+    Quantity(
+        "resolved_below_hz",
+        lambda radiation: radiation.highest_frequency if np.isfinite(radiation.highest_frequency) else None,
+    ),
 )
-"""Of the radiating surface."""
+"""Quantities of the radiating surface."""
 
 MODE = (
-    Quantity("number", lambda one: one.number, name="sound_mode", unit="1", long_name="number of the housing mode"),
+    Quantity("number", lambda mode: mode.number, name="sound_mode", unit="1", long_name="number of the housing mode"),
     Quantity(
         "frequency_hz",
-        lambda one: one.frequency_hz,
+        lambda mode: mode.frequency_hz,
         name="sound_mode_frequency",
         unit="Hz",
         long_name="natural frequency",
@@ -70,26 +73,26 @@ MODE = (
     ),
     Quantity(
         "radiation_efficiency",
-        lambda one: one.radiation_efficiency,
+        lambda mode: mode.radiation_efficiency,
         name="radiation_efficiency",
         unit="1",
         long_name="radiation efficiency of the mode at its natural frequency",
         heading="radiation efficiency",
         shown=".3g",
     ),
-    Quantity("faces", lambda one: {face: part for face, part in one.face_shares.items() if abs(part) > _LEAST_SHARE}),
-    Quantity("power_balance_db", lambda one: one.power_balance_db),
-    Quantity("interior_pressure", lambda one: one.interior_pressure),
+    Quantity("faces", lambda mode: {face: part for face, part in mode.face_shares.items() if abs(part) > _LEAST_SHARE}),
+    Quantity("power_balance_db", lambda mode: mode.power_balance_db),
+    Quantity("interior_pressure", lambda mode: mode.interior_pressure),
     Quantity(
         "known_source_error",
-        lambda one: _largest_error(one.known_source),
+        lambda mode: _largest_error(mode.known_source),
         name="sound_mode_known_source_error",
         unit="1",
         long_name="largest error of a known source's pressure on the surface at the natural frequency",
     ),
-    Quantity("known_source_rms", lambda one: _rms_error(one.known_source)),
+    Quantity("known_source_rms", lambda mode: _rms_error(mode.known_source)),
 )
-"""Of the sound of one housing mode."""
+"""Quantities of the sound of one housing mode."""
 
 MODE_COLUMNS = (
     Column("mode", "number", "d"),
@@ -113,7 +116,7 @@ def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
 
 
 def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float) -> list[dict[str, Any]]:
-    """Return the parts of the housing's modes in the power of a line that are worth their place, the largest first.
+    """Return the housing modes with a large part in the power of a line, the largest part first.
 
     Parameters
     ----------
@@ -122,7 +125,7 @@ def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float)
     natural : int
         Number of the modes, before the residual modes: these are the local compliance together.
     power : float
-        Of the line [W].
+        Power of the line [W].
     """
     modes = [(f"{_MODE_NAME}{number}", float(part)) for number, part in enumerate(by_mode[:natural], start=1)]
     return _largest_shares([*modes, (_LOCAL, float(by_mode[natural:].sum()))], power)
@@ -131,7 +134,7 @@ def parts_of_modes(by_mode: npt.NDArray[np.float64], natural: int, power: float)
 def _largest_shares(parts: Iterable[tuple[str, float]], power: float) -> list[dict[str, Any]]:
     return [
         {"name": name, "share": part / power}
-        for name, part in sorted(parts, key=lambda one: -abs(one[1]))
+        for name, part in sorted(parts, key=lambda pair: -abs(pair[1]))
         if abs(part) > _LEAST_SHARE * power
     ]
 
@@ -166,7 +169,7 @@ ENTRY = (
         },
     ),
 )
-"""Of the solved sound and one of its lines."""
+"""Quantities of a line; a row is the solved sound and the line."""
 
 
 def _picture_of(row: Document) -> tuple[str, ...]:
@@ -195,7 +198,7 @@ _MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces"
 _BEARING = _largest("by bearing", "bearings")
 
 LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _BEARING, _FACE)
-"""Of a line, on the terminal and the first page."""
+"""Columns of a line, on the terminal and the first page."""
 
 LINE_COLUMNS = (
     _LINE,
@@ -208,7 +211,7 @@ LINE_COLUMNS = (
     _BEARING,
     _FACE,
 )
-"""Of a line, in the report."""
+"""Columns of a line, in the report."""
 
 
 def _first_mode(line: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -288,20 +291,20 @@ SWEPT_LINE = (
         long_name="part of that mode in the line's power",
     ),
 )
-"""Of a line of a sweep's point, its entry in the document, and the natural frequencies of the housing [Hz]."""
+"""Quantities of a line of a sweep's point; a row is its entry in the document and the housing's frequencies [Hz]."""
 
 PARTS = (
     "Parts are shares of the line's power with phase: the motions by all bearings add up as complex amplitudes, and "
     "the part of one is what its own motion radiates in the pressure of all. They are signed and sum to 100 %"
 )
-"""How the parts of a line are to be read."""
+"""Meaning of the parts of a line."""
 
 LEFT_OUT = (
-    Quantity("name", lambda one: one.name),
-    Quantity("frequency_hz", lambda one: one.frequency_hz),
-    Quantity("share", lambda one: one.share),
+    Quantity("name", lambda line: line.name),
+    Quantity("frequency_hz", lambda line: line.frequency_hz),
+    Quantity("share", lambda line: line.share),
 )
-"""Of a line whose sound is not solved; the share is None where the modes are not complete."""
+"""Quantities of a line whose sound is not solved; the share is None where the modes are not complete."""
 
 MICROPHONE = (
     Quantity("name", lambda row: row[0], heading="microphone"),
@@ -316,7 +319,7 @@ MICROPHONE = (
         long_name="largest error of a known source's pressure at the microphone",
     ),
 )
-"""Of a microphone: name, position, level of all lines, the same A-weighted, and the error of a known source there."""
+"""Quantities of a microphone; a row is its name, position, level, A-weighted level, and error of a known source."""
 
 
 HEARD_COLUMNS = (
@@ -325,17 +328,17 @@ HEARD_COLUMNS = (
     _NAME,
     Column("sound pressure [dB re 20 µPa]", "level_db", ".1f"),
 )
-"""Of one of the loudest lines at a microphone."""
+"""Columns of one of the loudest lines at a microphone."""
 
 
 def _heard(document: Document) -> list[Document]:
     """Return the loudest lines at each microphone."""
-    found = []
+    rows = []
     for microphone in document["microphones"]:
         name = microphone["name"]
         loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_LISTED]
-        found += [line | {"microphone": name, "level_db": line["microphones_db"][name]} for line in loudest]
-    return found
+        rows += [line | {"microphone": name, "level_db": line["microphones_db"][name]} for line in loudest]
+    return rows
 
 
 def _microphones(solved: "SolvedSound") -> list[Any]:
@@ -448,7 +451,7 @@ SOUND = (
         long_name="complex amplitude of the sound pressure",
     ),
 )
-"""Of the sound of a case."""
+"""Quantities of the sound of a case."""
 
 
 def sound_document(solved: "SolvedSound") -> dict[str, Any]:
@@ -458,7 +461,7 @@ def sound_document(solved: "SolvedSound") -> dict[str, Any]:
 
 def _parts(faces: Document) -> str:
     """Return parts of a power in words, the largest first."""
-    ordered = sorted(faces.items(), key=lambda one: -one[1])[:_LISTED]
+    ordered = sorted(faces.items(), key=lambda face: -face[1])[:_LISTED]
     return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
 
 
@@ -482,9 +485,9 @@ def known_source_sentence(document: Document) -> str:
     if "known_source_error" not in document:  # in summaries of earlier versions
         return ""
     if (error := document["known_source_error"]) is not None:
-        heard = [one.get("known_source_error") for one in document["microphones"]]
-        known = [one for one in heard if one is not None]
-        at_most = f", {percent(max(known))} at the microphones" if known else ""
+        microphone_errors = [microphone.get("known_source_error") for microphone in document["microphones"]]
+        errors = [value for value in microphone_errors if value is not None]
+        at_most = f", {percent(max(errors))} at the microphones" if errors else ""
         return (
             f"Proof by a known source inside: its pressure on the surface is off by at most {percent(error)}, "
             f"{percent(document['known_source_rms'])} in the root mean square{at_most}"
@@ -501,26 +504,28 @@ def known_source_sentence(document: Document) -> str:
 
 
 def left_out_sentence(document: Document) -> str:
-    """Return the lines whose sound is not solved in words; empty where none is worth its name."""
+    """Return the lines whose sound is not solved in words; empty where they have hardly any power."""
     left_out = document.get("left_out", ())  # not in summaries of earlier versions
     parts = []
-    known = [one for one in left_out if one["share"] is not None]
-    rest = 1.0 - document["covered"] if known else 0.0
-    if known and (
-        rest >= _LEAST_LEFT_OUT or any(one["frequency_hz"] > document["highest_frequency_hz"] for one in known)
+    estimated = [line for line in left_out if line["share"] is not None]
+    rest = 1.0 - document["covered"] if estimated else 0.0
+    if estimated and (
+        rest >= _LEAST_LEFT_OUT or any(line["frequency_hz"] > document["highest_frequency_hz"] for line in estimated)
     ):
-        parts.append(f"{percent(max(rest, 0.0))} of the power by the estimate, most of it {_named(known, shares=True)}")
-    if unknown := [one for one in left_out if one["share"] is None]:
-        parts.append(f"{_named(unknown)}, where the housing's modes are not complete")
+        parts.append(
+            f"{percent(max(rest, 0.0))} of the power by the estimate, most of it {_named(estimated, shares=True)}"
+        )
+    if without_estimate := [line for line in left_out if line["share"] is None]:
+        parts.append(f"{_named(without_estimate)}, where the housing's modes are not complete")
     return f"Left out: {'; '.join(parts)}" if parts else ""
 
 
 def _named(lines: list[Document], *, shares: bool = False) -> str:
     """Return the first lines with their frequencies, and the number of further ones."""
     names = [
-        f"{arrowed(str(one['name']))} at {one['frequency_hz']:.0f} Hz"
-        + (f" ({percent(one['share'])})" if shares else "")
-        for one in lines[:_LISTED]
+        f"{arrowed(str(line['name']))} at {line['frequency_hz']:.0f} Hz"
+        + (f" ({percent(line['share'])})" if shares else "")
+        for line in lines[:_LISTED]
     ]
     return ", ".join(names) + (f" and {len(lines) - _LISTED} more" if len(lines) > _LISTED else "")
 
@@ -533,13 +538,13 @@ def brief(document: Document) -> Iterator[str | Table]:
             yield left_out
         yield from table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_BRIEF_LINES], "Loudest lines of the sound")
     if document["microphone_error"] is not None:
-        names = [str(one["name"]) for one in document["microphones"]]
-        told = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
-        yield f"Sound pressure over time at {counted(len(names), 'microphone')} ({told}): gearwhine export --wav"
+        names = [str(microphone["name"]) for microphone in document["microphones"]]
+        listed = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+        yield f"Sound pressure over time at {counted(len(names), 'microphone')} ({listed}): gearwhine export --wav"
 
 
 def _microphones_by_place(document: Document) -> tuple[list[Document], list[Document]]:
-    """Return the microphones of the case, and those on the box of ISO 3744, which stand behind them."""
+    """Return the microphones of the case, and those on the box of ISO 3744, which come last."""
     microphones = document["microphones"]
     first_on_box = len(microphones) - (0 if document["box_power_db"] is None else BOX_MICROPHONES)
     return microphones[:first_on_box], microphones[first_on_box:]
@@ -561,7 +566,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     if proof := known_source_sentence(document):
         yield proof
     if document["box_power_db"] is not None:
-        levels = [one["level_db"] for one in _microphones_by_place(document)[1]]
+        levels = [microphone["level_db"] for microphone in _microphones_by_place(document)[1]]
         yield (
             f"By the mean pressure on the box of microphones (ISO 3744): L_W {document['box_power_db']:.1f} dB; "
             f"pressure {min(levels):.1f} to {max(levels):.1f} dB re 20 µPa"

@@ -28,7 +28,7 @@ PROOF = (
     Quantity("switches", lambda response: response.switches),
     Quantity("newton_steps", lambda response: response.newton_steps),
 )
-"""Of a periodic response: its period, stability and accuracy."""
+"""Quantities of a periodic response: its period, stability and accuracy."""
 
 PAIR = (
     *MESH,
@@ -44,7 +44,7 @@ PAIR = (
     Quantity("neglected_part", lambda row: row[1].neglected_part[row[2]] if row[4] else ABSENT),
     Quantity("force_lines", lambda row: row[3]),
 )
-"""Of a gear mesh as :data:`gearwhine.results.motion.MESH`, lines of its force, and whether motions are superposed."""
+"""Quantities of a gear mesh; a row adds to that of ``MESH`` the lines of its force, and whether motions superpose."""
 
 
 def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
@@ -54,7 +54,7 @@ def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
     rows = []
     for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
-        lines = _lines(motions, [one.histories.mesh_force[name] for one in motions], "amplitude_n")
+        lines = _lines(motions, [motion.histories.mesh_force[name] for motion in motions], "amplitude_n")
         rows.append((mesh, figures, number, lines, motion is None))
     return rows
 
@@ -65,10 +65,10 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
     return [
         {
             "name": name,
-            # Of different frequencies: their powers add.
-            "rms_m_per_s2": float(np.hypot.reduce([one.sensor_rms[name] for one in motions])),
+            # The frequencies differ, so their powers add.
+            "rms_m_per_s2": float(np.hypot.reduce([motion.sensor_rms[name] for motion in motions])),
             "lines": _lines(
-                motions, [one.histories.sensor_acceleration[name] for one in motions], "amplitude_m_per_s2"
+                motions, [motion.histories.sensor_acceleration[name] for motion in motions], "amplitude_m_per_s2"
             ),
         }
         for name in motions[0].histories.sensor_acceleration
@@ -77,12 +77,12 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
 
 def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) -> list[dict[str, Any]]:
     """Return the highest lines of all motions together, each with its excitation where that has a name."""
-    found = [
+    lines = [
         {"frequency_hz": frequency, key: amplitude} | ({"excitation": motion.excitation} if motion.excitation else {})
         for motion, signal in zip(motions, signals, strict=True)
         for frequency, amplitude in motion.lines(signal)
     ]
-    return sorted(found, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
+    return sorted(lines, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 
 
 def _multipliers(row: Any) -> Any:
@@ -90,13 +90,13 @@ def _multipliers(row: Any) -> Any:
     return np.stack([values.real, values.imag], axis=-1)
 
 
-def _signals(of: Any, name: str, dimension: str, unit: str, what: str) -> Quantity:
+def _signals(of: Any, name: str, dimension: str, unit: str, long_name: str) -> Quantity:
     """One period of the signals of a motion."""
-    return Quantity("", lambda row: of(row[1].histories) or None, name, (dimension, "period_time"), unit, what)
+    return Quantity("", lambda row: of(row[1].histories) or None, name, (dimension, "period_time"), unit, long_name)
 
 
-def _bearing_load(what: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
-    """One period of the loads on all bearings: forces along x, y, z or moments about x, y, and the labels of these."""
+def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
+    """Declare one period of the loads on all bearings: forces along x, y, z or moments about x, y, with labels."""
     return Part(
         "",
         lambda row: row,
@@ -105,7 +105,7 @@ def _bearing_load(what: str, rows: slice, along: str, labels: Sequence[str], uni
             Quantity(
                 "",
                 lambda row: {name: load[:, rows].T for name, load in row[1].histories.bearing_load.items()} or None,
-                f"steady_bearing_{what}",
+                f"steady_bearing_{kind}",
                 ("bearing", along, "period_time"),
                 unit,
                 long_name,
@@ -150,17 +150,17 @@ MOTION = (
     Rows("bearings", lambda row: row[0].bearing_parts(row[1]), BEARING),
     Quantity("sensors", lambda row: _sensors(row[0], row[1])),
 )
-"""Of the solved state, one of its periodic motions, and its number from 1."""
+"""Quantities of a periodic motion; a row is the solved state, the motion, and its number from 1."""
 
 
-def _resampled(of: Any, name: str, dimension: str, unit: str, what: str) -> Quantity:
-    """One period of the signals of a motion, by as many samples as that with most."""
+def _resampled(of: Any, name: str, dimension: str, unit: str, quantity: str) -> Quantity:
+    """Declare one period of the signals of a motion, resampled to the most samples of any motion."""
 
     def values(row: Any) -> dict[str, Any] | None:
         motion, count = row
         return {label: motion.resampled(signal, count) for label, signal in of(motion.histories).items()} or None
 
-    whole = f"{what} in the motion of each group of excitations"
+    whole = f"{quantity} in the motion of each group of excitations"
     return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, whole)
 
 
@@ -189,7 +189,10 @@ EXCITATION = (
     ),
     Part("", lambda row: row[0].response, PROOF),
 )
-"""Of the motion of one group of excitations, and the number of samples: their sum has no period."""
+"""Quantities of the motion of one group of excitations; a row is the motion and its number of samples.
+
+The sum of these motions has no period.
+"""
 
 
 def _excitations(solved: "SolvedSteady") -> list[Any]:
@@ -204,19 +207,19 @@ SUPERPOSED = (
     Rows("bearings", lambda solved: solved.bearing_parts(), BEARING),
     Quantity("sensors", lambda solved: _sensors(solved, None)),
 )
-"""Of motions that are superposed: figures by the contact law at their sum, lines of all groups."""
+"""Quantities of superposed motions: figures by the contact law at their sum, and the lines of all groups."""
 
 _POINT = ("branch_point",)
 
 
-def _of_contacts(name: str, of: Any, unit: str, what: str) -> Quantity:
+def _of_contacts(name: str, of: Any, unit: str, long_name: str) -> Quantity:
     return Quantity(
         "",
         lambda solved: of(solved.curve) if solved.machine.system.contacts else None,
         f"branch_{name}",
         (*_POINT, "contact"),
         unit,
-        what,
+        long_name,
     )
 
 
@@ -230,22 +233,22 @@ EVENT = (
     Quantity("kind", lambda event: event.kind, heading="what happens"),
 )
 LOUDEST = (
-    Quantity("sensor", lambda one: one.sensor, heading="sensor"),
-    Quantity("speed_rpm", lambda one: one.speed * RPM, heading="loudest at [rpm]", shown=".0f"),
-    Quantity("rms_m_per_s2", lambda one: one.rms, heading="rms [m/s²]", shown=".3g"),
-    Quantity("frequency_hz", lambda one: one.frequency, heading="highest line [Hz]", shown=".1f"),
-    Quantity("amplitude_m_per_s2", lambda one: one.amplitude, heading="[m/s², peak]", shown=".3g"),
-    Quantity("excitation", lambda one: one.excitation, heading="excitation"),
+    Quantity("sensor", lambda point: point.sensor, heading="sensor"),
+    Quantity("speed_rpm", lambda point: point.speed * RPM, heading="loudest at [rpm]", shown=".0f"),
+    Quantity("rms_m_per_s2", lambda point: point.rms, heading="rms [m/s²]", shown=".3g"),
+    Quantity("frequency_hz", lambda point: point.frequency, heading="highest line [Hz]", shown=".1f"),
+    Quantity("amplitude_m_per_s2", lambda point: point.amplitude, heading="[m/s², peak]", shown=".3g"),
+    Quantity("excitation", lambda point: point.excitation, heading="excitation"),
     Quantity(
         "housing_mode",
-        lambda one: one.mode,
+        lambda point: point.mode,
         heading="most of it by",
         shown=lambda row: f"mode {row['housing_mode']}, {row['mode_hz']:.1f} Hz ({percent(row['share'])})",
     ),
-    Quantity("mode_hz", lambda one: one.mode_hz),
-    Quantity("share", lambda one: one.share),
+    Quantity("mode_hz", lambda point: point.mode_hz),
+    Quantity("share", lambda point: point.share),
 )
-"""Of the point of a branch at which a sensor is loudest."""
+"""Quantities of the point of a branch at which a sensor is loudest."""
 
 CURVE = (
     Quantity(
@@ -307,7 +310,7 @@ CURVE = (
         "where the branch turns or its stability changes",
     ),
 )
-"""Of the branch over speed."""
+"""Quantities of the branch over speed."""
 
 STEADY = (
     Quantity("speed_rpm", lambda solved: solved.motions[0].speed * RPM),
@@ -327,18 +330,18 @@ STEADY = (
     Rows("motions", lambda solved: ABSENT if solved.superposed is None else [solved], SUPERPOSED, "motion"),
     Part("curve", lambda solved: ABSENT if solved.curve is None else solved, CURVE),
 )
-"""Of the steady state at the speed of operation, and of its branch over speed."""
+"""Quantities of the steady state at the speed of operation, and of its branch over speed."""
 
 
 STEADY_OPTIONS = (Option(("curve",), ("branch_",), "steady-curve.png"),)
-"""Of the steady state."""
+"""Options of the steady state."""
 
 STEADY_SAME = ("speed_rpm", "coordinates", "load")
 """Keys of the steady state that no option changes: a branch may have several motions at the speed of operation."""
 
 
 def steady_document(title: str, solved: "SolvedSteady") -> dict[str, Any]:
-    """Return the steady state as the command's JSON; warn where motions are superposed that should not be."""
+    """Return the steady state as the command's JSON, with a warning where superposition is not valid."""
     document = {"title": title} | document_of(STEADY, solved)
     if solved.superposed is not None:
         add_warnings(document, solved.superposition_warnings())
@@ -350,7 +353,7 @@ _EVENTS = {
     "period doubling": "the motion is taken over by one of twice the period",
     "Neimark-Sacker": "a second frequency comes in",
 }
-# A multiplier beyond +1 alone tells no fold: over many mesh periods it may be an even power of one beyond -1.
+# A multiplier beyond +1 alone is no proof of a fold: over many mesh periods it may be an even power of one beyond -1.
 _UNSTABLE = {**_EVENTS, "fold": "disturbances grow without turning, the motion leaves for another one"}
 
 
@@ -386,9 +389,9 @@ def _content(document: Document) -> Iterator[str | Table]:
     if "load" in document:
         yield from brief(document["load"])
     motions = document["motions"]
-    what = "steady motion" if document.get("method") == "superposed" else "periodic motion"
+    noun = "steady motion" if document.get("method") == "superposed" else "periodic motion"
     yield (
-        f"{counted(len(motions), what)} at {document['speed_rpm']:.0f} rpm; {document['coordinates']} modal coordinates"
+        f"{counted(len(motions), noun)} at {document['speed_rpm']:.0f} rpm; {document['coordinates']} modal coordinates"
     )
     for number, motion in enumerate(motions, start=1):
         yield from _motion(motion, f"Motion {number}: " if len(motions) > 1 else "")
@@ -403,8 +406,8 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
             "The excitations have no short common period: each has its own motion, other meshes linear about their "
             "mean load, and these are superposed"
         )
-        for one in motion["excitations"]:
-            yield _proof(one, f"  {one['name']}: ")
+        for excitation in motion["excitations"]:
+            yield _proof(excitation, f"  {excitation['name']}: ")
         for pair in motion["gear_pairs"]:
             yield (
                 f"  left out in {pair['driver']} → {pair['driven']}: {pair['neglected_force_n']:.3g} N rms, "
@@ -436,7 +439,7 @@ def _decay(multiplier: float, period: float) -> str:
 
 
 def curve_sentences(curve: Document) -> Iterator[str | Table]:
-    """Yield what is told of a branch over speed: reach, largest forces, where sensors are loudest, events along it."""
+    """Yield sentences on a branch over speed: its range, largest forces, loudest points of sensors, bifurcations."""
     speeds = curve["speed_rpm"]
     unstable = sum(not stable for stable in curve["stable"])
     yield (
@@ -446,10 +449,10 @@ def curve_sentences(curve: Document) -> Iterator[str | Table]:
     if curve["ending"] != "end":
         yield f"Left before the end of the range: {curve['account']}"
     for pair in curve["gear_pairs"]:
-        worst = max(range(len(speeds)), key=pair["peak_force_n"].__getitem__)
+        highest = max(range(len(speeds)), key=pair["peak_force_n"].__getitem__)
         yield (
-            f"Gear mesh {pair['driver']} → {pair['driven']}: largest force {pair['peak_force_n'][worst]:.0f} N at "
-            f"{speeds[worst]:.0f} rpm"
+            f"Gear mesh {pair['driver']} → {pair['driven']}: largest force {pair['peak_force_n'][highest]:.0f} N at "
+            f"{speeds[highest]:.0f} rpm"
         )
     yield from table_of(columns_of(LOUDEST), curve.get("loudest", ()))
     for event in curve["bifurcations"]:

@@ -18,14 +18,14 @@ SENSOR = (
     Quantity("direction", lambda row: row[2], heading="direction", shown=lambda row: _axis(row["direction"])),
     Quantity("independence", lambda row: row[3], heading="independence", shown=".3f"),
 )
-"""Of a sensor: label, position, direction and share in the independence of the modes."""
+"""Quantities of a sensor; a row is its label, position, direction and share in the independence of the modes."""
 
 HAMMER = (
     Quantity("position_m", lambda row: row[0]),
     Quantity("direction", lambda row: row[1]),
     Quantity("least_residue", lambda row: row[2]),
 )
-"""Of a place for the hammer."""
+"""Quantities of a place for the hammer."""
 
 
 def _sensors(planned: "PlannedSurvey") -> list[Any]:
@@ -55,7 +55,7 @@ PLAN = (
         ),
     ),
 )
-"""Of a survey and what it is worth."""
+"""Quantities of a survey plan and of its quality."""
 
 
 def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str, Any]:

@@ -39,17 +39,17 @@ def _peak_level(row: Mapping[str, Any]) -> str:
 
 
 PEAK = (
-    Quantity("settings", lambda one: one.settings),
-    Quantity("below_rpm", lambda one: one.below_rpm),
+    Quantity("settings", lambda peak: peak.settings),
+    Quantity("below_rpm", lambda peak: peak.below_rpm),
     Quantity(
         "above_rpm",
-        lambda one: one.above_rpm,
+        lambda peak: peak.above_rpm,
         heading="between [rpm]",
         shown=_peak_between,
     ),
     Quantity(
         "line",
-        lambda one: one.line,
+        lambda peak: peak.line,
         "missed_peak_line",
         long_name="line of a peak between two points",
         heading="line",
@@ -57,36 +57,36 @@ PEAK = (
     ),
     Quantity(
         "mode",
-        lambda one: one.mode,
+        lambda peak: peak.mode,
         "missed_peak_mode",
         long_name="coupled mode that the line meets there",
         heading="meets the mode",
     ),
-    Quantity("frequency_hz", lambda one: one.frequency_hz, heading="at [Hz]", shown=".1f"),
-    Quantity("damping_ratio", lambda one: one.damping_ratio),
+    Quantity("frequency_hz", lambda peak: peak.frequency_hz, heading="at [Hz]", shown=".1f"),
+    Quantity("damping_ratio", lambda peak: peak.damping_ratio),
     Quantity(
         "speed_rpm",
-        lambda one: one.speed_rpm,
+        lambda peak: peak.speed_rpm,
         "missed_peak_speed",
         unit="rpm",
         long_name="speed of the peak, of the first driver",
         heading="speed [rpm]",
         shown=".1f",
     ),
-    Quantity("half_width_rpm", lambda one: one.half_width_rpm, heading="half-power\nwidth ± [rpm]", shown=".2g"),
-    Quantity("output", lambda one: one.output, "missed_peak_output", long_name="sound, or the sensor that peaks"),
+    Quantity("half_width_rpm", lambda peak: peak.half_width_rpm, heading="half-power\nwidth ± [rpm]", shown=".2g"),
+    Quantity("output", lambda peak: peak.output, "missed_peak_output", long_name="sound, or the sensor that peaks"),
     Quantity(
         "level_db",
-        lambda one: one.level_db,
+        lambda peak: peak.level_db,
         "missed_peak_level",
         unit="dB",
         long_name="estimated level of the line there: of sound power re 1 pW, of an amplitude re 1 m/s2",
         heading="estimate",
         shown=_peak_level,
     ),
-    Quantity("rise_db", lambda one: one.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
+    Quantity("rise_db", lambda peak: peak.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
 )
-"""Of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
+"""Quantities of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -178,7 +178,7 @@ def _sound_columns(document: Document) -> tuple[Column, ...]:
         *_axes(document),
         Column("L_W [dB]", "sound.total_db", ".1f"),
         Column("L_WA [dB]", "sound.total_db_a", ".1f"),
-        *(Column(one.heading, partial(_loudest, one)) for one in columns_of(SWEPT_LINE)),
+        *(Column(quantity.heading, partial(_loudest, quantity)) for quantity in columns_of(SWEPT_LINE)),
     )
 
 

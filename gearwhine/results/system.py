@@ -19,26 +19,26 @@ if TYPE_CHECKING:
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 
 
-def _of_components(name: str, what: str, of: Any) -> Quantity:
+def _of_components(name: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every component in a mode, for the file; ``of`` takes the values of all modes."""
 
-    def taken(row: Any) -> dict[str, float]:
+    def values(row: Any) -> dict[str, float]:
         solved, mode = row
         names = [component.name for component in solved.machine.system.components]
         return dict(zip(names, of(solved.modes)[mode].tolist(), strict=True))
 
-    return Quantity("", taken, f"system_{name}", ("machine_component",), "1", what)
+    return Quantity("", values, f"system_{name}", ("machine_component",), "1", long_name)
 
 
-def _of_parts(name: str, what: str, of: Any) -> Quantity:
+def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every component, connector and contact in a mode, for the file."""
 
-    def taken(row: Any) -> dict[str, float]:
+    def values(row: Any) -> dict[str, float]:
         solved, mode = row
         names = [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts]
         return dict(zip(names, of(solved.modes.shares)[mode].tolist(), strict=True))
 
-    return Quantity("", taken, f"system_{name}", ("machine_part",), "1", what)
+    return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name)
 
 
 def _strained_most(row: Any) -> Any:
@@ -47,7 +47,7 @@ def _strained_most(row: Any) -> Any:
     if solved.modes.kinds[mode] == "rigid":
         return None
     shares = solved.modes.shares
-    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda one: one[1])
+    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda pair: pair[1])
     return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
 
 
@@ -103,33 +103,33 @@ MODE = (
     _of_parts("damping_share", "part of the damping ratio", lambda shares: shares.damping),
     _of_components("whirl", "bending: 1 counter-clockwise, -1 clockwise circles", lambda modes: modes.whirl),
 )
-"""Of the solved system and the number of one of its modes."""
+"""Quantities of a mode; a row is the solved system and the number of the mode."""
 
 
 def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
     """Return the mesh stiffness at which each loaded flank is linearised, beside its mean without load."""
     contact, unloaded = solved.contact, solved.unloaded.stiffness
-    found = []
+    rows = []
     for number, tooth in enumerate(solved.machine.system.contacts):
         if not tooth.loaded:
             continue
         force = None if contact.force is None else float(contact.force[number])
         if force is None:
-            taken = "tangent at the mesh phase"
+            linearisation = "tangent at the mesh phase"
         elif contact.stiffness[number] == 0.0:
-            taken = "parted by the mean load"
+            linearisation = "parted by the mean load"
         else:
-            taken = "mean under load" if force else "mean without load"
-        found.append(
+            linearisation = "mean under load" if force else "mean without load"
+        rows.append(
             {
                 "name": tooth.name,
-                "taken": taken,
+                "taken": linearisation,
                 "stiffness_n_per_m": contact.stiffness[number],
                 "unloaded_mean_n_per_m": unloaded[number],
                 "force_n": force,
             }
         )
-    return found
+    return rows
 
 
 CERTIFICATE = (
@@ -161,35 +161,41 @@ STABILITY = (
     Part(
         "least_damped",
         lambda solved: None if solved.stability.least_damped is None else (solved, solved.stability.least_damped),
-        tuple(replace(one, name="") for one in MODE if one.key in ("frequency_hz", "damping_ratio", "kind", "where")),
+        tuple(
+            replace(quantity, name="")
+            for quantity in MODE
+            if quantity.key in ("frequency_hz", "damping_ratio", "kind", "where")
+        ),
     ),
 )
 
 
 def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
-    """Fields of a frequency response and the abscissa of its peaks: curves in the file, the peaks in the document.
+    """Declare the fields of a frequency response: its curves in the file, and their peaks in the document.
 
-    Complex curves stand as amplitude and phase.
+    Complex curves are declared as amplitude and phase; ``key`` is the abscissa of the peaks.
     """
 
-    def curves(of: Any, signal: str, kind: str, planes: tuple[str, ...], unit: str, what: str) -> Iterator[Quantity]:
+    def curves(
+        of: Any, signal: str, kind: str, planes: tuple[str, ...], unit: str, quantity: str
+    ) -> Iterator[Quantity]:
         dimensions = (f"{name}_{signal}", abscissa, *planes)
-        for suffix, part, units, told in (
-            ("", np.abs, f"{unit} {per}".strip(), f"{what}, peak"),
-            ("_phase", np.angle, "rad", f"phase of the {what}"),
+        for suffix, part, units, long_name in (
+            ("", np.abs, f"{unit} {per}".strip(), f"{quantity}, peak"),
+            ("_phase", np.angle, "rad", f"phase of the {quantity}"),
         ):
 
             def values(row: Any, part: Any = part) -> dict[str, Any] | None:
                 return {label: part(curve) for label, curve in of(row[0]).items()} or None
 
-            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, told)
+            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, long_name)
 
     def loads(columns: Any) -> Any:
-        return lambda one: {label: load[:, columns] for label, load in one.bearing_load.items()}
+        return lambda response: {label: load[:, columns] for label, load in response.bearing_load.items()}
 
     def peaks(row: Any, curve: Any) -> list[dict[str, float]]:
-        one, along = row
-        return [{key: along[place], "amplitude": abs(curve[place])} for place in one.peaks(curve)]
+        response, along = row
+        return [{key: along[place], "amplitude": abs(curve[place])} for place in response.peaks(curve)]
 
     def along_axes(first: int, axes: str) -> Any:
         return lambda row: {
@@ -201,15 +207,20 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
     return (
         Quantity("excitation", lambda row: row[0].excitation),
         Quantity("per", lambda row: row[0].unit),
-        Quantity("mesh_force_n", lambda row: {label: peaks(row, one) for label, one in row[0].mesh_force.items()}),
+        Quantity("mesh_force_n", lambda row: {label: peaks(row, force) for label, force in row[0].mesh_force.items()}),
         Quantity("bearing_force_n", along_axes(0, "xyz")),
         Quantity("bearing_moment_n_m", along_axes(3, "xy")),
         Quantity(
             "sensor_acceleration_m_per_s2",
-            lambda row: {label: peaks(row, one) for label, one in row[0].sensor_acceleration.items()},
+            lambda row: {label: peaks(row, signal) for label, signal in row[0].sensor_acceleration.items()},
         ),
         *curves(
-            lambda one: one.sensor_acceleration, "sensor", "acceleration", (), "m s-2", "acceleration along the sensor"
+            lambda response: response.sensor_acceleration,
+            "sensor",
+            "acceleration",
+            (),
+            "m s-2",
+            "acceleration along the sensor",
         ),
         *curves(loads(slice(0, 2)), "bearing", "force", ("plane",), "N", force),
         *curves(loads(2), "bearing", "axial_force", (), "N", f"{force} along z"),
@@ -221,7 +232,9 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
             "N m",
             "moment of the shaft on its bearing about x and y",
         ),
-        *curves(lambda one: one.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"),
+        *curves(
+            lambda response: response.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"
+        ),
         Quantity("", lambda row: ["x", "y"] if row[0].bearing_load else None, "plane", ("plane",), common=True),
     )
 
@@ -231,7 +244,7 @@ TRANSMISSIBILITY = (
     Quantity("", lambda row: row[1], "response_frequency", ("response_frequency",), "Hz", "frequency", common=True),
     *_response("transmissibility", "response_frequency", "frequency_hz", "m-1"),
 )
-"""Of the response to the error of one mesh, and its frequencies [Hz]."""
+"""Quantities of the response to the error of one mesh; a row is the response and its frequencies [Hz]."""
 
 _PARTS = (
     ("by_transmission_error", "by_error", "by transmission error alone"),
@@ -240,16 +253,16 @@ _PARTS = (
 )
 
 
-def _line_part(name: str, attribute: str, what: str) -> Quantity:
-    """Amplitudes of the sensors by a part of a line's motion."""
+def _line_part(name: str, attribute: str, part: str) -> Quantity:
+    """Declare the amplitudes of the sensors by a part of a line's motion."""
 
     def of(row: Any) -> dict[str, float]:
         solved, line = row
         motion = line.frequency**2 * getattr(line, attribute)
-        return {sensor: abs(seen @ motion) for sensor, seen in solved.machine.sensor_rows.items()}
+        return {sensor: abs(sensor_row @ motion) for sensor, sensor_row in solved.machine.sensor_rows.items()}
 
-    told = f"amplitude of the sensor's acceleration at a mesh harmonic, {what}"
-    return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", told)
+    long_name = f"amplitude of the sensor's acceleration at a mesh harmonic, {part}"
+    return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", long_name)
 
 
 def _line_cause(row: Any) -> str:
@@ -271,13 +284,16 @@ LINE = (
     Quantity("cause", _line_cause, "system_line_cause", (), "", "mesh harmonics that drive the line"),
     Part("sensor_acceleration_m_per_s2", lambda row: row, tuple(_line_part(*part) for part in _PARTS)),
 )
-"""Of the solved system and its response at one mesh harmonic of operation."""
+"""Quantities of a mesh harmonic at operation; a row is the solved system and its response there."""
 
 UNBALANCE = (
     Quantity("", lambda row: row[0].excitation, "unbalance_of"),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
-"""Of the response to the unbalances of one rotor, and the speeds of the first driver without their sense [rpm]."""
+"""Quantities of the response to one rotor's unbalances; a row is the response and the first driver's speeds [rpm].
+
+The speeds are absolute values.
+"""
 
 CROSSING = (
     Quantity(
@@ -314,11 +330,11 @@ CROSSING = (
     Quantity("teeth", lambda row: row[0].teeth),
     Quantity("margin", lambda row: row[0].speed / row[1] - 1.0),
 )
-"""Of a crossing of the Campbell diagram and the speed of operation."""
+"""Quantities of a crossing of the Campbell diagram; a row is the crossing and the speed of operation [rad/s]."""
 
 
-def _diagram(name: str, of: Any, unit: str, what: str) -> Quantity:
-    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, what)
+def _diagram(name: str, of: Any, unit: str, long_name: str) -> Quantity:
+    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name)
 
 
 CAMPBELL = (
@@ -346,18 +362,20 @@ CAMPBELL = (
             Quantity("where", lambda row: row[0].where[:, row[1]]),
         ),
     ),
-    Quantity("lines", lambda row: [{"name": one.name, "kind": one.kind, "order": one.order} for one in row[0].lines]),
-    Rows("crossings", lambda row: [(one, row[1]) for one in row[0].crossings], CROSSING, "system_crossing"),
+    Quantity(
+        "lines", lambda row: [{"name": line.name, "kind": line.kind, "order": line.order} for line in row[0].lines]
+    ),
+    Rows("crossings", lambda row: [(crossing, row[1]) for crossing in row[0].crossings], CROSSING, "system_crossing"),
     Quantity("unsettled", lambda row: row[0].unsettled),
 )
-"""Of the Campbell diagram and the speed of operation."""
+"""Quantities of the Campbell diagram; a row is the diagram and the speed of operation [rad/s]."""
 
 
 def _unbalance(solved: "SolvedSystem") -> Any:
     if solved.unbalance_speeds is None:
         return ABSENT
     along = np.abs(solved.unbalance_speeds * RPM)
-    return [(one, along) for one in solved.unbalance]
+    return [(response, along) for response in solved.unbalance]
 
 
 SYSTEM = (
@@ -386,7 +404,7 @@ SYSTEM = (
     Part("stability", lambda solved: solved, STABILITY),
     Rows(
         "transmissibility",
-        lambda solved: [(one, one.frequencies / HERTZ) for one in solved.responses],
+        lambda solved: [(response, response.frequencies / HERTZ) for response in solved.responses],
         TRANSMISSIBILITY,
         "mesh_error",
     ),
@@ -417,7 +435,7 @@ SYSTEM = (
     ),
     Rows("unbalance_response", _unbalance, UNBALANCE, "unbalance_of"),
 )
-"""Of the coupled system, linear about a contact."""
+"""Quantities of the coupled system, linear about a contact."""
 
 
 SYSTEM_OPTIONS = (
@@ -427,7 +445,7 @@ SYSTEM_OPTIONS = (
         "system-campbell.png",
     ),
 )
-"""Of the coupled system."""
+"""Options of the coupled system."""
 
 SYSTEM_SAME = ("speed_rpm", "mesh_phase", "mesh_stiffness", "modes")
 """Keys of the coupled system that no option over speed changes."""
@@ -440,7 +458,7 @@ def system_document(solved: "SolvedSystem") -> dict[str, Any]:
 
 _NAMES = {"components": "", "bearings": "", "gear_meshes": "teeth of "}
 _CROSSINGS = 30  # shown at most, those nearest to operation
-_WHIRL = 0.5  # from which a sense of whirl is named
+_WHIRL = 0.5  # circularity from which a sense of whirl is named
 
 
 def report(document: Document) -> Section:
@@ -482,15 +500,15 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from brief(document["load"])
     modes, trusted = document["modes"], document.get("trusted_below_hz")
     within = [mode for mode in modes if not trusted or mode["frequency_hz"] <= 2.0 * trusted]
-    shown = [mode for mode in within if mode["kind"] != "residual"]
+    listed = [mode for mode in within if mode["kind"] != "residual"]
     phase = document.get("mesh_phase")
     about = "" if phase is None else f", the first pair's teeth at {phase:g} of their period"
     yield f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}"
     for mesh in document.get("mesh_stiffness", ()):
         yield _mesh_sentence(mesh)
-    yield from table_of(mode_columns(shown), shown)
+    yield from table_of(mode_columns(listed), listed)
     yield "Shares of the kinetic energy; teeth: share of the strain energy."
-    if residual := len(within) - len(shown):
+    if residual := len(within) - len(listed):
         yield f"Left out: {counted(residual, 'residual mode')}, local compliance at the seats, no modes of the housing."
     if certificate := document.get("certificate"):
         yield (
@@ -514,16 +532,16 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 def _mesh_sentence(mesh: Document) -> str:
     """Return the mesh stiffness of the linearised contact, and the mean without load beside it."""
-    taken, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
+    stiffness, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
-    return f"Mesh stiffness of {mesh['name']}: {taken:.4g} N/µm, {mesh['taken']}{under}{beside}."
+    return f"Mesh stiffness of {mesh['name']}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}."
 
 
-def mode_columns(shown: list[Document]) -> tuple[Column, ...]:
+def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     """Columns of coupled modes: frequency, damping, kind, the shares of what moves, and what is strained most."""
     # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
-    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in shown)]
+    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in modes)]
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     return (
         *columns_of(MODE),
@@ -556,28 +574,30 @@ def _strained(mode: Document) -> str:
 def _stability(stability: Document) -> Iterator[str]:
     if stability["stable"]:
         least = stability["least_damped"]
-        said = "Stable: no mode grows."
+        sentence = "Stable: no mode grows."
         if least is not None:
-            said += f" Least damped: {least['damping_ratio']:.4f} at {least['frequency_hz']:.1f} Hz ({_named(least)})."
-        yield said
+            sentence += (
+                f" Least damped: {least['damping_ratio']:.4f} at {least['frequency_hz']:.1f} Hz ({_named(least)})."
+            )
+        yield sentence
         return
     yield f"UNSTABLE: {counted(len(stability['growing']), 'mode')} grow from any disturbance."
-    for one in stability["growing"]:
-        fed = ", ".join(f"{feeder['name']} ({feeder['share']:.2g})" for feeder in one["fed_by"][:3])
+    for mode in stability["growing"]:
+        fed = ", ".join(f"{feeder['name']} ({feeder['share']:.2g})" for feeder in mode["fed_by"][:3])
         yield (
-            f"  {one['frequency_hz']:.2f} Hz ({_named(one)}), damping ratio {one['damping_ratio']:.2g}, "
-            f"doubling in {one['doubling_time_s']:.3g} s; fed by {fed or 'nothing single'}"
+            f"  {mode['frequency_hz']:.2f} Hz ({_named(mode)}), damping ratio {mode['damping_ratio']:.2g}, "
+            f"doubling in {mode['doubling_time_s']:.3g} s; fed by {fed or 'nothing single'}"
         )
 
 
 def _peaks(response: Document) -> Iterator[str | Table]:
     """Yield the highest responses of dynamic mesh force and sensors to a micrometre of mesh error."""
     rows: list[dict[str, Any]] = []
-    for key, what in (
+    for key, quantity in (
         ("mesh_force_n", "mesh force [N/µm]"),
         ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
     ):
-        rows += [{"what": what, "name": name, "peaks": peaks} for name, peaks in response[key].items()]
+        rows += [{"what": quantity, "name": name, "peaks": peaks} for name, peaks in response[key].items()]
     columns = (
         Column("peak amplitude of", "what"),
         Column("at", "name"),
@@ -596,7 +616,7 @@ _LINES = 3  # of each sensor, the highest
 
 
 def _lines(lines: list[Document]) -> Iterator[str | Table]:
-    """Yield what excites beside transmission error, and the highest lines of each sensor by either and by both."""
+    """Yield a note on load shuttling, and the highest lines of each sensor by transmission error, by it and by both."""
     yield (
         "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
         "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: `load --sensitivity` "
@@ -604,12 +624,12 @@ def _lines(lines: list[Document]) -> Iterator[str | Table]:
     )
     rows: list[dict[str, Any]] = []
     for sensor in lines[0]["sensor_acceleration_m_per_s2"]["together"] if lines else ():
-        own = [
+        of_sensor = [
             {"sensor": sensor, "frequency_hz": line["frequency_hz"], "cause": line["cause"]}
             | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
             for line in lines
         ]
-        rows += sorted(own, key=lambda row: -row["together"])[:_LINES]
+        rows += sorted(of_sensor, key=lambda row: -row["together"])[:_LINES]
     if rows:
         yield "Highest lines of the sensors at operation, linear response about the mean load [m/s²]:"
         yield from table_of(_LINE_COLUMNS, rows)
@@ -649,18 +669,18 @@ def _crossings(campbell: Document) -> Iterator[str | Table]:
     """Resonant speeds: mesh orders on all modes of the machine, shaft orders on those that bend shafts."""
     kinds = {line["name"]: line["kind"] for line in campbell["lines"]}
     met = [
-        one
-        for one in campbell["crossings"]
-        if one["kind"] == "rotor" or (one["kind"] != "residual" and kinds[one["line"]] == "mesh")
+        crossing
+        for crossing in campbell["crossings"]
+        if crossing["kind"] == "rotor" or (crossing["kind"] != "residual" and kinds[crossing["line"]] == "mesh")
     ]
-    nearest = sorted(met, key=lambda one: abs(one["margin"]))[:_CROSSINGS]
+    nearest = sorted(met, key=lambda crossing: abs(crossing["margin"]))[:_CROSSINGS]
     speeds = [abs(speed) for speed in campbell["speeds_rpm"]]
     span = f"{min(speeds):.0f} to {max(speeds):.0f} rpm"
     if not met:
         yield f"No order of a shaft or mesh meets a mode that it excites from {span}."
     else:
         yield f"Resonant speeds from {span} (of the first driver), modes about the mean contact{_harmonics(campbell)}:"
-        yield from table_of(_CROSSING_COLUMNS, sorted(nearest, key=lambda one: abs(one["speed_rpm"])))
+        yield from table_of(_CROSSING_COLUMNS, sorted(nearest, key=lambda crossing: abs(crossing["speed_rpm"])))
     if rest := len(campbell["crossings"]) - len(nearest):
         yield f"{counted(rest, 'more crossing')} in the JSON, further off or of orders that hardly excite the mode."
     yield from campbell["unsettled"]

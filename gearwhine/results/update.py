@@ -20,15 +20,15 @@ def _known(value: float) -> float | None:
 
 
 PARAMETER = (
-    Quantity("name", lambda one: one.parameter.name, "parameter", (), "", "name of the parameter", heading="parameter"),
-    Quantity("keys", lambda one: [key_of(location) for location in one.number.places]),
-    Quantity("factor", lambda one: one.number.given.factor),
-    Quantity("unit", lambda one: one.number.given.unit),
-    Quantity("", lambda one: one.number.given.unit or "1", "unit", long_name="unit of the parameter"),
-    Quantity("unit_in_si", lambda one: one.unit_in_si),
+    Quantity("name", lambda row: row.parameter.name, "parameter", (), "", "name of the parameter", heading="parameter"),
+    Quantity("keys", lambda row: [key_of(location) for location in row.number.places]),
+    Quantity("factor", lambda row: row.number.given.factor),
+    Quantity("unit", lambda row: row.number.given.unit),
+    Quantity("", lambda row: row.number.given.unit or "1", "unit", long_name="unit of the parameter"),
+    Quantity("unit_in_si", lambda row: row.unit_in_si),
     Quantity(
         "before",
-        lambda one: one.number.start,
+        lambda row: row.number.start,
         "value_before",
         long_name="value before the fit, in the unit of the parameter",
         heading="before (SI)",
@@ -36,7 +36,7 @@ PARAMETER = (
     ),
     Quantity(
         "after",
-        lambda one: one.value,
+        lambda row: row.value,
         "value_after",
         long_name="value after the fit, in the unit of the parameter",
         heading="after (SI)",
@@ -44,18 +44,18 @@ PARAMETER = (
     ),
     Quantity(
         "standard_deviation",
-        lambda one: one.deviation,
+        lambda row: row.deviation,
         "value_deviation",
         long_name="standard deviation of the value, in the unit of the parameter",
         heading="± (SI)",
         shown=".2g",
     ),
-    Quantity("prior", lambda one: {"nominal": one.parameter.nominal, "spread": one.parameter.spread}),
-    Quantity("range", lambda one: [one.parameter.low, one.parameter.high]),
-    Quantity("at_end_of_range", lambda one: one.is_at_end),
-    Quantity("left_of_prior_spread", lambda one: one.left),
+    Quantity("prior", lambda row: {"nominal": row.parameter.nominal, "spread": row.parameter.spread}),
+    Quantity("range", lambda row: [row.parameter.low, row.parameter.high]),
+    Quantity("at_end_of_range", lambda row: row.is_at_end),
+    Quantity("left_of_prior_spread", lambda row: row.left),
 )
-"""Of a fitted number."""
+"""Quantities of a fitted number."""
 
 PAIR = (
     Quantity("measured_hz", lambda pair: pair.measured / HERTZ, "measured_frequency", (), "Hz", "measured frequency"),
@@ -101,7 +101,7 @@ PAIR = (
     Quantity("strength", lambda pair: pair.strength),
     Quantity("left_uncertain_percent", lambda pair: None if pair.uncertainty is None else 100.0 * pair.uncertainty),
 )
-"""Of a measured mode and its partner before and after."""
+"""Quantities of a measured mode and its partner before and after the fit."""
 
 CHOICE = (  # of the dominant modes, which shapes leave open
     Quantity("gap", lambda misfit: misfit.gap if misfit.mac is None else None),
@@ -114,7 +114,7 @@ MISFIT = (
     *CHOICE,
     Quantity("model_modes", lambda misfit: misfit.count),
 )
-"""Of a design seen from the measured modes."""
+"""Misfit of a design to the measured modes."""
 
 STEP = (
     Quantity("promised", lambda step: step.promised),
@@ -123,7 +123,7 @@ STEP = (
     Quantity("trust", lambda step: step.trust),
     Quantity("rms_error_percent", lambda step: step.rms_percent),
 )
-"""Of a design solved on the way."""
+"""Quantities of a step of the search."""
 
 IDENTIFIABILITY = (
     Quantity("parameters", lambda solved: len(solved.fitted.numbers)),
@@ -136,8 +136,8 @@ IDENTIFIABILITY = (
     Rows(
         "confounded",
         lambda solved: [
-            ([solved.found[one].parameter.name, solved.found[other].parameter.name], correlation)
-            for one, other, correlation in solved.posterior.confounded
+            ([solved.found[first].parameter.name, solved.found[second].parameter.name], correlation)
+            for first, second, correlation in solved.posterior.confounded
         ],
         (Quantity("parameters", lambda row: row[0]), Quantity("correlation", lambda row: row[1])),
     ),
@@ -171,7 +171,7 @@ HELD_BACK = (
         shown=".2f",
     ),
 )
-"""Of a mode that was left out of the fit, and predicted by it."""
+"""Quantities of a mode that the fit leaves out and predicts."""
 
 NULL_FIT = (
     Quantity("frequencies_hz", lambda fit: fit.frequencies / HERTZ),
@@ -182,7 +182,7 @@ NULL_FIT = (
     Quantity("model_modes", lambda fit: fit.count),
     Quantity("all_met", lambda fit: fit.is_met),
 )
-"""Of a set of frequencies fitted likewise."""
+"""Quantities of the fit of one set of frequencies."""
 
 NULL = (
     Quantity("sets", lambda test: len(test.fits)),
@@ -196,7 +196,7 @@ NULL = (
     Part("measured_likewise", lambda test: test.measured, NULL_FIT),
     Rows("fits", lambda test: test.fits, NULL_FIT),
 )
-"""Of random sets of frequencies, and the parts of them that are fitted well."""
+"""Quantities of random sets of frequencies: the parts of them that the search fits well."""
 
 UPDATE = (
     Rows("parameters", lambda solved: solved.found, PARAMETER, "parameter"),
@@ -236,7 +236,7 @@ UPDATE = (
     Rows("held_back", lambda solved: solved.held_back or ABSENT, HELD_BACK),
     Part("null", lambda solved: solved.null or ABSENT, NULL),
 )
-"""Of an updated housing."""
+"""Quantities of an updated housing."""
 
 
 def update_document(case: "Case", solved: "SolvedUpdate") -> dict[str, Any]:
@@ -335,8 +335,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     else:
         random = "How often random frequencies are fitted as well: --null 20. " if document["gap"] is not None else ""
         yield random + "Modes held back: --held-back."
-    for each in document.get("warnings", ()):
-        yield f"Mind: {each['message']}."
+    for entry in document.get("warnings", ()):
+        yield f"Mind: {entry['message']}."
 
 
 def _fit(document: Document) -> Iterator[str]:
@@ -366,29 +366,29 @@ def _choice(document: Document) -> str:
     return f"gap {document['gap']:.2f}, the three measures of dominance {agree}"
 
 
-def _identifiability(told: Document) -> Iterator[str]:
-    learned = counted(told["learned_combinations"], "combination")
+def _identifiability(identifiability: Document) -> Iterator[str]:
+    learned = counted(identifiability["learned_combinations"], "combination")
     yield (
-        f"Of {told['parameters']} parameters the data tell {learned} better than the prior did; the rest stays what "
-        "was assumed."
+        f"Of {identifiability['parameters']} parameters the data tell {learned} better than the prior did; the rest "
+        "stays what was assumed."
     )
-    for row in told["confounded"][:6]:
-        one, other = row["parameters"]
-        yield f"  not told apart: {one} and {other} (correlation {row['correlation']:+.2f})"
+    for row in identifiability["confounded"][:6]:
+        first, second = row["parameters"]
+        yield f"  not told apart: {first} and {second} (correlation {row['correlation']:+.2f})"
 
 
 def _null(null: Document) -> Iterator[str]:
     """Yield lines on how often random frequencies are fitted as well as the measured ones."""
-    five, two, one, met, rms = (
+    within_5, within_2, within_1, met, rms = (
         f"{100 * null[key]:.0f} %"
         for key in ("within_5_percent", "within_2_percent", "within_1_percent", "all_met", "as_good_in_rms")
     )
-    own = null["measured_likewise"]
+    measured = null["measured_likewise"]
     yield (
-        f"Of {null['sets']} random sets of as many frequencies the same search on the coarser mesh fits {five} within "
-        f"5 %, {two} within 2 % and {one} within 1 % each, and meets for {met} all that is asked for."
+        f"Of {null['sets']} random sets of as many frequencies the same search on the coarser mesh fits {within_5} "
+        f"within 5 %, {within_2} within 2 % and {within_1} within 1 % each, and meets for {met} all that is asked for."
     )
     yield (
-        f"The measured ones come there to {own['rms_error_percent']:.2f} % root mean square, "
-        f"{own['max_error_percent']:.2f} % at most; {rms} of the random sets do as well."
+        f"The measured ones come there to {measured['rms_error_percent']:.2f} % root mean square, "
+        f"{measured['max_error_percent']:.2f} % at most; {rms} of the random sets do as well."
     )

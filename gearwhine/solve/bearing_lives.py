@@ -21,7 +21,7 @@ class BearingLife:
     given_rating : float or None
         Dynamic rating C that the case gives [N].
     speed : float or None
-        Of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
+        Speed of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
     """
 
     state: RollingState
@@ -63,9 +63,9 @@ class BearingLife:
 
 def given_ratings(case: Case) -> dict[str, float]:
     """Dynamic ratings C that the case gives [N], by the names of its rolling bearings."""
-    found = {
-        one.name: one.stiffness.rolling.dynamic_rating
-        for one in case.bearing
-        if isinstance(one.stiffness, RollingStiffness)
+    ratings = {
+        bearing.name: bearing.stiffness.rolling.dynamic_rating
+        for bearing in case.bearing
+        if isinstance(bearing.stiffness, RollingStiffness)
     }
-    return {name: rating for name, rating in found.items() if rating is not None}
+    return {name: rating for name, rating in ratings.items() if rating is not None}

@@ -36,10 +36,10 @@ class CheckedRotor:
     Attributes
     ----------
     given : Rotor
-        As the case has it.
+        Table of the rotor in the case.
     built : rotors.Rotor
     speed : float or None
-        [rad/s]; None without an operation.
+        Speed in operation [rad/s]; None without an operation.
     """
 
     given: Rotor
@@ -57,9 +57,9 @@ class CheckedPair:
     geometry : coupling.gears.GearPairGeometry
     misalignment : TakenMisalignment
     mesh_frequency : float or None
-        [Hz]; None without an operation.
+        Mesh frequency [Hz]; None without an operation.
     torque : float or None
-        On the driver [N m]; likewise.
+        Torque on the driver [N m]; None without an operation.
     """
 
     given: GearPair
@@ -82,13 +82,13 @@ class CheckedCase:
     ----------
     case : Case
     mesh : MeshPreview or None
-        Of the housing.
+        Mesh of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
     locations : tuple of coupling.machine.axial_location.AxialLocation
-        Of each rotor along its axis.
+        Axial location of each rotor.
     warnings : list of dict
-        As the documents have them.
+        Warnings, as in the documents.
     """
 
     case: Case
@@ -123,15 +123,17 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
-    warnings += fit_warnings(case, {one.given.name: one.built for one in rotors}, None if mesh is None else mesh.mesh)
+    warnings += fit_warnings(
+        case, {rotor.given.name: rotor.built for rotor in rotors}, None if mesh is None else mesh.mesh
+    )
     warnings += operation_warnings(case)
     locations = axial_locations(case)
-    speeds = {one.given.name: one.speed for one in rotors if one.speed is not None}
+    speeds = {rotor.given.name: rotor.speed for rotor in rotors if rotor.speed is not None}
     warnings += centrifugal_warnings(
-        (one.name, one.rolling, speeds[location.shaft])
+        (bearing.name, bearing.rolling, speeds[location.shaft])
         for location in locations
-        for one in location.bearings
-        if one.rolling is not None and location.shaft in speeds
+        for bearing in location.bearings
+        if bearing.rolling is not None and location.shaft in speeds
     )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
@@ -159,7 +161,7 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
     speeds = rotor_speeds(case) if case.operation is not None else {}
-    return tuple(CheckedRotor(given, build_rotor(case, given), speeds.get(given.name)) for given in case.rotor)
+    return tuple(CheckedRotor(entry, build_rotor(case, entry), speeds.get(entry.name)) for entry in case.rotor)
 
 
 def checked_pairs(case: Case) -> Iterator[CheckedPair]:

@@ -43,10 +43,10 @@ from meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
-_ABOVE = 1.05  # of the highest measured frequency: the model's modes must be known up to there, as for dominance
+_ABOVE = 1.05  # limit of the model's modes over the highest measured frequency, as for dominance
 
-# Places looked at for each sensor, and in all at least: more of them stand closer, and the method takes neighbours,
-# which say the same twice.
+# Candidate places for each sensor, and the least number of all. With denser candidates the method chooses neighbours,
+# which measure the same twice.
 _PLACES, _FEWEST = 4, 100
 _PLAN_FILES = ("survey.uff", "survey.csv")
 
@@ -60,18 +60,18 @@ def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
         Where nothing is measured, or the responses hold no modes that are stable.
     """
     require(case, "measured", command="compare")
-    given = case.measured
-    assert given is not None
-    if given.survey is None:
-        assert given.frequencies is not None
-        ratios = None if given.damping_ratios is None else np.array(given.damping_ratios)
-        return MeasuredModes(_TWO_PI * np.array(given.frequencies), ratios)
-    if given.survey.modes is not None:
-        return given.survey.modes
-    assert given.survey.responses is not None
+    measured = case.measured
+    assert measured is not None
+    if measured.survey is None:
+        assert measured.frequencies is not None
+        ratios = None if measured.damping_ratios is None else np.array(measured.damping_ratios)
+        return MeasuredModes(_TWO_PI * np.array(measured.frequencies), ratios)
+    if measured.survey.modes is not None:
+        return measured.survey.modes
+    assert measured.survey.responses is not None
     progress("finding modes in the measured responses")
     try:
-        return identify_modes(given.survey.responses).modes
+        return identify_modes(measured.survey.responses).modes
     except HousingError as error:
         raise CaseError([Problem("measured.file", UNSAID, f"responses with modes in them; {error}")]) from error
 
@@ -84,18 +84,18 @@ def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSu
     CaseError
         Where it cannot be aligned, or most of its points are far from the surface.
     """
-    given = case.measured
-    assert given is not None
+    measured = case.measured
+    assert measured is not None
     alignment: Alignment | None = None
     key = "align"
     try:
-        if given.align is True:
+        if measured.align is True:
             alignment = align_to_surface(mesh, geometry)
-        elif given.align is not False:
-            landmarks = {landmark.point: landmark.position for landmark in given.align.landmarks}
+        elif measured.align is not False:
+            landmarks = {landmark.point: landmark.position for landmark in measured.align.landmarks}
             alignment = align_landmarks(geometry, landmarks)
         key = "file"
-        return map_survey(mesh, geometry, alignment=alignment, tolerance=given.tolerance)
+        return map_survey(mesh, geometry, alignment=alignment, tolerance=measured.tolerance)
     except HousingError as error:
         raise CaseError([Problem(f"measured.{key}", UNSAID, f"a survey of this housing; {error}")]) from error
 
@@ -118,7 +118,7 @@ def compare_with_survey(
     Returns
     -------
     tuple
-        The pairs, and how the survey lies on the model, where there was one.
+        The comparison, and the survey on the model; None without a survey.
 
     Raises
     ------
@@ -143,14 +143,14 @@ class ResponseCorrelation:
     Attributes
     ----------
     geometry : MeasuredGeometry
-        Of the motions.
+        Points and directions of the motions.
     references : MeasuredGeometry
-        Of the forces.
+        Points and directions of the forces.
     band : tuple of float
-        First and last line compared [rad/s].
+        Frequencies of the first and the last line compared [rad/s].
     n_lines : int
     frac : ndarray, shape (n_dofs, n_references)
-        NaN where a pair was not measured.
+        FRAC of each pair; NaN where it was not measured.
     """
 
     geometry: MeasuredGeometry
@@ -166,9 +166,9 @@ class ResponseCorrelation:
 
     @property
     def mean(self) -> float | None:
-        """Mean of those measured; None where there are none."""
-        known = np.isfinite(self.frac)
-        return float(self.frac[known].mean()) if known.any() else None
+        """Mean FRAC of the measured responses; None without any."""
+        is_measured = np.isfinite(self.frac)
+        return float(self.frac[is_measured].mean()) if is_measured.any() else None
 
 
 def compare_responses(
@@ -181,7 +181,7 @@ def compare_responses(
     case : Case
     solved : SolvedHousing
     survey : MappedSurvey
-        The motions' degrees of freedom on the model.
+        Degrees of freedom of the motions on the model.
     responses : MeasuredResponses
 
     Raises
@@ -199,8 +199,8 @@ def compare_responses(
     forces = replace(
         responses.geometry, points=responses.reference_points, directions=responses.reference_directions, lines=()
     )
-    given = case.measured
-    tolerance = None if given is None else given.tolerance
+    measured = case.measured
+    tolerance = None if measured is None else measured.tolerance
     driven = map_survey(solved.mesh, forces, alignment=survey.alignment, tolerance=tolerance)
     frequencies = responses.frequencies[lines]
     model = synthesised_responses(
@@ -219,8 +219,8 @@ def compare_responses_document(
     case: Case, solved: SolvedHousing, survey: MappedSurvey
 ) -> ResponseCorrelation | str | None:
     """Correlation of a case's frequency responses, or the reason why there is none; None without measured responses."""
-    given = case.measured
-    responses = None if given is None or given.survey is None else given.survey.responses
+    measured = case.measured
+    responses = None if measured is None or measured.survey is None else measured.survey.responses
     if responses is None:
         return None
     try:
@@ -244,7 +244,7 @@ def pair_modes(
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
     rule : PairingRule, optional
-        Of the pairing by shape.
+        Rule of the pairing by shape.
 
     Raises
     ------
@@ -320,9 +320,9 @@ def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | N
     """
     elastic = np.flatnonzero(solved.modes.frequencies > 0.0)[:modes]
     seats = [block for name in solved.seats for block in solved.mesh.surface(name)]
-    held = [block for support in build_supports(case) for block in support.facets(solved.mesh)]
+    supported = [block for support in build_supports(case) for block in support.facets(solved.mesh)]
     try:
-        candidates = candidate_points(solved.mesh, max(_FEWEST, _PLACES * sensors), without=(*seats, *held))
+        candidates = candidate_points(solved.mesh, max(_FEWEST, _PLACES * sensors), without=(*seats, *supported))
         shapes = map_survey(solved.mesh, candidates).shapes(solved.modes.shapes[elastic])
         plan = plan_survey(shapes, sensors)
     except HousingError as error:

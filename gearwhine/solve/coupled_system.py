@@ -32,11 +32,11 @@ _TWO_PI = 2.0 * np.pi
 MESH_HARMONICS = 3
 """Harmonics of each mesh in a Campbell diagram, by default."""
 
-_LOWEST_HZ = 20.0  # of a frequency response
-_HARMONICS = 4.0  # of the mesh that a response covers where no housing says how far the model goes
-_MODES = 6  # at least so many of the lowest are in a diagram
-_UNBALANCE_STEPS = 200  # of the response over speed
-_DIRECT = 24  # frequencies at which superposition is held against the solved system
+_LOWEST_HZ = 20.0  # lowest frequency of a response
+_HARMONICS = 4.0  # mesh harmonics that a response covers where no housing limits the model
+_MODES = 6  # least number of modes in a diagram
+_UNBALANCE_STEPS = 200  # speeds of the response to unbalance
+_DIRECT = 24  # frequencies at which superposition is compared with the solved system
 
 
 @dataclass(frozen=True)
@@ -47,25 +47,25 @@ class SolvedSystem:
     ----------
     machine : coupling.CoupledMachine
     speed : float
-        Of operation [rad/s].
+        Speed of operation [rad/s].
     housing : SolvedHousing or None
-        Whose modes the machine stands on.
+        Housing of the machine.
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
     contact : ContactState
-        About which the modes and the responses to mesh errors are.
+        Contact about which modes and responses to mesh errors are linear.
     modes : CoupledModes
     stability : Stability
     responses : tuple of FrequencyResponse
-        To a unit transmission error of each mesh.
+        Responses to a unit transmission error of each mesh.
     superposition_error : float or None
-        Largest difference of these from solving the system, at some frequencies, as a part of the largest amplitude.
+        Largest difference of these from direct solutions, at some frequencies, as a part of the largest amplitude.
     campbell : SystemCampbell or None
-        Where speeds were given or asked for.
+        Campbell diagram, where it is asked for.
     unbalance : tuple of FrequencyResponse
-        To the unbalances of each rotor that has any, over the speeds of the diagram.
+        Responses to the unbalances of each rotor that has any, over the speeds of the diagram.
     unbalance_speeds : ndarray, shape (u,)
-        Of the leading rotor [rad/s].
+        Speeds of the leading rotor [rad/s].
     lines : tuple of ResponseParts
         Motions at the mesh harmonics of operation by transmission error and load shuttling, with a housing that has
         sensors, about the mean contact.
@@ -106,17 +106,19 @@ def solve_system(
 
     Parameters
     ----------
-    case, machine, housing
-        The case and what was built of it.
-    progress
-        Told what is solved.
-    mesh_phase
-        At which the teeth of the first pair stand, 0 to 1; the mean contact where not given.
-    over_speed
-        Whether the Campbell diagram and the response to unbalance are wanted.
-    sidebands
-        How many the diagram shows on either side of each mesh order, at the distance of either gear's shaft order.
-    mesh_harmonics
+    case : Case
+    machine : CoupledMachine
+        Machine of the case.
+    housing : SolvedHousing or None
+        Housing of the machine.
+    progress : callable
+    mesh_phase : float, optional
+        Phase at which the teeth of the first pair stand, 0 to 1; by default the mean contact.
+    over_speed : bool
+        Whether to solve the Campbell diagram and the response to unbalance as well.
+    sidebands : int
+        Number of shaft-order sidebands of either gear, drawn on each side of every mesh order.
+    mesh_harmonics : int
         Number of harmonics of each mesh whose resonances the diagram has.
 
     Raises
@@ -187,27 +189,27 @@ def _mesh_responses(
     modes: CoupledModes,
     contact: ContactState,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
-    """Responses to the error of each mesh by superposition, and how far they are from solving the system."""
+    """Return responses to the error of each mesh by superposition, and their largest error against direct solutions."""
     touching = [number for number in range(len(machine.meshes)) if contact.stiffness[number] > 0.0]
     if not touching:
         return (), None
     limit = _frequency_limit(case, housing)
     frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
     try:
-        found = [
+        responses = [
             mesh_error_response(machine, frequencies, mesh=number, contact=contact, modes=modes) for number in touching
         ]
     except ModesError:
-        # Modes that are all but one cannot be superposed; the system itself can always be solved.
+        # Nearly parallel modes cannot be superposed; the system itself can always be solved.
         solved = [mesh_error_response(machine, frequencies, mesh=number, contact=contact) for number in touching]
         return tuple(solved), None
     chosen = np.unique(np.linspace(0, frequencies.size - 1, _DIRECT).astype(int))
-    worst = 0.0
-    for number, by_modes in zip(touching, found, strict=True):
+    largest = 0.0
+    for number, by_modes in zip(touching, responses, strict=True):
         direct = mesh_error_response(machine, frequencies[chosen], mesh=number, contact=contact)
         difference = np.abs(by_modes.coordinates[chosen] - direct.coordinates)
-        worst = max(worst, float(difference.max() / np.abs(direct.coordinates).max()))
-    return tuple(found), worst
+        largest = max(largest, float(difference.max() / np.abs(direct.coordinates).max()))
+    return tuple(responses), largest
 
 
 def _sensor_lines(machine: CoupledMachine, housing: SolvedHousing | None) -> tuple[ResponseParts, ...]:
@@ -250,7 +252,7 @@ def _over_speed(
         contact=mean,
         progress=lambda fraction: progress("coupled modes over speed", fraction),
     )
-    driven = list(dict.fromkeys(one.rotor for one in machine.loads.unbalances if one.moment != 0.0))
+    driven = list(dict.fromkeys(unbalance.rotor for unbalance in machine.loads.unbalances if unbalance.moment != 0.0))
     turning = np.linspace(speeds[0] or speeds[-1] / _UNBALANCE_STEPS, speeds[-1], _UNBALANCE_STEPS)
     unbalance = []
     for rotor in driven:

@@ -1,6 +1,6 @@
 """Analysis of a gear pair under the case's torque: load sharing, contact pressure, transmission error.
 
-Over a range of torques these give Harris maps and the optimal tip relief, whose aim is peak to peak, weighted
+Analyses over a range of torques give Harris maps and the optimal tip relief, whose aim is peak to peak, weighted
 harmonics, or the level at a sensor.
 """
 
@@ -49,8 +49,8 @@ from gearwhine.solve.machine import build_machine
 FloatArray = npt.NDArray[np.float64]
 
 HARMONICS = 8
-_PHASES = 400  # of the mesh period, evenly, for curves that pairs have in common
-_PLACES = 200  # along a flank
+_PHASES = 400  # even phases of the mesh period, for the curves of all pairs
+_PLACES = 200  # places along a flank
 _AIMED_AT = 8  # harmonics of the mesh frequency, where the case does not name them
 
 
@@ -63,15 +63,15 @@ class MeshPeriodCurves:
     phases : ndarray, shape (n,)
         Parts of the mesh period.
     mesh : LoadedMesh
-        Under the case's torque.
+        Loaded mesh under the case's torque.
     stiffness : ndarray, shape (n,)
-        Of all pairs on the path of contact [N/m].
+        Mesh stiffness of all pairs on the path of contact [N/m].
     unloaded : ndarray, shape (n,)
         Transmission error without load [m].
     position : ndarray, shape (n, m)
         Place on the path of contact [base pitches].
     share : ndarray, shape (n, m)
-        Part of the load.
+        Part of the load on each tooth pair.
     pressure : ndarray, shape (n, m)
         Hertzian pressure, the largest over the face [Pa]; NaN where it is not known.
     face_place : ndarray, shape (s,), or None
@@ -95,13 +95,12 @@ class PairAnalysis:
     Attributes
     ----------
     given : GearPair
-        As in the case.
+        Table of the pair in the case.
     solved : LoadedGearPair
     misalignment : TakenMisalignment
-        Of the flanks.
+        Misalignment of the flanks.
     widths_given : tuple of bool
-        Whether the case gives the face width of the driver and of the driven gear; one that only stands in for it says
-        nothing of a pressure.
+        Whether the case gives the face width of the driver and of the driven gear; no pressure follows from a default.
     unloaded : ndarray, shape (n,)
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
@@ -109,12 +108,12 @@ class PairAnalysis:
         `coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or face widths in the
         case.
     pitch_pressure : float or None
-        The largest at the pitch point [Pa]; None also where that is not on the path of contact.
+        Largest pressure at the pitch point [Pa]; None also where that is not on the path of contact.
     harris : HarrisMap or None
-        From a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
+        Map from a tenth to twice the case's torque, with all teeth alike: without pitch deviations and damage. None
         unless asked for, and without a torque.
     optimum : ReliefOptimum or None
-        The relief that suits the case's torque, with all teeth alike; None unless asked for, and without a torque or
+        Best relief for the case's torque, with all teeth alike; None unless asked for, and without a torque or
         single pairs.
     """
 
@@ -170,9 +169,9 @@ class PairAnalysis:
         geometry, faces, positions = self.solved.geometry, self.solved.contact.faces, self.solved.static.positions
         if faces is not None:
             positions = positions[..., None] + faces.shift
-        known = np.nan_to_num(self.pressure, nan=0.0, posinf=np.inf)
-        place = np.unravel_index(int(known.argmax()), known.shape)
-        return float(known[place]), float(geometry.driver_roll_angle(positions[place]))
+        pressure = np.nan_to_num(self.pressure, nan=0.0, posinf=np.inf)
+        place = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        return float(pressure[place]), float(geometry.driver_roll_angle(positions[place]))
 
     def curves(self) -> MeshPeriodCurves:
         """Return the pair's curves at even phases of the mesh period."""
@@ -200,7 +199,7 @@ class PairAnalysis:
     def harmonics(self) -> FloatArray:
         """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
 
-        Over the whole hunting period where mesh periods differ: what is not of the mesh frequency averages out.
+        They are of the whole hunting period where mesh periods differ: other frequencies average out.
         """
         mesh, hunting = self.solved.static, self.solved.hunting
         if hunting is not None:
@@ -211,7 +210,7 @@ class PairAnalysis:
 
     @property
     def unloaded_harmonics(self) -> FloatArray:
-        """The same without load, over the mesh period of ``solved.static`` [m], (8,)."""
+        """Harmonics of the transmission error without load, over the mesh period of ``solved.static`` [m], (8,)."""
         return transmission_error_harmonics(replace(self.solved.static, transmission_error=self.unloaded), HARMONICS)
 
     @property
@@ -223,7 +222,7 @@ class PairAnalysis:
 
     @property
     def pairs_in_contact(self) -> dict[int, float]:
-        """For how much of the mesh period so many pairs carry; each phase stands for up to half way to the next."""
+        """Part of the mesh period by number of pairs that carry; a phase counts up to half way to its neighbours."""
         static = self.solved.static
         touching = (static.pair_forces > 0.0).sum(axis=1)
         around = np.concatenate([[static.phases[-1] - 1.0], static.phases, [static.phases[0] + 1.0]])
@@ -255,7 +254,7 @@ def analyse_pairs(
     ``point`` is the machine's operating point, where it is solved.
     """
     rows = zip(case.gear_pair, solved, taken_misalignments(case, point), strict=True)
-    return tuple(_analysis(case, given, pair, taken) for given, pair, taken in rows)
+    return tuple(_analysis(case, entry, pair, misalignment) for entry, pair, misalignment in rows)
 
 
 def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
@@ -263,14 +262,14 @@ def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
     return np.asarray(contact.pairs(phases).deviation.min(axis=1), dtype=np.float64)
 
 
-def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair, taken: TakenMisalignment) -> PairAnalysis:
+def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair, misalignment: TakenMisalignment) -> PairAnalysis:
     unloaded = first_touch(pair.contact, pair.static.phases)
     driver, driven = case.gear_named(pair.pair.driver), case.gear_named(pair.pair.driven)
-    given = driver.face_width is not None, driven.face_width is not None
-    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(given):
-        return PairAnalysis(entry, pair, taken, given, unloaded, None, None)
+    widths_given = driver.face_width is not None, driven.face_width is not None
+    if pair.static.force == 0.0 or not pair.has_single_pairs or not all(widths_given):
+        return PairAnalysis(entry, pair, misalignment, widths_given, unloaded, None, None)
     pressure = mesh_pressure(pair.geometry, pair.contact, pair.static)
-    return PairAnalysis(entry, pair, taken, given, unloaded, pressure, _pitch_pressure(pair))
+    return PairAnalysis(entry, pair, misalignment, widths_given, unloaded, pressure, _pitch_pressure(pair))
 
 
 def _pitch_pressure(pair: LoadedGearPair) -> float | None:
@@ -285,8 +284,8 @@ def _pitch_pressure(pair: LoadedGearPair) -> float | None:
     return float(pressure[passing].max())
 
 
-_SEARCHED_SLICES = 21  # of a face, while the best relief is sought
-_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # of the case's torque, in a Harris map
+_SEARCHED_SLICES = 21  # slices of a face in the search for the best relief
+_LEAST, _MOST, _TORQUES = 0.1, 2.0, 20  # range of a Harris map as parts of the case's torque, and number of torques
 
 
 def solve_over_torques(
@@ -296,7 +295,7 @@ def solve_over_torques(
 
     ``aims`` are those of the reliefs, one for each pair; all peak to peak where not given.
     """
-    found = []
+    analysed = []
     for pair, aim in zip(pairs, aims or [PeakToPeak()] * len(pairs), strict=True):
         if pair.solved.static.force > 0.0:
             progress(f"Harris map of {pair.label}")
@@ -304,8 +303,8 @@ def solve_over_torques(
             if pair.solved.has_single_pairs:
                 progress(f"best tip relief of {pair.label}")
                 pair = replace(pair, optimum=_best_relief(pair.solved, aim))
-        found.append(pair)
-    return tuple(found)
+        analysed.append(pair)
+    return tuple(analysed)
 
 
 def _harris_map(pair: LoadedGearPair) -> HarrisMap:
@@ -318,14 +317,14 @@ def _harris_map(pair: LoadedGearPair) -> HarrisMap:
 
 
 def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
-    given = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
+    relief = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
     geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
     corners = pair.contact.has_corner_contact
     return optimal_tip_relief(
         geometry,
         pair.model,
         [force],
-        shape="linear" if given is None else given.shape,
+        shape="linear" if relief is None else relief.shape,
         corner_contact=corners,
         faces=faces,
         searched_faces=None if faces is None else with_coarser_slices(faces, _SEARCHED_SLICES),
@@ -364,33 +363,35 @@ def relief_aims(
     CouplingError
         Where the machine's loads cannot balance, so that a pair has no mean force in it.
     """
-    aims = [given.relief_aim for given in case.gear_pair]
+    aims = [entry.relief_aim for entry in case.gear_pair]
     if all(aim is None or aim.sensor is None for aim in aims):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = solve_housing(case, progress, folder=folder)
     model = MeshHarmonicModel(build_machine(case, housing, pairs, progress))
     limit = housing.trusted_limit_hz
-    found = []
+    objectives = []
     for number, (pair, aim) in enumerate(zip(pairs, aims, strict=True)):
         if aim is None or aim.sensor is None:
-            found.append(_without_sensor(aim))
+            objectives.append(_without_sensor(aim))
             continue
         if pair.static.force == 0.0:
-            # Of a pair without load no relief is sought.
-            found.append(PeakToPeak())
+            # A pair without load has no best relief.
+            objectives.append(PeakToPeak())
             continue
         key = f"gear_pair[{number}].relief_aim"
         if not pair.mesh_frequency:
             raise CaseError([Problem(key, NOTHING, "a speed: the level at a sensor is of gears that turn")])
-        given = aim.weights or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
-        weights = {n: weight for n, weight in given.items() if weight and n * pair.mesh_frequency <= limit}
+        all_weights = aim.weights or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
+        weights = {n: weight for n, weight in all_weights.items() if weight and n * pair.mesh_frequency <= limit}
         if not weights:
             expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"
-            raise CaseError([Problem(f"{key}.harmonics", list(given), f"{expected}, up to which the modes are known")])
+            raise CaseError(
+                [Problem(f"{key}.harmonics", list(all_weights), f"{expected}, up to which the modes are known")]
+            )
         follows = pair.pair.damping is None
-        found.append(SensorLevel(model, number, aim.sensor, weights, damping_follows=follows))
-    return tuple(found)
+        objectives.append(SensorLevel(model, number, aim.sensor, weights, damping_follows=follows))
+    return tuple(objectives)
 
 
 def _without_sensor(aim: GivenAim | None) -> ReliefAim:

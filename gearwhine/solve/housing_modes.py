@@ -75,8 +75,8 @@ MODES_CODE = (
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
 _TWO_PI = 2.0 * np.pi
 _COORDINATES = ("coordinate", "other_coordinate")
-_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the modes worth keeping
-_DAMPING = "modal_damping"  # its name in a mode-set file
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the selection of modes
+_DAMPING = "modal_damping"  # name of the damping matrix in a mode-set file
 _DIRECTIONS = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
 
 
@@ -86,24 +86,25 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
     Parameters
     ----------
     case : Case
-        With a housing.
+        Case with a housing.
     mesh : Mesh, optional
-        The mesh of ``[housing.mesh]``: it counts as it was read, so that neither the file's name nor its format
-        matters, and what a file refers to does.
+        Mesh of ``[housing.mesh]``: its content counts, not the name or the format of its file.
     """
-    given = case.housing
-    assert given is not None
-    files = file_contents(given.model_dump())
-    if given.mesh is not None and mesh is not None:
-        files[str(given.mesh.file)] = {"mesh": mesh_digest(mesh)}
+    table = case.housing
+    assert table is not None
+    files = file_contents(table.model_dump())
+    if table.mesh is not None and mesh is not None:
+        files[str(table.mesh.file)] = {"mesh": mesh_digest(mesh)}
     bearings = {name: list(place) for name, place in bearing_places(case).items()}
-    written = given.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=set(_WITHOUT_EFFECT))
+    written = table.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=set(_WITHOUT_EFFECT))
     named = texts_in(written)
     return {
         "housing": with_contents(written, files),
         "bearings": bearings,
         "attachment_orders": RESPONSE_ORDERS,
-        "material": {name: one.model_dump(mode="json") for name, one in case.material.items() if name in named},
+        "material": {
+            name: material.model_dump(mode="json") for name, material in case.material.items() if name in named
+        },
         "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
         "source": source_digest(*MODES_CODE),
     }
@@ -136,12 +137,12 @@ class SolvedHousing:
     ----------
     mesh : Mesh
     mass : float
-        With the masses attached [kg].
+        Mass with the attached masses [kg].
     attached_mass : float
-        Of these alone [kg].
+        Sum of the attached masses [kg].
     modes : housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
-        As the case gives them; see :attr:`total_damping_ratios`.
+        Damping ratios that the case gives; see :attr:`total_damping_ratios`.
     damping_matrix : ndarray, shape (n_modes, n_modes), or None
         Modal damping matrix of dashpots, mounts and joints [1/s]; None where nothing damps.
     seats : dict of str to ndarray, shape (n_modes, 6)
@@ -154,11 +155,11 @@ class SolvedHousing:
     sensors : dict of str to SensorPort
     survey : Survey
     strengths : Dominance or None
-        None where there are no seats.
+        Dominance of the modes; None without seats.
     checks : dict
         Health report, effective masses and the mass of the solid as their documents.
     seconds : dict of str to float
-        Time taken by mesh, assembly, factorisation, eigensolver and in total; also by reading, where the modes were.
+        Times of mesh, assembly, factorisation, eigensolver and of all [s]; of reading, where the modes are read.
     record : ModeRecord
         Content of its mode-set file.
     source : Path or None
@@ -195,7 +196,7 @@ class SolvedHousing:
 
     @property
     def total_damping_ratios(self) -> FloatArray:
-        """Each mode's ratio with its own share of what is attached; the coupling of modes by it left aside."""
+        """Damping ratio of each mode with the diagonal of the damping matrix; the coupling of modes is left out."""
         return housing_damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
     @property
@@ -248,13 +249,13 @@ def solve_housing(
     progress : callable
         Receives the next step in words.
     command : str
-        On whose behalf, for messages.
+        Command that needs the modes, for messages.
     folder : path, optional
         A results folder; modes of the same housing cached there are read in place of solving.
     fresh : bool
-        Solve also where they are.
+        Whether to solve the modes even where they are cached.
     before : callable, optional
-        Refuses what is wrong with the rest of a case on the mesh, before the modes are solved.
+        Check of the rest of a case on the mesh, made before the modes are solved.
 
     Raises
     ------
@@ -264,11 +265,11 @@ def solve_housing(
         Where the modes fail their certificate, their static compliance its proof, or the model its checks.
     """
     require(case, "housing", command=command)
-    given = case.housing
-    assert given is not None
+    table = case.housing
+    assert table is not None
     begin = time.perf_counter()
     remarks: list[str] = []
-    mesh = build_mesh(case, remarks.append) if given.mesh is not None else None
+    mesh = build_mesh(case, remarks.append) if table.mesh is not None else None
     inputs = mode_cache_inputs(case, mesh)
     cached, spoilt = read_mode_cache(folder, inputs) if folder is not None and not fresh else (None, None)
     if cached is not None and folder is not None:
@@ -281,7 +282,7 @@ def solve_housing(
         warnings = [warning("geometry", remark) for remark in remarks] + require_meshable(case, mesh)
     meshed = time.perf_counter() - begin
     with noted_on_failure(warnings):
-        # Places and ports before modes: what is wrong with them is found out before the long work.
+        # Places and ports come before the modes: their errors appear before the long work.
         check_places(case, mesh)
         if before is not None:
             before(case, mesh)
@@ -289,7 +290,7 @@ def solve_housing(
         seat_ports = described.seat_ports()
         loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in bearing_places(case).items()}
         sensors = described.sensor_ports()
-        bounds = None if given.box is None else np.array([given.box.lower, given.box.upper])
+        bounds = None if table.box is None else np.array([table.box.lower, table.box.upper])
         survey = survey_grid(mesh, bounds)
         if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
@@ -319,7 +320,7 @@ def solve_housing(
     return SolvedHousing(
         mesh=mesh,
         mass=mass,
-        attached_mass=sum(entry.mass for entry in given.mass),
+        attached_mass=sum(entry.mass for entry in table.mass),
         modes=modes,
         damping_ratios=_damping(case, modes.frequencies_hz),
         damping_matrix=damping_matrix,
@@ -346,25 +347,25 @@ def _solve_modes(
     case: Case, described: Housing, loaded: dict[str, sparse.csr_array], progress: Progress
 ) -> tuple[ModeSet, float, FloatArray | None, dict[str, Any], dict[str, float]]:
     """Solve the modes; return them, the mass [kg], the damping matrix, the checks, and the seconds of each step."""
-    given = case.housing
-    assert given is not None
+    table = case.housing
+    assert table is not None
     begin, mesh = time.perf_counter(), described.mesh
     progress(f"assembling {3 * len(mesh.points)} degrees of freedom")
     free = described.free_matrices()
     matrices = attach_all(case, mesh, free)
     assembled = time.perf_counter() - begin
-    wanted = "modes" if given.frequency_limit is None else "frequency_limit"
+    key = "modes" if table.frequency_limit is None else "frequency_limit"
     try:
         modes = certified_modes(
             matrices,
             loaded,
-            below_hz=given.frequency_limit,
-            count=given.modes,
-            solver=given.solver,
+            below_hz=table.frequency_limit,
+            count=table.modes,
+            solver=table.solver,
             progress=progress,
         )
     except HousingError as error:
-        raise CaseError([Problem(f"housing.{wanted}", UNSAID, f"what this model has; {error}")]) from error
+        raise CaseError([Problem(f"housing.{key}", UNSAID, f"what this model has; {error}")]) from error
     damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
@@ -387,9 +388,9 @@ def describe_housing(case: Case, mesh: Mesh) -> Housing:
     """
     parted, material, materials = materials_of(case, mesh)
     fixtures = [fixture for _, _, fixture in build_attachments(case)]
-    given = case.housing
-    assert given is not None
-    seats, sensors = tuple(seat.build() for seat in given.seat), tuple(sensor.build() for sensor in given.sensor)
+    table = case.housing
+    assert table is not None
+    seats, sensors = tuple(seat.build() for seat in table.seat), tuple(sensor.build() for sensor in table.sensor)
     return Housing(parted, material, materials, fixtures, seats, sensors)
 
 
@@ -418,23 +419,23 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
     """Damping ratio of each mode: one for all, one for each, or by a table of frequency."""
     assert case.housing is not None
-    given = case.housing.damping_ratio
+    ratio = case.housing.damping_ratio
     if case.housing.damping_points:
         places, ratios = np.array(case.housing.damping_points).T
         return np.asarray(np.interp(frequencies_hz, places, ratios))
-    if isinstance(given, tuple):
-        if len(given) < len(frequencies_hz):
+    if isinstance(ratio, tuple):
+        if len(ratio) < len(frequencies_hz):
             expected = f"a ratio for each of the {len(frequencies_hz)} modes found"
-            raise CaseError([Problem("housing.damping_ratio", f"{len(given)} ratios", expected)])
-        return np.array(given[: len(frequencies_hz)])
-    assert isinstance(given, float | int)
-    return np.full(len(frequencies_hz), float(given))
+            raise CaseError([Problem("housing.damping_ratio", f"{len(ratio)} ratios", expected)])
+        return np.array(ratio[: len(frequencies_hz)])
+    assert isinstance(ratio, float | int)
+    return np.full(len(frequencies_hz), float(ratio))
 
 
 def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
     """Bearing positions on the housing: by bearing, its seat and its distance along z from the seat's centre [m].
 
-    Where no bearing has a seat, each seat stands for one at its centre. The housing's attachments are for these.
+    Without bearings in seats, each seat stands for a bearing at its centre. The housing's attachments are for these.
     """
     assert case.housing is not None
     centers = {seat.name: seat.center[2] for seat in case.housing.seat}
@@ -446,9 +447,9 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
     return places or {name: (name, 0.0) for name in centers}
 
 
-def housing_checks(given: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:
-    """Health report, effective masses and the solid's mass, for the documents and for whatever keeps the modes."""
-    solid = mass_properties(given.mesh, given.material, given.materials)
+def housing_checks(described: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:
+    """Return health report, effective masses and the solid's mass, for the documents and the mode cache."""
+    solid = mass_properties(described.mesh, described.material, described.materials)
     return {
         "health": _health_document(health),
         "effective_mass": _mass_document(masses),
@@ -457,7 +458,7 @@ def housing_checks(given: Housing, health: HealthReport, masses: EffectiveMass) 
 
 
 def _health_document(health: HealthReport) -> dict[str, Any]:
-    body, held = health.body, health.grounding
+    body, grounding = health.body, health.grounding
     return {
         "ok": health.ok,
         "lines": [
@@ -474,7 +475,7 @@ def _health_document(health: HealthReport) -> dict[str, Any]:
         "mass_kg": body.mass,
         "center_of_gravity_m": body.center.tolist(),
         "inertia_kg_m2": body.inertia.tolist(),
-        "free_motions": held.free_motions,
+        "free_motions": grounding.free_motions,
         "supports": [
             {
                 "name": support.name,
@@ -483,7 +484,7 @@ def _health_document(health: HealthReport) -> dict[str, Any]:
                 "stiffness_n_m_per_rad": support.stiffness[3:].tolist(),
                 "share": dict(zip(_DIRECTIONS, support.share.tolist(), strict=True)),
             }
-            for support in held.supports
+            for support in grounding.supports
         ],
     }
 

@@ -27,7 +27,7 @@ from housing.modes.residual_modes import leading_residual_modes
 
 FloatArray = npt.NDArray[np.float64]
 
-_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis that tells the error of the first
+_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparison, which gives the error
 
 
 @dataclass(frozen=True)
@@ -195,8 +195,8 @@ def basis_error(
     if housing is None or housing.coarser is None or not housing.component.sensors:
         return None
     progress("comparing with another modal basis")
-    other = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, other, pairs, point=point, limit_factor=_MORE_MODES))
+    coarser = replace(housing, component=housing.coarser)
+    return BasisError(machine, build_machine(case, coarser, pairs, point=point, limit_factor=_MORE_MODES))
 
 
 def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
@@ -206,7 +206,7 @@ def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress
 
 
 def _participation(case: Case, solved: SolvedHousing, progress: Progress) -> FloatArray | None:
-    """Participation in the motions of the ground, where its motion or weight asks for it."""
+    """Return the participation in the motions of the ground, where base motion or weight needs it."""
     assert case.operation is not None
     if case.operation.base is None and case.operation.gravity is None:
         return None
@@ -225,13 +225,13 @@ def _housing_components(
         return component, None
     ports = sparse.csr_array(sparse.vstack(list(solved.loaded.values()), format="csr"))
     fewer, mixture = leading_residual_modes(attached, ports, solved.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
-    taken = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
+    transformation = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
     return component, _housing_component(
         case,
         solved,
         replace(solved.modes, residual_modes=fewer),
-        None if solved.damping_matrix is None else taken.T @ solved.damping_matrix @ taken,
-        None if participation is None else taken.T @ participation,
+        None if solved.damping_matrix is None else transformation.T @ solved.damping_matrix @ transformation,
+        None if participation is None else transformation.T @ participation,
     )
 
 

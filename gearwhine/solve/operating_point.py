@@ -1,8 +1,8 @@
 """Operating point of a case: static equilibrium of the whole machine under its mean load, and its plausibility.
 
-The equilibrium is that of :meth:`coupling.Machine.operating_point`. Here stand the lives of its bearings, and warnings:
-bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that differ from what the
-equilibrium finds.
+The equilibrium is that of :meth:`coupling.Machine.operating_point`. This module adds the lives of its bearings, and
+warnings: bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that differ from
+those of the equilibrium.
 """
 
 import math
@@ -37,12 +37,12 @@ FloatArray = npt.NDArray[np.float64]
 TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""
 
-_PLACES = 201  # along a shaft, where its deflection is told
-_ROUNDED = 1e-15  # deflection that is none [m]
-_DIFFERENCE = 0.1  # part of the larger of two numbers by which they may differ without a word
-_ALIGNED = 1e-6  # difference of misalignments that is none [rad]
-_UNEVEN = 2.0  # K_Hβ beyond which a face is said to carry unevenly
-_SHORT_LIFE = 1000.0  # [h]
+_PLACES = 201  # places along a shaft at which its deflection is given
+_ROUNDED = 1e-15  # deflection up to which it counts as zero [m]
+_DIFFERENCE = 0.1  # difference of two numbers up to which no warning is given, as a part of the larger one
+_ALIGNED = 1e-6  # difference of misalignments up to which no warning is given [rad]
+_UNEVEN = 2.0  # K_Hβ above which a face carries unevenly
+_SHORT_LIFE = 1000.0  # life below which a warning is given [h]
 _WRONG_SIDE = 1e-3  # part of a bearing's force that balls in angular contact may carry against their angle
 _ARC_MINUTE = math.radians(1.0 / 60.0)
 # Largest angles between shaft and seat (SKF, Rolling Bearings, 2018: deep groove ball bearings 2' to 10', cylindrical
@@ -59,7 +59,7 @@ class LoadedBearing:
     ----------
     load : BearingLoad
     rated : BearingLife or None
-        Of a rolling bearing.
+        Ratings and lives of a rolling bearing; None of others.
     preload : float or None
         Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
         bearing of the shaft has an axial offset or a spring.
@@ -116,11 +116,11 @@ class SolvedLoad:
     on_housing : bool
         Whether the compliance of the housing acts; seats are rigid without.
     gravity : tuple of float or None
-        [m/s²].
+        Gravity along x, y, z [m/s²].
     over_torque : dict of float to OperatingPoint
         Equilibria by the torque of the first driver [N m], where they are asked for.
     sensitivity : LoadSensitivity or None
-        Where it is asked for.
+        Gradients, where they are asked for.
     """
 
     machine: Machine
@@ -135,7 +135,7 @@ class SolvedLoad:
     @cached_property
     def shafts(self) -> tuple["DeflectedShaft", ...]:
         """Deflection of each shaft along it."""
-        return tuple(_deflected(one, self.machine) for one in self.point.shafts)
+        return tuple(_deflected(shaft, self.machine) for shaft in self.point.shafts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ class DeflectedShaft:
     at : ndarray, shape (n,)
         Places from the left end [m].
     z : ndarray, shape (n,)
-        The same in the machine [m].
+        The same places along z of the machine [m].
     motion : ndarray, shape (6, n)
         Displacements along x, y, z [m] and rotations about them [rad].
     """
@@ -171,9 +171,9 @@ class DeflectedShaft:
         return float(np.ptp(self.motion[5]))
 
 
-def _deflected(one: ShaftDeflection, machine: Machine) -> DeflectedShaft:
-    at = np.linspace(0.0, machine.shaft(one.name).rotor.length, _PLACES)
-    return DeflectedShaft(one.name, at, one.part.start + at, one.motions(at))
+def _deflected(deflection: ShaftDeflection, machine: Machine) -> DeflectedShaft:
+    at = np.linspace(0.0, machine.shaft(deflection.name).rotor.length, _PLACES)
+    return DeflectedShaft(deflection.name, at, deflection.part.start + at, deflection.motions(at))
 
 
 def solve_load(
@@ -191,14 +191,14 @@ def solve_load(
     ----------
     case : Case
     housing : SolvedHousing, ReducedHousing or None
-        Of the case; None for rigid seats, also where the case has one. For the gradients a solved one.
+        Housing of the case; None for rigid seats, even where the case has a housing. Gradients need a solved one.
     progress : callable
     over_torque : bool
-        Whether to find it at `TORQUES` as well.
+        Whether to solve for the equilibria at `TORQUES` as well.
     sensitivity : bool
         Whether to compute its gradients, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
     line : str, optional
-        The line that these are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
+        Line that parameters are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
 
     Raises
     ------
@@ -216,38 +216,41 @@ def solve_load(
     machine = describe_machine(case, None if part is None else part.component, grounded=part is None)
     progress("static equilibrium of the machine")
     point = machine.operating_point(operation.gravity)
-    found: dict[float, OperatingPoint] = {}
+    points: dict[float, OperatingPoint] = {}
     for number, part in enumerate(TORQUES if over_torque and operation.torque != 0.0 else ()):
         progress("static equilibrium over torque", number / len(TORQUES))
-        outputs = [one if one.torque is None else replace(one, torque=part * one.torque) for one in machine.outputs]
+        outputs = [
+            output if output.torque is None else replace(output, torque=part * output.torque)
+            for output in machine.outputs
+        ]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
-        found[part * operation.torque] = loaded.operating_point(operation.gravity)
+        points[part * operation.torque] = loaded.operating_point(operation.gravity)
     ratings, loads, preloads = given_ratings(case), _given_loads(case), _preloads(machine, progress)
     bearings = tuple(
         LoadedBearing(
-            one,
+            bearing,
             None
-            if one.rolling is None
-            else BearingLife(one.rolling, ratings.get(one.name), machine.speeds[one.mounted.rotor]),
-            preloads.get(one.name),
-            loads.get(one.name),
+            if bearing.rolling is None
+            else BearingLife(bearing.rolling, ratings.get(bearing.name), machine.speeds[bearing.mounted.rotor]),
+            preloads.get(bearing.name),
+            loads.get(bearing.name),
         )
-        for one in point.bearings
+        for bearing in point.bearings
     )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
     gradients = None
     if sensitivity:
         assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
         gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
-    return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, found, gradients)
+    return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, points, gradients)
 
 
 def _given_loads(case: Case) -> dict[str, FloatArray]:
-    """Force along x, y, z for which the case has the stiffness of a bearing made [N], by the bearings' names."""
+    """Return the force along x, y, z for which the case has each bearing's stiffness made [N], by bearing."""
     return {
-        one.name: np.array([one.load.x, one.load.y, one.load.z])
-        for one in case.bearing
-        if isinstance(one.stiffness, RollingStiffness | StopStiffness) and one.load is not None
+        bearing.name: np.array([bearing.load.x, bearing.load.y, bearing.load.z])
+        for bearing in case.bearing
+        if isinstance(bearing.stiffness, RollingStiffness | StopStiffness) and bearing.load is not None
     }
 
 
@@ -256,8 +259,8 @@ def find_load(
 ) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
     """Find the operating point of a case beside another analysis, and its warnings.
 
-    Where nothing loads the machine there is none. Where none is found and nothing of the case is left to it, a warning
-    says why, and the analysis goes on.
+    The point is None where nothing loads the machine. Where no equilibrium is found and the case does not need one, a
+    warning gives the reason, and the analysis goes on.
 
     Parameters
     ----------
@@ -272,28 +275,35 @@ def find_load(
     if not case.is_loaded:
         return None, []
     try:
-        found = solve_load(case, housing, progress)
+        solved = solve_load(case, housing, progress)
     except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
         if case.needs_operating_point:
             raise
         message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
         return None, [warning("operating point", message)]
-    return found, load_warnings(case, found)
+    return solved, load_warnings(case, solved)
 
 
 def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
     """Axial force of each rolling bearing's rows without torque and weight [N], on shafts with a preloaded bearing."""
-    elements = {one.bearing.name: one.elements for one in machine.bearings}
-    preloaded = {one.rotor for one in machine.bearings if one.elements is not None and one.elements.is_preloaded}
+    elements = {mounted.bearing.name: mounted.elements for mounted in machine.bearings}
+    preloaded = {
+        mounted.rotor for mounted in machine.bearings if mounted.elements is not None and mounted.elements.is_preloaded
+    }
     if not preloaded:
         return {}
     progress("preload of the bearings")
-    found = {}
-    for one in machine.preload_point().bearings:
-        rolling = elements[one.name]
-        if one.rolling is not None and rolling is not None and rolling.thrust_senses and one.mounted.rotor in preloaded:
-            found[one.name] = max(map(abs, one.rolling.row_thrusts)) + 0.0
-    return found
+    preloads = {}
+    for bearing in machine.preload_point().bearings:
+        rolling = elements[bearing.name]
+        if (
+            bearing.rolling is not None
+            and rolling is not None
+            and rolling.thrust_senses
+            and bearing.mounted.rotor in preloaded
+        ):
+            preloads[bearing.name] = max(map(abs, bearing.rolling.row_thrusts)) + 0.0
+    return preloads
 
 
 def require_load(case: Case) -> None:
@@ -314,17 +324,19 @@ def require_load(case: Case) -> None:
 def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warnings of an operating point that is formally right and physically doubtful."""
     ranked = solved.sensitivity
-    told = bearing_load_warnings(case, {one.name: one.force[:3] for one in solved.point.bearings}, "the equilibrium")
-    loads = {entry["bearing"] for entry in told}
+    of_loads = bearing_load_warnings(
+        case, {bearing.name: bearing.force[:3] for bearing in solved.point.bearings}, "the equilibrium"
+    )
+    loads = {entry["bearing"] for entry in of_loads}
     return [
         *operation_warnings(case),
         *([] if ranked is None or ranked.note is None else [warning("sensitivity", ranked.note)]),
         *_sound_warnings(ranked),
-        *told,
-        *(found for one in solved.bearings for found in _bearing_warnings(one)),
+        *of_loads,
+        *(entry for bearing in solved.bearings for entry in _bearing_warnings(bearing)),
         *_speed_warnings(solved),
         *_stiffness_warnings(case, solved, loads),
-        *(found for one in solved.point.pairs for found in _face_warnings(one)),
+        *(entry for pair in solved.point.pairs for entry in _face_warnings(pair)),
         *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]
@@ -337,18 +349,18 @@ def _sound_warnings(ranked: LoadSensitivity | None) -> Iterator[dict[str, Any]]:
     # The acoustics' kernels are for these cases alone.
     from gearwhine.solve.sound.proofs import doubts
 
-    for one in ranked.loudest_lines:
-        yield from doubts(one.sound, "a mesh harmonic")
+    for harmonic in ranked.loudest_lines:
+        yield from doubts(harmonic.sound, "a mesh harmonic")
 
 
-def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
+def _bearing_warnings(bearing: LoadedBearing) -> Iterator[dict[str, Any]]:
     """Warn of a rolling bearing beyond its static rating, its tilt, or with a short life."""
-    state, name = one.load.rolling, one.load.name
+    state, name = bearing.load.rolling, bearing.load.name
     if state is None:
         return
-    row = state.bearing.rows[0]
-    if isinstance(row, BallRow):
-        most = _SELF_ALIGNING_PRESSURE if row.self_aligning else _BALL_PRESSURE
+    first_row = state.bearing.rows[0]
+    if isinstance(first_row, BallRow):
+        most = _SELF_ALIGNING_PRESSURE if first_row.self_aligning else _BALL_PRESSURE
     else:
         most = _ROLLER_PRESSURE
     if state.peak_pressure > most:
@@ -359,10 +371,10 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
             bearing=name,
             peak_pressure_pa=state.peak_pressure,
         )
-    for each, thrust in zip(state.bearing.rows, state.row_thrusts, strict=True):
-        angular = type(each) is BallRow and each.contact_angle > 0.0 and not each.self_aligning
-        if angular and -thrust > _WRONG_SIDE * float(np.linalg.norm(one.load.force[:3])):
-            way = "-z" if each.direction > 0 else "+z"
+    for row, thrust in zip(state.bearing.rows, state.row_thrusts, strict=True):
+        angular = type(row) is BallRow and row.contact_angle > 0.0 and not row.self_aligning
+        if angular and -thrust > _WRONG_SIDE * float(np.linalg.norm(bearing.load.force[:3])):
+            way = "-z" if row.direction > 0 else "+z"
             yield warning(
                 "thrust side",
                 f'bearing "{name}": its balls carry {-thrust:.4g} N towards {way}, against their contact angle, on a '
@@ -371,16 +383,16 @@ def _bearing_warnings(one: LoadedBearing) -> Iterator[dict[str, Any]]:
                 bearing=name,
                 thrust_n=-thrust,
             )
-    limit, kind = _tilt_limit(row)
-    if len(state.bearing.rows) == 1 and one.load.tilt > limit:
+    limit, kind = _tilt_limit(first_row)
+    if len(state.bearing.rows) == 1 and bearing.load.tilt > limit:
         yield warning(
             "bearing tilt",
-            f'bearing "{name}": shaft and seat are {one.load.tilt / _ARC_MINUTE:.3g}\' out of line; {kind} bearings '
-            f"usually take {limit / _ARC_MINUTE:.0f}' at most",
+            f'bearing "{name}": shaft and seat are {bearing.load.tilt / _ARC_MINUTE:.3g}\' out of line; {kind} '
+            f"bearings usually take {limit / _ARC_MINUTE:.0f}' at most",
             bearing=name,
-            tilt_rad=one.load.tilt,
+            tilt_rad=bearing.load.tilt,
         )
-    rated = one.rated
+    rated = bearing.rated
     if rated is not None and rated.life is not None and rated.life < _SHORT_LIFE:
         source = "the case gives" if rated.rating_from == "case" else "its geometry has"
         yield warning(
@@ -403,81 +415,85 @@ def _tilt_limit(row: Row) -> tuple[float, str]:
 
 def _speed_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warn of bearings so fast that the centrifugal force of their elements matters."""
-    rolling = [(one.load.mounted, one.load.rolling) for one in solved.bearings if one.load.rolling is not None]
+    rolling = [
+        (bearing.load.mounted, bearing.load.rolling) for bearing in solved.bearings if bearing.load.rolling is not None
+    ]
     return centrifugal_warnings(
         [(mounted.bearing.name, state.bearing, solved.machine.speeds[mounted.rotor]) for mounted, state in rolling],
         {mounted.bearing.name: max(float(row.outer_load.max()) for row in state.rows) for mounted, state in rolling},
     )
 
 
-def _stiffness_warnings(case: Case, solved: SolvedLoad, told: set[str]) -> Iterator[dict[str, Any]]:
+def _stiffness_warnings(case: Case, solved: SolvedLoad, warned: set[str]) -> Iterator[dict[str, Any]]:
     """Warn of bearings whose stiffness in the linear analyses differs from the tangent at the equilibrium.
 
-    A bearing made for another load is told of that instead.
+    Bearings in ``warned`` have a warning that they are made for another load, and are left out.
     """
-    depend = {one.name for one in case.bearing if isinstance(one.stiffness, RollingStiffness | StopStiffness)}
-    for one in solved.bearings:
-        mounted, name = one.load.mounted, one.load.name
-        if name not in depend - told or mounted.needs_load:
+    depend = {
+        bearing.name for bearing in case.bearing if isinstance(bearing.stiffness, RollingStiffness | StopStiffness)
+    }
+    for bearing in solved.bearings:
+        mounted, name = bearing.load.mounted, bearing.load.name
+        if name not in depend - warned or mounted.needs_load:
             continue
-        taken = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
-        found = np.diag(one.load.stiffness)[:3]
-        apart = np.abs(taken - found) > _DIFFERENCE * np.maximum(taken, found)
+        assumed = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
+        tangent = np.diag(bearing.load.stiffness)[:3]
+        apart = np.abs(assumed - tangent) > _DIFFERENCE * np.maximum(assumed, tangent)
         # A direction in which the bearing is soft beside the others holds nothing there.
-        apart &= np.maximum(taken, found) > _DIFFERENCE * max(taken.max(), found.max())
+        apart &= np.maximum(assumed, tangent) > _DIFFERENCE * max(assumed.max(), tangent.max())
         if apart.any():
-            texts = [", ".join(f"{1e-6 * value:.4g}" for value in values.tolist()) for values in (taken, found)]
+            texts = [", ".join(f"{1e-6 * value:.4g}" for value in values.tolist()) for values in (assumed, tangent)]
             yield warning(
                 "bearing stiffness",
                 f'bearing "{name}": linear analyses take {texts[0]} N/µm along x, y, z, the equilibrium finds '
                 f"{texts[1]} N/µm",
                 bearing=name,
-                taken_n_per_m=taken.tolist(),
-                found_n_per_m=found.tolist(),
+                taken_n_per_m=assumed.tolist(),
+                found_n_per_m=tangent.tolist(),
             )
 
 
-def _face_warnings(one: PairLoad) -> Iterator[dict[str, Any]]:
-    label = one.pair.label
-    if one.force == 0.0:
+def _face_warnings(load: PairLoad) -> Iterator[dict[str, Any]]:
+    label = load.pair.label
+    if load.force == 0.0:
         return
-    if one.k_h_beta > _UNEVEN:
+    if load.k_h_beta > _UNEVEN:
         yield warning(
             "uneven face",
-            f"{label}: the face carries unevenly, K_Hβ = {one.k_h_beta:.3g}; its flanks are "
-            f"{1e6 * one.misalignment * one.pair.geometry.face_width:.3g} µm out of line over the face: a helix "
+            f"{label}: the face carries unevenly, K_Hβ = {load.k_h_beta:.3g}; its flanks are "
+            f"{1e6 * load.misalignment * load.pair.geometry.face_width:.3g} µm out of line over the face: a helix "
             "modification or stiffer shafts and seats even it out",
-            driver=one.pair.driver.name,
-            driven=one.pair.driven.name,
-            k_h_beta=one.k_h_beta,
+            driver=load.pair.driver.name,
+            driven=load.pair.driven.name,
+            k_h_beta=load.k_h_beta,
         )
-    if one.carrying_part < 1.0:
+    if load.carrying_part < 1.0:
         yield warning(
             "part of the face",
-            f"{label}: {100.0 * (1.0 - one.carrying_part):.3g} % of the face never touches under the mean load",
-            driver=one.pair.driver.name,
-            driven=one.pair.driven.name,
-            carrying_part=one.carrying_part,
+            f"{label}: {100.0 * (1.0 - load.carrying_part):.3g} % of the face never touches under the mean load",
+            driver=load.pair.driver.name,
+            driven=load.pair.driven.name,
+            carrying_part=load.carrying_part,
         )
 
 
 def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
     """Warn where the misalignment that the case gives is not the one that the deflections make."""
-    for one in solved.pairs:
-        typed, found = one.misalignment.taken, one.load.misalignment
-        if one.misalignment.origin != "case" or typed is None:
+    for pair in solved.pairs:
+        typed, at_equilibrium = pair.misalignment.taken, pair.load.misalignment
+        if pair.misalignment.origin != "case" or typed is None:
             continue
-        if abs(typed - found) <= max(_DIFFERENCE * max(abs(typed), abs(found)), _ALIGNED):
+        if abs(typed - at_equilibrium) <= max(_DIFFERENCE * max(abs(typed), abs(at_equilibrium)), _ALIGNED):
             continue
-        driver, driven = one.load.names
+        driver, driven = pair.load.names
         yield warning(
             "misalignment",
-            f"{one.load.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, which the motion takes; "
-            f"the equilibrium finds {1e6 * found:.4g} µrad",
+            f"{pair.load.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, which the motion takes; "
+            f"the equilibrium finds {1e6 * at_equilibrium:.4g} µrad",
             driver=driver,
             driven=driven,
             given_rad=typed,
-            found_rad=found,
+            found_rad=at_equilibrium,
         )
 
 

@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
-_TOLD = 2  # modes in a picture
+_LISTED_MODES = 2  # modes in a picture
 _NEAR = 0.1  # part by which shapes at the nodes nearest to survey points may differ from those at the points
 _OF_LINES = (
     "housing_line",
@@ -37,7 +37,7 @@ _OF_LINES = (
     "survey_shape",
     "survey_position",
 )  # arrays of a results file that its operating shapes follow from
-_SAME = 1e-9  # of frequencies and shapes, for the run's housing to be this one
+_SAME = 1e-9  # relative difference of frequencies and shapes up to which a run's housing is this one
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,11 @@ class RunLine:
 
     @property
     def hertz(self) -> float:
-        """[Hz]."""
+        """Frequency [Hz]."""
         return self.shape.frequency / _TWO_PI
 
 
-def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
+def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
     """Read the spectral lines nearest to frequencies [Hz] from a results folder, each once, ascending.
 
     Raises
@@ -87,7 +87,7 @@ def read_spectrum_lines(folder: Path, asked: Sequence[float], solved: SolvedHous
     spacing = float(lines[1] - lines[0])
     spectrum = content["housing_acceleration_spectrum"].values
     chosen = set()
-    for frequency in asked:
+    for frequency in frequencies:
         place = int(np.argmin(np.abs(lines - frequency)))
         if place == 0 or abs(lines[place] - frequency) > 0.5 * spacing * (1.0 + 1e-9):
             span = f"a line from {lines[1]:.6g} to {lines[-1]:.6g} Hz, which stand {spacing:.4g} Hz apart"
@@ -108,16 +108,16 @@ def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list
     Parameters
     ----------
     signature : SolvedSignature
-        Of the run, whose lines are traced.
+        Signature of the run, with traced lines.
     limit : float
         Frequency up to which the modes are complete [Hz].
     most : int
         Number of lines: the highest of each sensor come first, then the second ones, each frequency once.
     """
-    found = signature.housing_lines(limit)
-    if found is None or len(found[0]) < _TOLD:
+    housing_lines = signature.housing_lines(limit)
+    if housing_lines is None or len(housing_lines[0]) < 2:
         return []
-    frequencies, spectrum, _ = found
+    frequencies, spectrum, _ = housing_lines
     chosen: dict[int, str] = {}
     for rank in range(max(map(len, signature.lines.values()), default=0)):
         for lines in signature.lines.values():
@@ -143,7 +143,7 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     most : int
         Number of lines, as :func:`highest_lines` chooses them.
     """
-    # Not by xarray, which looks at all of a hundred arrays.
+    # Without xarray, which would open all of about a hundred arrays.
     try:
         stored, _ = read_netcdf(folder / RESULTS_FILE, _OF_LINES)
     except (OSError, ValueError, KeyError):
@@ -184,12 +184,12 @@ def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing
         motion = line.shape.displacement(modes, housing.nodes)
         largest = float(peak_displacement(motion).max())
         shares = _leading(line, modes)
-        told = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
+        listed = ", ".join(f"{number} ({hertz:.0f} Hz) {100.0 * share:.0f} %" for number, hertz, share in shares)
         return DrawnShape(
             f"line-{line.hertz:.1f}Hz",
             f"Operating shape at {line.hertz:.1f} Hz" + (f"   {arrowed(line.name)}" if line.name else ""),
             f"largest {_MICRO * largest:.3g} µm, {largest * line.shape.frequency**2:.3g} m/s² (peak)\n"
-            f"kinetic energy: modes {told}",
+            f"kinetic energy: modes {listed}",
             motion,
             "Displacement [µm], peak",
             _MICRO * largest,
@@ -231,7 +231,7 @@ def _leading(line: RunLine, modes: ModeSet) -> list[tuple[int, float, float]]:
     shares = line.shape.kinetic_shares
     return [
         (int(mode) + 1, float(modes.frequencies_hz[mode]), float(shares[mode]))
-        for mode in np.argsort(-shares, kind="stable")[:_TOLD]
+        for mode in np.argsort(-shares, kind="stable")[:_LISTED_MODES]
     ]
 
 

@@ -1,7 +1,7 @@
 """Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face, sensors on the surface.
 
-Only where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter from the
-other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
+Fits are checked where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter
+from the other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,9 +19,9 @@ from meshes import Mesh, find_bores
 from meshes.bores import CylindricalBore
 from rotors import Rotor, Segment
 
-_FIT = 1e-4  # difference of two diameters, or of a place and an end, that is a fit and no other size [m]
-_BESIDE = 0.01  # distance of a sensor from the surface that is no rounding, as a part of the housing's diagonal
-_TOUCHING = 1e-6  # overlap of a part and a shaft segment that is none [m]
+_FIT = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]
+_BESIDE = 0.01  # distance of a sensor from the surface above which a warning is given, over the housing's diagonal
+_TOUCHING = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
 
 
 def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
@@ -31,13 +31,13 @@ def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = No
     ----------
     case : Case
     rotors : mapping of str to rotors.Rotor
-        Built ones by their names.
+        Built rotors by name.
     mesh : Mesh or None
-        Of a housing from a CAD or mesh file, in which the bores of the seats are found.
+        Mesh of a housing from a CAD or mesh file, in which the bores of the seats are found.
     """
     bores = () if mesh is None else find_bores(mesh, axis=(0.0, 0.0, 1.0))
     return [
-        *(found for one in case.bearing for found in _of_bearing(case, one, rotors[one.rotor], bores)),
+        *(entry for bearing in case.bearing for entry in _of_bearing(case, bearing, rotors[bearing.rotor], bores)),
         *_of_gears(case, rotors),
         *_of_faces(case),
         *(() if mesh is None else _of_sensors(case, mesh)),
@@ -52,7 +52,7 @@ def _of_bearing(
     if bore is not None:
         yield from _on_shaft(label, bore, rotor, bearing.at, width or 0.0)
     seats = () if case.housing is None else case.housing.seat
-    seat = next((one for one in seats if one.name == bearing.seat), None)
+    seat = next((candidate for candidate in seats if candidate.name == bearing.seat), None)
     if seat is None:
         return
     if outside is not None and abs(outside - seat.diameter) > _FIT:
@@ -132,10 +132,10 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
             common = min(end for _, end in ends) - max(start for start, _ in ends)
             whole = min(end - start for start, end in ends)
             if whole - common > _FIT:
-                shown = " and ".join(f"{_mm(start)} to {_mm(end)}" for start, end in ends)
+                ranges = " and ".join(f"{_mm(start)} to {_mm(end)}" for start, end in ends)
                 yield warning(
                     "gear faces",
-                    f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {shown}, have {_mm(common)} in '
+                    f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {ranges}, have {_mm(common)} in '
                     f"common; the model takes {_mm(whole)}, the whole of the narrower one",
                     common_m=common,
                     taken_m=whole,
@@ -161,18 +161,18 @@ def _of_sensors(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
 def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) -> Iterator[dict[str, Any]]:
     """Warn where no segment under a part has its bore, a cone somewhere along it."""
     left, right = at - 0.5 * width, at + 0.5 * width
-    found = []
+    segment_ends = []
     for part, start, end in zip(rotor.segments, rotor.joints, rotor.joints[1:], strict=False):
         overlaps = min(end, right) - max(start, left) > _TOUCHING or start <= left == right <= end
         if isinstance(part, Segment) and overlaps:
-            found.append(tuple(outer for outer, _ in part.end_diameters))
-    if not found or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in found):
+            segment_ends.append(tuple(outer for outer, _ in part.end_diameters))
+    if not segment_ends or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in segment_ends):
         return
-    diameters = list(dict.fromkeys(diameter for ends in found for diameter in ends))
-    shown = " and ".join(_mm(one) for one in diameters)
+    diameters = list(dict.fromkeys(diameter for ends in segment_ends for diameter in ends))
+    listed = " and ".join(_mm(diameter) for diameter in diameters)
     yield warning(
         "part on shaft",
-        f'{label}: its bore of {_mm(bore)} is not the diameter of rotor "{rotor.name}" at {_mm(at)}, {shown}',
+        f'{label}: its bore of {_mm(bore)} is not the diameter of rotor "{rotor.name}" at {_mm(at)}, {listed}',
         bore_m=bore,
         shaft_diameters_m=diameters,
     )

@@ -1,9 +1,9 @@
 """Plausibility of a solved machine: bearing loads and speeds, unstable modes and modal truncation error.
 
-Gear pairs that carry nothing, and lines of torque that miss the torque of operation, are warned of before anything is
-solved. Bearing loads of a run are held against the loads that the bearings' stiffness was computed for. Rolling
-bearings so fast that the centrifugal force of their elements matters are warned of, and coupled modes with negative
-damping or negative stiffness. The modal truncation error is given for the sensors' lines, line by line and by bands.
+Gear pairs without torque, and lines of torque that miss the torque of operation, are warned of before anything is
+solved. Bearing loads of a run are compared with the loads that the bearings' stiffness was computed for. Warnings name
+rolling bearings so fast that the centrifugal force of their elements matters, and coupled modes with negative damping
+or negative stiffness. The modal truncation error is given for the sensors' lines, line by line and by bands.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -24,9 +24,9 @@ from rotors.rolling_bearings import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
-_DIFFERENCE = 0.1  # part of the larger of both forces by which they may differ without a word
-_ROUNDING = 1e-6  # part of the load below which a component is none
-_OFF_LINE = 0.05  # part of the larger torque by which a line may miss the torque of operation without a word
+_DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
+_ROUNDING = 1e-6  # part of the load below which a component counts as zero
+_OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
 
 
 def bearing_load_warnings(
@@ -39,47 +39,47 @@ def bearing_load_warnings(
 
     The stiffness of rolling bearings and stops depends on the load that the case gives. Radial forces are compared as
     vectors, since elements are pressed where the load points; the axial ones beside them. A difference counts against
-    the resultant load: of a bearing's small component nobody need hear.
+    the resultant load, so that a small component does not matter.
 
     Parameters
     ----------
-    mean_force
-        x, y, z of the mean force on each bearing [N], shape (3,) each.
-    found_by
-        What found it, for the message.
-    known
-        Warnings there are already; bearings that they name are passed over.
+    mean_force : mapping of str to ndarray, shape (3,)
+        Mean force on each bearing along x, y, z [N].
+    found_by : str
+        Analysis that finds the force, for the message.
+    known : sequence of mapping
+        Warnings that exist already; bearings that they name are left out.
     """
-    found = []
+    warnings = []
     named = {entry["bearing"] for entry in known if entry["name"] == "bearing load"}
-    for given in case.bearing:
-        depends = isinstance(given.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(given)
-        if not depends or given.name not in mean_force or given.name in named:
+    for bearing in case.bearing:
+        depends = isinstance(bearing.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(bearing)
+        if not depends or bearing.name not in mean_force or bearing.name in named:
             continue
-        load = given.load
+        load = bearing.load
         assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
-        actual = np.asarray(mean_force[given.name], dtype=np.float64)
+        actual = np.asarray(mean_force[bearing.name], dtype=np.float64)
         scale = max(float(np.linalg.norm(assumed)), float(np.linalg.norm(actual)))
         radial = float(np.hypot(*(actual - assumed)[:2]))
         axial = abs(float(actual[2] - assumed[2]))
         if max(radial, axial) <= _DIFFERENCE * scale:
             continue
-        # What rounding leaves in a direction without load would be typed in as a load.
+        # The message proposes a load for the case, which must be free of rounding errors.
         actual = np.where(np.abs(actual) > _ROUNDING * scale, actual, 0.0)
         sizes = [(float(np.hypot(*force[:2])), float(force[2])) for force in (assumed, actual)]
-        found.append(
+        warnings.append(
             warning(
                 "bearing load",
-                f'bearing "{given.name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
+                f'bearing "{bearing.name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
                 f"{sizes[0][1]:.4g} N axial, {found_by} finds {sizes[1][0]:.4g} N radial and "
                 f"{sizes[1][1]:.4g} N axial; "
                 f"give it the load {{ x = {actual[0]:.4g}, y = {actual[1]:.4g}, z = {actual[2]:.4g} }} N",
-                bearing=given.name,
+                bearing=bearing.name,
                 assumed_force_n=assumed.tolist(),
                 mean_force_n=actual.tolist(),
             )
         )
-    return found
+    return warnings
 
 
 def operation_warnings(case: Case) -> list[dict[str, Any]]:
@@ -131,21 +131,21 @@ def centrifugal_warnings(
 
     Parameters
     ----------
-    bearings
-        Name, elements and speed of the shaft [rad/s] of each.
-    largest
-        Load of the most loaded element on the outer ring [N] by the bearings' names, where it is known.
+    bearings : iterable of (str, RollingBearing, float)
+        Name, elements and shaft speed of each bearing [rad/s].
+    largest : mapping of str to float, optional
+        Load of the most loaded element on the outer ring by bearing, where it is known [N].
     """
-    found = []
+    warnings = []
     for name, bearing, speed in bearings:
-        row = max(bearing.rows, key=lambda one: one.pitch_diameter)
+        row = max(bearing.rows, key=lambda candidate: candidate.pitch_diameter)
         rpm = abs(speed) * 60.0 / _TWO_PI
         factor = rpm * 1e3 * row.pitch_diameter
         if factor <= FAST:
             continue
-        force, known = row.centrifugal_force(speed), (largest or {}).get(name)
-        beside = "" if known is None else f", beside {known:.3g} N on the most loaded one"
-        found.append(
+        force, load = row.centrifugal_force(speed), (largest or {}).get(name)
+        beside = "" if load is None else f", beside {load:.3g} N on the most loaded one"
+        warnings.append(
             warning(
                 "bearing speed",
                 f'bearing "{name}": n·d_m = {factor:.3g} mm/min ({rpm:.5g} rpm, pitch circle '
@@ -157,21 +157,21 @@ def centrifugal_warnings(
                 centrifugal_force_n=force,
             )
         )
-    return found
+    return warnings
 
 
 _TWO_PI = 2.0 * np.pi
-_TOLD = 5  # growing modes named one by one
+_NAMED_MODES = 5  # growing modes named one by one
 
 
 def unstable_modes_warnings(stability: Stability) -> list[dict[str, Any]]:
     """One warning for each growing mode, the fastest first; beyond a few they are counted."""
-    found = []
-    for mode in stability.growing[:_TOLD]:
+    warnings = []
+    for mode in stability.growing[:_NAMED_MODES]:
         frequency = abs(mode.eigenvalue) / _TWO_PI
         where = f" ({mode.where})" if mode.where else ""
         fed = ", ".join(part.name for part, _ in mode.feeders[:3])
-        found.append(
+        warnings.append(
             warning(
                 "unstable mode",
                 f"the coupled {mode.kind} mode{where} at {frequency:.5g} Hz has the damping ratio "
@@ -184,9 +184,11 @@ def unstable_modes_warnings(stability: Stability) -> list[dict[str, Any]]:
                 where=mode.where,
             )
         )
-    if len(stability.growing) > _TOLD:
-        found.append(warning("unstable mode", f"{len(stability.growing) - _TOLD} further coupled modes grow as well"))
-    return found
+    if len(stability.growing) > _NAMED_MODES:
+        warnings.append(
+            warning("unstable mode", f"{len(stability.growing) - _NAMED_MODES} further coupled modes grow as well")
+        )
+    return warnings
 
 
 def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
@@ -201,8 +203,8 @@ def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
     return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))
 
 
-_BANDS = 8  # of equal width up to the limit
-_OF_A_BAND = 12  # frequencies at which each is looked at
+_BANDS = 8  # bands of equal width up to the limit
+_OF_A_BAND = 12  # frequencies in each band
 
 
 def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz: float | None) -> None:
@@ -211,7 +213,8 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     Parameters
     ----------
     document : dict
-        With ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have such.
+        Document with ``sensors``, whose ``peaks`` or ``lines`` have a ``frequency_hz``, or with ``motions`` that have
+        such sensors.
     error : BasisError or None
         None, where no basis is behind the lines: nothing is added.
     limit_hz : float or None
@@ -223,9 +226,9 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
     rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
     frequencies = np.unique([line["frequency_hz"] for _, line in rows])
-    told = error.at(_TWO_PI * frequencies)
+    errors = error.at(_TWO_PI * frequencies)
     for name, line in rows:
-        line["uncertainty"] = float(told[name][np.searchsorted(frequencies, line["frequency_hz"])])
+        line["uncertainty"] = float(errors[name][np.searchsorted(frequencies, line["frequency_hz"])])
     if limit_hz is not None:
         document["basis_error"] = _bands(error, limit_hz)
 
@@ -235,14 +238,14 @@ def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:
     edges = np.linspace(0.0, limit_hz, _BANDS + 1)
     inner = (np.arange(_OF_A_BAND) + 0.5) / _OF_A_BAND
     frequencies = edges[:-1, None] + np.diff(edges)[:, None] * inner
-    told = {name: values.reshape(_BANDS, -1) for name, values in error.at(_TWO_PI * frequencies.ravel()).items()}
+    errors = {name: values.reshape(_BANDS, -1) for name, values in error.at(_TWO_PI * frequencies.ravel()).items()}
     return [
         {
             "from_hz": float(edges[band]),
             "to_hz": float(edges[band + 1]),
             "sensors": [
                 {"name": name, "median": float(np.median(values[band])), "largest": float(values[band].max())}
-                for name, values in told.items()
+                for name, values in errors.items()
             ],
         }
         for band in range(_BANDS)

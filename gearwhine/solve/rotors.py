@@ -65,16 +65,16 @@ from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_DEFLECTION_PLACES = 201  # along a rotor, of its static deflection
+_DEFLECTION_PLACES = 201  # places along a rotor at which its static deflection is given
 
 _TWO_PI = 2.0 * np.pi
-_STEPS = 400  # of frequency, where none are given
-_MODES, _BEYOND = 3, 1.25  # up to this elastic mode, and a little beyond
+_STEPS = 400  # frequencies, where the case gives none
+_MODES, _BEYOND = 3, 1.25  # number of the elastic mode that ends the frequencies, and factor on its frequency
 _RIGID = 1000.0 * _TWO_PI  # highest frequency for a rotor that has no elastic mode [rad/s]
-_TORQUE_PLACES = 201  # along a rotor, to look for its largest torque
+_TORQUE_PLACES = 201  # places along a rotor at which its torque is computed
 Bearings = tuple[Bearing, ...]
 Crossings = tuple[Crossing, ...] | str
-_PLACES = 101  # along a rotor, of its shapes
+_PLACES = 101  # places along a rotor at which its shapes are given
 
 
 @dataclass(frozen=True)
@@ -87,11 +87,11 @@ class SolvedWeight:
         Constant forces on the shaft.
     deflection : StaticDeflection
     speed : float
-        Where tables over speed were read [rad/s].
-    places : (p,) array
-        Evenly along the shaft, and every station [m].
-    displacement : (2, p) array
-        Over x and y [m].
+        Speed at which tables over speed are read [rad/s].
+    places : ndarray, shape (p,)
+        Places evenly along the shaft, and every station [m].
+    displacement : ndarray, shape (2, p)
+        Displacement along x and y [m].
     """
 
     forces: tuple[StaticForce, ...]
@@ -115,11 +115,11 @@ class ProbeReading:
     Attributes
     ----------
     probe : Probe
-    speeds : (b,) array
-        [rad/s].
-    amplitude : (b,) complex array
+    speeds : ndarray, shape (b,)
+        Speeds of the rotor [rad/s].
+    amplitude : ndarray of complex, shape (b,)
         Reading Re(amplitude e^{iΩt}) along the probe's angle, run-out included; t from where the mark passes x [m].
-    major_axis : (b,) array
+    major_axis : ndarray, shape (b,)
         Half the length of the orbit that is read there [m].
     """
 
@@ -149,7 +149,7 @@ class SolvedResponse:
     ----------
     response : SynchronousResponse
     readings, at_operation : tuple of ProbeReading
-        Of every probe over the speeds of the response; and at the speed of operation alone, empty where there is none.
+        Readings of every probe over the speeds of the response, and at the speed of operation; empty without operation.
     """
 
     response: SynchronousResponse
@@ -179,7 +179,7 @@ def solve_weight(
 def solve_response(
     case: Case,
     analysis: RotorAnalysis,
-    given: GivenRotor,
+    table: GivenRotor,
     rotor: Rotor,
     bearings: tuple[Bearing, ...],
     operation: float | None,
@@ -190,12 +190,12 @@ def solve_response(
 
     A rotor that is not ``held`` has no answer at rest, which is left out.
     """
-    speeds = [speed for speed in response_speeds(case, given.name) if speed or held]
-    if not (given.unbalance or given.bow) or not speeds:
+    speeds = [speed for speed in response_speeds(case, table.name) if speed or held]
+    if not (table.unbalance or table.bow) or not speeds:
         return None
-    unbalances, bow = given.build_unbalance(), given.build_bow()
+    unbalances, bow = table.build_unbalance(), table.build_bow()
     response = unbalance_response(rotor, bearings, unbalances, speeds, bow=bow)
-    probes = _probes(case, analysis, given)
+    probes = _probes(case, analysis, table)
     at_operation: tuple[ProbeReading, ...] = ()
     if operation:
         once = unbalance_response(rotor, bearings, unbalances, [operation], bow=bow)
@@ -209,15 +209,15 @@ def _read(response: SynchronousResponse, probe: Probe) -> ProbeReading:
     return ProbeReading(probe, response.speeds, along, orbit_of(x, y, response.frequencies).major)
 
 
-def _probes(case: Case, analysis: RotorAnalysis, given: GivenRotor) -> list[Probe]:
+def _probes(case: Case, analysis: RotorAnalysis, table: GivenRotor) -> list[Probe]:
     """Return the probes of one rotor; where the case names none, one at each bearing and unbalance, along x."""
     chosen = analysis.unbalance_response.probes
     if chosen:
-        return [probe for probe in chosen if probe.rotor == given.name]
-    places = {bearing.at: bearing.name for bearing in case.bearing if bearing.rotor == given.name}
-    for number, unbalance in enumerate(given.unbalance, start=1):
+        return [probe for probe in chosen if probe.rotor == table.name]
+    places = {bearing.at: bearing.name for bearing in case.bearing if bearing.rotor == table.name}
+    for number, unbalance in enumerate(table.unbalance, start=1):
         places.setdefault(unbalance.at, f"unbalance {number}")
-    return [Probe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
+    return [Probe(name=name, rotor=table.name, at=at) for at, name in sorted(places.items())]
 
 
 @dataclass(frozen=True)
@@ -227,10 +227,11 @@ class TorsionReading:
     Attributes
     ----------
     probe : TorsionProbe
-    frequencies : (b,) array
-        [rad/s].
-    angle, torque : (b,) complex arrays
-        About the axis [rad]; and carried by the shaft to the right of the probe, at its right end to the left [N m].
+    frequencies : ndarray, shape (b,)
+        Frequencies [rad/s].
+    angle, torque : ndarray of complex, shape (b,)
+        Angle about the axis [rad], and torque in the shaft to the right of the probe, at the right end to its left
+        [N m].
     """
 
     probe: TorsionProbe
@@ -263,12 +264,12 @@ class SolvedTorsion:
     ----------
     response : TorsionalResponse
     readings : tuple of TorsionReading
-    places : (p,) array
-        Along the shaft [m].
-    largest_torque : (p,) array
-        What the shaft carries there at most over all frequencies, zero to peak [N m].
-    worst_frequency : (p,) array
-        And at which frequency [rad/s].
+    places : ndarray, shape (p,)
+        Places along the shaft [m].
+    largest_torque : ndarray, shape (p,)
+        Largest torque in the shaft there over all frequencies, zero to peak [N m].
+    worst_frequency : ndarray, shape (p,)
+        Frequency of that torque [rad/s].
     """
 
     response: TorsionalResponse
@@ -285,28 +286,28 @@ class SolvedTorsion:
 
 
 def solve_torsion(
-    analysis: RotorAnalysis, given: GivenRotor, rotor: Rotor, modes: TorsionalModes
+    analysis: RotorAnalysis, table: GivenRotor, rotor: Rotor, modes: TorsionalModes
 ) -> SolvedTorsion | None:
     """Solve the torsional response of one rotor; None without a torque. ``modes`` are its own, free to turn."""
-    wanted = analysis.torsional_response
-    torques = [] if wanted is None else [torque for torque in wanted.torques if torque.rotor == given.name]
-    if wanted is None or not torques:
+    settings = analysis.torsional_response
+    torques = [] if settings is None else [torque for torque in settings.torques if torque.rotor == table.name]
+    if settings is None or not torques:
         return None
-    held = [spring for spring in wanted.springs if spring.rotor == given.name]
-    ratio = given.damping_ratio if wanted.damping_ratio is None else wanted.damping_ratio
+    springs = [spring for spring in settings.springs if spring.rotor == table.name]
+    ratio = table.damping_ratio if settings.damping_ratio is None else settings.damping_ratio
     response = torsional_response(
         rotor,
-        [Torque(one.at, one.amplitude * np.exp(1j * one.phase)) for one in torques],
-        _frequencies(wanted, modes, damped=ratio > 0.0),
-        springs=[AxisSpring(one.at, one.stiffness) for one in held if one.stiffness > 0.0],
-        dashpots=[TorsionalDashpot(one.at, one.damping) for one in held if one.damping > 0.0],
+        [Torque(torque.at, torque.amplitude * np.exp(1j * torque.phase)) for torque in torques],
+        _frequencies(settings, modes, damped=ratio > 0.0),
+        springs=[AxisSpring(spring.at, spring.stiffness) for spring in springs if spring.stiffness > 0.0],
+        dashpots=[TorsionalDashpot(spring.at, spring.damping) for spring in springs if spring.damping > 0.0],
         damping_ratio=ratio,
     )
-    probes = _torsion_probes(wanted, given, rotor)
+    probes = _torsion_probes(settings, table, rotor)
     angles, carried = (read([probe.at for probe in probes]) for read in (response.angle, response.torque))
     places = np.union1d(np.linspace(0.0, rotor.length, _TORQUE_PLACES), rotor.stations)
     sizes = np.abs(response.torque(places))
-    worst = sizes.argmax(axis=0)
+    highest = sizes.argmax(axis=0)
     return SolvedTorsion(
         response,
         tuple(
@@ -314,28 +315,28 @@ def solve_torsion(
         ),
         places,
         sizes.max(axis=0),
-        response.frequencies[worst],
+        response.frequencies[highest],
     )
 
 
-def _frequencies(wanted: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
+def _frequencies(settings: TorsionalAnalysis, modes: TorsionalModes, *, damped: bool) -> FloatArray:
     """Return given frequencies, or even steps beyond the third elastic mode, with the modes' own where damped."""
-    if wanted.frequency is not None:
-        return _TWO_PI * np.array(wanted.frequency.frequencies)
+    if settings.frequency is not None:
+        return _TWO_PI * np.array(settings.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
     highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
     steps = highest * np.arange(1, _STEPS + 1) / _STEPS
     return np.union1d(steps, elastic) if damped else steps
 
 
-def _torsion_probes(wanted: TorsionalAnalysis, given: GivenRotor, rotor: Rotor) -> list[TorsionProbe]:
+def _torsion_probes(settings: TorsionalAnalysis, table: GivenRotor, rotor: Rotor) -> list[TorsionProbe]:
     """Return the probes of one rotor; where the case names none, one at each torque and at either end."""
-    if wanted.probes:
-        return [probe for probe in wanted.probes if probe.rotor == given.name]
+    if settings.probes:
+        return [probe for probe in settings.probes if probe.rotor == table.name]
     places = {0.0: "left end", rotor.length: "right end"}
-    for number, torque in enumerate((one for one in wanted.torques if one.rotor == given.name), start=1):
+    for number, torque in enumerate((entry for entry in settings.torques if entry.rotor == table.name), start=1):
         places[torque.at] = f"torque {number}"
-    return [TorsionProbe(name=name, rotor=given.name, at=at) for at, name in sorted(places.items())]
+    return [TorsionProbe(name=name, rotor=table.name, at=at) for at, name in sorted(places.items())]
 
 
 @dataclass(frozen=True)
@@ -345,41 +346,41 @@ class SolvedRotor:
     Attributes
     ----------
     rotor : rotors.Rotor
-        With its gears as discs.
+        Rotor with its gears as discs.
     bearings, resting : tuple of rotors.Bearing
-        As given, with their tables over speed; and as they hold the rotor at rest.
+        Bearings with their tables over speed, and as they hold the rotor at rest.
     rest_speed : float or None
-        The speed of their tables that stands for rest, the lowest that all of them hold [rad/s]; None without tables.
+        Speed that stands for rest, the lowest that all their tables hold [rad/s]; None without tables.
     rest : RestFrequencies
     axial : ndarray, shape (a,)
         Natural frequencies at rest of motions along the axis, ascending [rad/s]; none where no bearing holds it.
     lateral : LateralModes
-        In one plane at averaged support stiffness.
+        Modes in one plane at averaged support stiffness.
     torsional : TorsionalModes
     whirl : tuple of rotors.WhirlModes
-        At the speed of operation, then at those of the sweep.
+        Whirl modes at the speed of operation, then at those of the sweep.
     campbell : rotors.Campbell or None
-        None without speeds.
+        Campbell diagram; None without speeds.
     crossings : tuple of Crossing or str
         Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
     orders : mapping of float to (tuple of Crossing or str)
-        The same of each other multiple of the speed that the case asks for.
+        Damped critical speeds of each other multiple of the speed that the case asks for.
     critical : CriticalSpeeds
-        Undamped, of whirl alone; with tables, within the speeds that they hold.
+        Undamped critical speeds of whirl; with tables, within the speeds that they hold.
     operation : float or None
         Speed of operation [rad/s].
     weight : SolvedWeight or str
         Deflection under gravity and constant forces at operation, else at rest; or why there is none.
     response : SolvedResponse or None
-        To unbalance and bow; None where there is neither.
+        Response to unbalance and bow; None where there is neither.
     torsion : SolvedTorsion or None
-        Response to torques that swing; None where none does.
+        Response to alternating torques; None without any.
     stiffness_map : CriticalSpeedMap or None
-        Where the case asks for it.
+        Critical-speed map, where the case asks for it.
     rolling : mapping of str to rotors.rolling_bearings.RollingState
-        What its rolling bearings carry, by their names.
+        States of its rolling bearings under load, by name.
     lives : mapping of str to BearingLife
-        Ratings and lives of the same.
+        Ratings and lives of its rolling bearings, by name.
     """
 
     rotor: Rotor
@@ -449,19 +450,19 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     """
     require(case, "rotor", command="rotors")
     analysis = case.rotor_analysis or RotorAnalysis()
-    held, ratings = rotor_bearings(case), given_ratings(case)
+    built, ratings = rotor_bearings(case), given_ratings(case)
     solved = []
-    for given in case.rotor:
-        progress(f"rotor {given.name}")
-        rotor, (bearings, rolling) = build_rotor(case, given), held[given.name]
-        lowest, _ = table_range(case, given.name)
+    for table in case.rotor:
+        progress(f"rotor {table.name}")
+        rotor, (bearings, rolling) = build_rotor(case, table), built[table.name]
+        lowest, _ = table_range(case, table.name)
         resting = tuple(bearing.at_speed(lowest) for bearing in bearings)
-        speeds = whirl_speeds(case, given.name)
+        speeds = whirl_speeds(case, table.name)
         operation = speeds[0] if case.operation is not None else None
         reference = lowest if operation is None else operation
-        weight = solve_weight(analysis, rotor, bearings, reference, _constant_forces(case, given.name))
-        progress(f"rotor {given.name}: whirl over speed")
-        diagram = campbell_speeds(case, given.name)
+        weight = solve_weight(analysis, rotor, bearings, reference, _constant_forces(case, table.name))
+        progress(f"rotor {table.name}: whirl over speed")
+        diagram = campbell_speeds(case, table.name)
         solver = WhirlSolver(rotor, bearings)
         campbell = rotor_campbell(rotor, bearings, diagram, count=analysis.modes, solver=solver) if diagram else None
         stands = not isinstance(weight, str)
@@ -486,8 +487,8 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 critical=critical_speeds(rotor, bearings, count=analysis.modes).lateral,
                 operation=operation,
                 weight=weight,
-                response=solve_response(case, analysis, given, rotor, bearings, operation, held=stands),
-                torsion=solve_torsion(analysis, given, rotor, torsional),
+                response=solve_response(case, analysis, table, rotor, bearings, operation, held=stands),
+                torsion=solve_torsion(analysis, table, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,
                 lives={name: BearingLife(state, ratings.get(name), operation) for name, state in rolling.items()},
@@ -499,7 +500,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
 def _constant_forces(case: Case, rotor: str) -> tuple[StaticForce, ...]:
     """Return the constant forces of the operation on a rotor; those of its gears are not among them."""
     forces = () if case.operation is None else case.operation.force
-    return tuple(StaticForce(one.at, one.x, one.y, one.z) for one in forces if one.rotor == rotor)
+    return tuple(StaticForce(force.at, force.x, force.y, force.z) for force in forces if force.rotor == rotor)
 
 
 def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -> FloatArray:
@@ -509,7 +510,7 @@ def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -
         return rest.frequencies[along]
     springs = [AxisSpring(bearing.at, float(bearing.spatial_stiffness[2, 2])) for bearing in resting]
     springs = [spring for spring in springs if spring.stiffness > 0.0]
-    # As high as the bending that is listed beside it.
+    # Up to the highest bending frequency listed beside it.
     limit = float(rest.frequencies.max(initial=0.0))
     if not springs or not limit:
         return np.zeros(0)
@@ -518,11 +519,11 @@ def _axial_frequencies(rotor: Rotor, resting: Bearings, rest: RestFrequencies) -
 
 def _stiffness_map(analysis: RotorAnalysis, rotor: Rotor, bearings: Bearings) -> CriticalSpeedMap | None:
     """Critical speeds over the stiffness of all bearings, where the case asks for them and there are any."""
-    wanted = analysis.stiffness_map
-    if wanted is None or not bearings:
+    settings = analysis.stiffness_map
+    if settings is None or not bearings:
         return None
-    direction = 1 if wanted.whirl == "forward" else -1
-    return critical_speed_map(rotor, bearings, wanted.stiffnesses, count=wanted.modes, direction=direction)
+    direction = 1 if settings.whirl == "forward" else -1
+    return critical_speed_map(rotor, bearings, settings.stiffnesses, count=settings.modes, direction=direction)
 
 
 def _crossings(campbell: Campbell, order: float = 1.0) -> Crossings:
@@ -533,14 +534,14 @@ def _crossings(campbell: Campbell, order: float = 1.0) -> Crossings:
     if campbell.speeds.size < 2:
         return "a Campbell diagram at one speed has no crossings; expected two or more different speeds"
     try:
-        return tuple(one for one in campbell.crossings(order) if one.axial_share <= MOSTLY_AXIAL)
+        return tuple(crossing for crossing in campbell.crossings(order) if crossing.axial_share <= MOSTLY_AXIAL)
     except IncompleteModesError as error:
         return str(error)
 
 
 def write_ross_files(folder: Path, solved: tuple[SolvedRotor, ...]) -> tuple[str, ...]:
-    """Write every rotor as ``<name>.ross.toml``, and return what ROSS has no place for."""
+    """Write every rotor as ``<name>.ross.toml``, and return remarks on parts that ROSS cannot hold."""
     remarks: list[str] = []
-    for one, stem in zip(solved, file_stems([one.rotor.name for one in solved]), strict=True):
-        remarks += write_ross(folder / f"{stem}.ross.toml", one.rotor, one.bearings)
+    for rotor, stem in zip(solved, file_stems([rotor.rotor.name for rotor in solved]), strict=True):
+        remarks += write_ross(folder / f"{stem}.ross.toml", rotor.rotor, rotor.bearings)
     return tuple(remarks)

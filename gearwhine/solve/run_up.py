@@ -16,13 +16,13 @@ from gearwhine.solve.transient import SolvedTransient
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
-_SLOWEST = 0.1  # part of the highest speed below which nothing is looked at: a turn would take samples without end
-_ROWS = 28  # of the waterfall; its stretches overlap by half
-_WINDOWS = 60  # of the order map, about, each overlapping the next by half
-_HARMONICS = 3  # of each mesh that are followed
-_ABOVE = 1.25  # orders up to this over the highest of interest are followed
-_APART, _PARTED = 3.0, 2.0  # lines of a window between orders: as wished, and where Hann's window just parts them
-_FEWEST = 20  # windows that make a course over speed, where the run has turns for them
+_SLOWEST = 0.1  # part of the highest speed below which samples are left out: a turn would take too many of them
+_ROWS = 28  # stretches of the waterfall, which overlap by half
+_WINDOWS = 60  # windows of the order map, about, which overlap by half
+_HARMONICS = 3  # harmonics of each mesh that are followed
+_ABOVE = 1.25  # highest order of the map over the highest named one
+_APART, _PARTED = 3.0, 2.0  # lines of a window between orders: wanted, and the least that Hann's window separates
+_FEWEST = 20  # least number of windows over speed, where the run has turns for them
 _FEWEST_TURNS = 4
 _BEYOND_LIMIT = 2.5  # samples for each cycle of the highest frequency at the lowest speed: all that resampling passes
 
@@ -35,11 +35,11 @@ class RunSignature:
     ----------
     units : dict of str to str
     spectra : dict of str to coupling.signals.Spectrogram
-        Of stretches along the run, up to the trusted limit.
+        Spectra of stretches along the run, up to the trusted limit.
     speeds_rpm : ndarray, shape (t,)
-        Of the leading shaft in the middle of each stretch.
+        Speed of the leading shaft in the middle of each stretch [rpm].
     orders : dict of str to coupling.signals.OrderMap
-        By cycles each turn of the leading shaft.
+        Orders, in cycles each turn of the leading shaft.
     named : dict of str to float
         Orders that have names: shafts and harmonics of the meshes.
     """
@@ -58,13 +58,13 @@ class RunSignature:
         """Return the peak of each named order of each signal along the run."""
         rows = []
         for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
-            for (what, order), along in zip(self.named.items(), courses, strict=True):
+            for (order_name, order), along in zip(self.named.items(), courses, strict=True):
                 place = int(np.argmax(along))
                 rows.append(
                     {
                         "signal": name,
                         "unit": self.units[name],
-                        "name": what,
+                        "name": order_name,
                         "order": order,
                         "highest_amplitude": float(along[place]),
                         "at_rpm": float(60.0 * orders.speeds[place]),
@@ -82,11 +82,11 @@ class _Windows:
     ----------
     span : slice
     turns : int
-        Of the leading shaft in each window.
+        Turns of the leading shaft in each window.
     named : dict of str to float
-        Orders that windows of that length tell apart.
+        Orders that windows of that length separate.
     merged : tuple of str
-        Names of the others.
+        Names of the orders that they do not separate.
     """
 
     span: slice
@@ -119,9 +119,9 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         name = solved.machine.system.contacts[number].name
         signals[name] = solved.histories.mesh_force[name], "N"
     for name, (signal, unit) in signals.items():
-        found = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
+        spectrogram = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
         turned = signature.resample_by_angle(signal[span], times, turning, turns_per_second, per_turn=per_turn)
-        units[name], spectra[name] = unit, _up_to(found, solved.trusted_limit)
+        units[name], spectra[name] = unit, _up_to(spectrogram, solved.trusted_limit)
         mapped = signature.order_map(
             turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
         )
@@ -160,7 +160,7 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
     if total < _FEWEST_TURNS:
         return f"{max(total, 0)} whole turns of the leading shaft in the record; expected {_FEWEST_TURNS} or more"
     named = _named_orders(case, solved)
-    # As many turns as part the closest orders, and the lowest from none, as far as the run leaves some windows.
+    # As many turns as separate the closest orders, and the lowest from zero, as far as the run leaves some windows.
     ascending = np.unique([0.0, *named.values()])
     needed = math.ceil(_APART / float(np.diff(ascending).min()) - 1e-9)
     turns = max(2 * total // _WINDOWS, 2, needed)
@@ -169,11 +169,11 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
         # Windows of whole turns of every shaft have every order as a line.
         turns = math.ceil(turns / whole) * whole
     turns = min(turns, max(2 * total // _FEWEST, 2))
-    # Of orders too close to each other the lower harmonic or the shaft that comes first is followed.
+    # Where two orders are too close to each other, the lower harmonic or the first shaft is followed.
     followed: dict[str, float] = {}
     for name, order in named.items():
-        others = [0.0, *(one for one in followed.values() if one != order)]
-        if min(abs(order - one) for one in others) * turns >= _PARTED - 1e-9:
+        neighbours = [0.0, *(followed_order for followed_order in followed.values() if followed_order != order)]
+        if min(abs(order - followed_order) for followed_order in neighbours) * turns >= _PARTED - 1e-9:
             followed[name] = order
     merged = tuple(name for name in named if name not in followed)
     if not followed:
@@ -198,11 +198,13 @@ def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
     return {line.name: round(line.order * whole) / whole for line in lines}
 
 
-def _up_to(found: signature.Spectrogram, limit: float) -> signature.Spectrogram:
-    below = found.frequencies <= limit * (1.0 + 1e-9)
-    return signature.Spectrogram(found.times, found.frequencies[below], found.amplitude[:, below], found.window)
+def _up_to(spectrogram: signature.Spectrogram, limit: float) -> signature.Spectrogram:
+    below = spectrogram.frequencies <= limit * (1.0 + 1e-9)
+    return signature.Spectrogram(
+        spectrogram.times, spectrogram.frequencies[below], spectrogram.amplitude[:, below], spectrogram.window
+    )
 
 
-def _orders_up_to(found: signature.OrderMap, limit: float) -> signature.OrderMap:
-    below = found.orders <= limit
-    return replace(found, orders=found.orders[below], amplitude=found.amplitude[:, below])
+def _orders_up_to(table: signature.OrderMap, limit: float) -> signature.OrderMap:
+    below = table.orders <= limit
+    return replace(table, orders=table.orders[below], amplitude=table.amplitude[:, below])

@@ -14,8 +14,8 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_HARMONICS = 3  # of each mesh whose sidebands are looked at
-_TOLD = 5  # modes, and bearings, of each line
+_HARMONICS = 3  # harmonics of each mesh whose sidebands are taken
+_LARGEST = 5  # number of modes, and of bearings, reported of each line
 _FAINT = 1e-6  # sidebands below this part of their carrier are rounding
 
 
@@ -29,7 +29,7 @@ class Contribution:
     value : complex
         Amplitude of acceleration [m/s²].
     share : float
-        Of the line: the part in phase with it, so that shares add up to 1. Negative where it works against the line.
+        Part of the line in phase with it, so that shares add up to 1; negative where it works against the line.
     mode : int or None
         Number of the housing mode, from 1.
     """
@@ -42,22 +42,22 @@ class Contribution:
 
 @dataclass(frozen=True)
 class TracedLine:
-    """A line of a sensor, what it is and where it comes from.
+    """A line of a sensor, with its name and its contributions.
 
     Attributes
     ----------
     frequency : float
-        [Hz].
+        Frequency [Hz].
     value : complex
         Amplitude [m/s²] and phase at the start of the record.
     named : coupling.signals.LineName
     modes : tuple of Contribution
-        Every housing mode and what their local compliance leaves, largest share first: they add up to the line.
+        Contributions of every housing mode and of the local compliance, largest share first; they add up to the line.
     bearings : tuple of Contribution
-        Every bearing on the housing, largest share first.
+        Contributions of every bearing on the housing, largest share first.
     free : Contribution
-        What the line has beyond what the bearings' forces account for: free vibration that has not died away, and
-        errors of the steps in time.
+        Part of the line that is not of the bearings' forces: free vibration that has not died away, and errors of the
+        time integration.
     """
 
     frequency: float
@@ -75,12 +75,12 @@ class TracedLine:
     @property
     def told_modes(self) -> tuple[Contribution, ...]:
         """The modes with most of the line."""
-        return self.modes[:_TOLD]
+        return self.modes[:_LARGEST]
 
     @property
     def told_bearings(self) -> tuple[Contribution, ...]:
         """The bearings with most of the line."""
-        return self.bearings[:_TOLD]
+        return self.bearings[:_LARGEST]
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class LineTable:
     modes, bearings : list of str
         Modes in the order of their numbers, the local compliance last.
     frequency : ndarray, shape (s, k)
-        [Hz].
+        Frequencies [Hz].
     names : ndarray of str, shape (s, k)
     value : ndarray, shape (s, k, 2)
     by_mode : ndarray, shape (s, k, m, 2)
@@ -114,7 +114,7 @@ class LineTable:
 
 @dataclass(frozen=True)
 class ShaftSidebands:
-    """Sidebands of a gear mesh by the turning of a shaft, or of two that turn equally fast."""
+    """Sidebands of a gear mesh by the rotation of a shaft, or of two of equal speed."""
 
     mesh: str
     shafts: tuple[str, ...]
@@ -128,19 +128,19 @@ class SolvedSignature:
     Attributes
     ----------
     lines : dict of str to tuple of TracedLine
-        Of each sensor, highest first.
+        Lines of each sensor, highest first.
     force_lines : dict of str to tuple of coupling.signals.LineName
-        Of each mesh's force, in the order of its peaks.
+        Names of the lines of each mesh's force, in the order of its peaks.
     sidebands : dict of str to tuple of ShaftSidebands
-        Of each sensor.
+        Sidebands of each sensor.
     force_sidebands : dict of str to tuple of ShaftSidebands
-        Of each mesh's force.
+        Sidebands of each mesh's force.
     bearing_spectra : dict of str to Spectrum
-        Of the forces in all directions that a bearing holds, shape (d, m).
+        Spectra of the forces in all directions that a bearing holds, shape (d, m).
     modes : CoupledModes
-        That names refer to.
+        Coupled modes that names refer to.
     housing : Spectrum or None
-        Of the accelerations of the housing's modes [m √kg / s²], shape (n_modes, m), where there are any.
+        Spectra of the accelerations of the housing's modes, shape (n_modes, m) [m √kg / s²]; None without a housing.
     """
 
     lines: dict[str, tuple[TracedLine, ...]]
@@ -151,29 +151,29 @@ class SolvedSignature:
     modes: CoupledModes
     housing: Spectrum | None = None
 
-    def clear_sidebands(self, found: tuple[ShaftSidebands, ...]) -> list[tuple[ShaftSidebands, signature.Sideband]]:
-        """Sidebands above rounding, of carriers that are there."""
+    def clear_sidebands(self, sidebands: tuple[ShaftSidebands, ...]) -> list[tuple[ShaftSidebands, signature.Sideband]]:
+        """Return the sidebands above rounding, of carriers that exist."""
         return [
-            (one, pair)
-            for one in found
-            for pair in one.pairs
+            (of_shaft, pair)
+            for of_shaft in sidebands
+            for pair in of_shaft.pairs
             if max(pair.lower, pair.upper) > _FAINT * pair.carrier_amplitude
         ]
 
     def bearing_amplitudes(self, solved: SolvedTransient) -> dict[str, FloatArray]:
         """Peak amplitudes of each bearing's load along x, y, z and about x, y, (5, m); zero where nothing holds."""
-        found = {}
+        amplitudes = {}
         for name, spectrum in self.bearing_spectra.items():
-            found[name] = np.zeros((5, len(spectrum.frequencies)))
-            found[name][list(solved.histories.bearing_axes[name])] = spectrum.amplitude
-        return found
+            amplitudes[name] = np.zeros((5, len(spectrum.frequencies)))
+            amplitudes[name][list(solved.histories.bearing_axes[name])] = spectrum.amplitude
+        return amplitudes
 
     def housing_lines(self, limit: float) -> tuple[FloatArray, ComplexArray, str] | None:
         """Frequencies [Hz] up to a limit, the lines of the housing's modes there, and their window."""
         if self.housing is None:
             return None
-        shown = self.housing.frequencies <= limit * (1.0 + 1e-9)
-        return self.housing.frequencies[shown], self.housing.lines[:, shown], self.housing.window
+        below = self.housing.frequencies <= limit * (1.0 + 1e-9)
+        return self.housing.frequencies[below], self.housing.lines[:, below], self.housing.window
 
     def line_table(self) -> LineTable | None:
         """Lines of all sensors beside each other; None where there are none."""
@@ -204,12 +204,11 @@ def solve_signature(
 
     Parameters
     ----------
-    solved
-        The transient.
-    modes
-        Of the coupled system.
-    housing_frequencies
-        Of the housing's modes [Hz], where there is one.
+    solved : SolvedTransient
+    modes : CoupledModes
+        Modes of the coupled system.
+    housing_frequencies : ndarray, shape (n_modes,), or None
+        Natural frequencies of the housing's modes [Hz], where there is one.
     """
     histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.loaded]
     interval = float(histories.times[1] - histories.times[0])
@@ -255,7 +254,7 @@ def _traced(
     peaks = solved.sensor_peaks(sensor)
     places = np.searchsorted(spectrum.frequencies, [peak.frequency for peak in peaks]).astype(int)
     at = spectrum.frequencies[places]
-    # Of a long record the peaks are those of its averaged spectrum, the parts those of its last stretch.
+    # The peaks of a long record come from its averaged spectrum, their parts from its last stretch.
     values = solved.record.spectrum(solved.histories.sensor_acceleration[sensor], solved.trusted_limit).lines[places]
     by_mode = signature.mode_parts(machine.housing, sensor, modal.lines[:, places].T, values)
     forces = {name: tie.lines[:, places].T for name, tie in ties.items()}
@@ -299,7 +298,7 @@ def _named(
 def _sidebands(
     solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: str | None = None
 ) -> tuple[ShaftSidebands, ...]:
-    machine, found = solved.machine, []
+    machine, of_shafts = solved.machine, []
     length = signal.size * interval
     for mesh, contact in zip(machine.meshes, machine.system.contacts, strict=False):
         if contact.mesh_frequency == 0.0 or only not in (None, contact.name):
@@ -316,5 +315,5 @@ def _sidebands(
             turning = abs(machine.speeds[shafts[0]]) / _TWO_PI
             if turning * length >= (1.0 if window == "uniform" else 2.0):
                 pairs = signature.sidebands(signal, interval, carriers, turning, window=window)
-                found.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))
-    return tuple(found)
+                of_shafts.append(ShaftSidebands(contact.name, tuple(shafts), tuple(pairs)))
+    return tuple(of_shafts)

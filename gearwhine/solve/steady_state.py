@@ -32,16 +32,16 @@ from gearwhine.solve.housing_modes import SolvedHousing
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
-_SLOWEST = 0.5  # of the speed of operation, where a case names no range
-_OVERSAMPLING = 32.0  # of a period over the highest frequency of interest: little folds back below it
+_SLOWEST = 0.5  # lowest speed of a branch over that of operation, where the case names no range
+_OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512
-_HARMONICS = 4.0  # of the mesh that are of interest where no housing says how far the model goes
-_LINES = 20  # that are told of each signal
-_NAMED = 1e-3  # of the spacing of lines within which one has the name of an excitation
+_HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
+_LINES = 20  # reported lines of each signal
+_NAMED = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
 _DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
 CURVE_TOLERANCE = 1e-5
-"""Of the points of a branch, relative: a tenth of what a transient is asked for by default."""
+"""Relative tolerance of the points of a branch: a tenth of a transient's default."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +51,14 @@ class SteadyMotion:
     Attributes
     ----------
     speed : float
-        Of the first driver's rotor [rad/s].
+        Speed of the first driver's rotor [rad/s].
     response : PeriodicResponse
     histories : Histories
-        Of one period.
+        Histories of one period.
     trusted_limit : float
         Highest frequency that the model carries [Hz].
     excitation : str
-        What drives it where it is one of several that are superposed; empty for the motion under all excitations.
+        Name of its excitations, where it is one of several superposed motions; empty for the motion under all.
     """
 
     speed: float
@@ -83,8 +83,8 @@ class SteadyMotion:
         """
         spectrum = self.spectrum(signal)
         limit = self.trusted_limit * (1.0 + 1e-9)
-        known = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
-        highest = known[np.argsort(-spectrum.amplitude[known], kind="stable")][:_LINES]
+        inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
+        highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:_LINES]
         return [
             (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]))
             for i in highest
@@ -106,27 +106,27 @@ class SteadyMotion:
 
 @dataclass(frozen=True)
 class LoudestPoint:
-    """Point of a branch at which a sensor's acceleration is largest, and what carries it.
+    """Point of a branch at which a sensor's acceleration is largest, with its highest line.
 
     Attributes
     ----------
     sensor : str
     speed : float
-        Of the first driver's rotor [rad/s].
+        Speed of the first driver's rotor [rad/s].
     rms : float
-        Acceleration up to the trusted limit [m/s²].
+        Rms acceleration up to the trusted limit [m/s²].
     frequency : float
-        Of its highest line [Hz].
+        Frequency of its highest line [Hz].
     amplitude : float
-        Of that line [m/s²].
+        Amplitude of that line [m/s²].
     excitation : str
         Name of that line, such as ``3× pinion -> wheel``.
     mode : int
         Number of the housing mode with the largest part in that line, from 1.
     mode_hz : float
-        Its natural frequency [Hz].
+        Natural frequency of that mode [Hz].
     share : float
-        That part, in phase with the line, over the line.
+        Part of that mode, in phase with the line, over the line.
     """
 
     sensor: str
@@ -147,18 +147,18 @@ class SolvedSteady:
     Attributes
     ----------
     machine : coupling.CoupledMachine
-        At the speed of operation.
+        Machine at the speed of operation.
     motions : tuple of SteadyMotion
-        At the speed of operation: one, or all that a branch has there; where they are superposed, one of each group
-        of excitations.
+        Motions at the speed of operation: one, or all that a branch has there; where they are superposed, one of each
+        group of excitations.
     superposed : SuperposedResponse or None
-        Their sum, where the excitations have no short common period.
+        Sum of the motions, where the excitations have no short common period.
     curve : ResponseCurve or None
         The branch over the speed of the first driver's rotor [rad/s].
     branch_rms : dict of str to ndarray, shape (p,)
-        Of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
+        Rms of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
     loudest : tuple of LoudestPoint
-        Of each sensor on the branch.
+        Loudest point of each sensor on the branch.
     """
 
     machine: CoupledMachine
@@ -174,17 +174,17 @@ class SolvedSteady:
         Forces along x, y, z [N] and moments about x, y [N m]; the peak of superposed motions is a bound.
         """
         motions = self.motions if motion is None else (motion,)
-        found = []
+        loads = []
         for name in motions[0].histories.bearing_load:
-            parts = [signal_parts(one.histories.bearing_load[name].T) for one in motions]
+            parts = [signal_parts(motion.histories.bearing_load[name].T) for motion in motions]
             # Each group's motion has the mean load; of different frequencies the powers add.
-            mean, rms = np.mean([one.mean for one in parts], axis=0), np.hypot.reduce([one.rms for one in parts])
-            found.append((name, SignalParts(mean, rms, np.sum([one.peak for one in parts], axis=0))))
-        return found
+            mean, rms = np.mean([part.mean for part in parts], axis=0), np.hypot.reduce([part.rms for part in parts])
+            loads.append((name, SignalParts(mean, rms, np.sum([part.peak for part in parts], axis=0))))
+        return loads
 
     def superposition_warnings(self) -> list[dict[str, Any]]:
         """Warnings where the sum of the groups' motions is no longer near the motion under all of them."""
-        found: list[dict[str, Any]] = []
+        warnings: list[dict[str, Any]] = []
         sum_ = self.superposed
         for number, contact in enumerate(self.machine.system.contacts if sum_ is not None else ()):
             assert sum_ is not None
@@ -200,10 +200,10 @@ class SolvedSteady:
             message = (
                 f"superposed motions are doubtful at {contact.name}: {text}; hold them against run, or use --exact"
             )
-            found.append(
+            warnings.append(
                 warning("superposition", message, contact=contact.name, neglected_part=part, contact_loss=loss)
             )
-        return found
+        return warnings
 
 
 def solve_steady(
@@ -219,22 +219,24 @@ def solve_steady(
 ) -> SolvedSteady:
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
 
-    Where the common period of all excitations is long, as that of hunting teeth is, each group of excitations has its
+    If the common period of all excitations is long, such as that of hunting teeth, each group of excitations has its
     own motion and these are superposed, see :mod:`coupling.periodic.superposition`.
 
     Parameters
     ----------
-    case, machine, housing
-        The case and what was built of it.
-    progress
-        Told what is solved, and how far the branch has come.
-    over_speed
-        Whether the branch is wanted: over the range of ``[sweep]``, else from half to beyond the speed of operation.
-    downwards
-        Whether it begins at the highest speed.
-    points
-        On a branch that runs straight.
-    exact
+    case : Case
+    machine : CoupledMachine
+        Machine of the case.
+    housing : SolvedHousing or None
+        Housing of the machine.
+    progress : callable
+    over_speed : bool
+        Whether to follow the branch: over the range of ``[sweep]``, else from half to beyond the speed of operation.
+    downwards : bool
+        Whether the branch begins at the highest speed.
+    points : int
+        Number of points on a straight branch.
+    exact : bool
         Whether the common period is solved however long it is.
 
     Raises
@@ -282,27 +284,29 @@ def solve_steady(
     )
     progress("the motions at the speed of operation")
     reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
-    here = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
-    motions = tuple(_motion(case, machine, housing, speed, one) for one in here)
-    found = {name: np.array(values) for name, values in rms.items()}
-    loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, found))
-    return SolvedSteady(machine, motions, curve, found, loudest=loudest)
+    responses = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
+    motions = tuple(_motion(case, machine, housing, speed, response) for response in responses)
+    branch_rms = {name: np.array(values) for name, values in rms.items()}
+    loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
+    return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)
 
 
 def _loudest(
     case: Case, machine: CoupledMachine, housing: SolvedHousing, curve: ResponseCurve, rms: dict[str, FloatArray]
 ) -> Iterator[LoudestPoint]:
-    """Yield where each sensor is loudest on a branch; nothing of one that does not move."""
+    """Yield the loudest point of each sensor on a branch; none of a sensor that does not move."""
     places = {name: int(values.argmax()) for name, values in rms.items() if values.any()}
     for place in sorted(set(places.values())):
         speed = float(curve.speeds[place])
-        here = machine.at_speed(speed)
-        motion = _motion(case, here, housing, speed, curve.motion(place))
+        machine_there = machine.at_speed(speed)
+        motion = _motion(case, machine_there, housing, speed, curve.motion(place))
         samples = len(motion.histories.times)
-        record = motion.response.record(with_modal_rows(here, transient_outputs(here)), samples)
-        modal = amplitude_spectrum(modal_record(here, record).housing_acceleration.T, motion.response.period / samples)
-        assert here.housing is not None
-        for name, row in here.housing.sensors.items():
+        record = motion.response.record(with_modal_rows(machine_there, transient_outputs(machine_there)), samples)
+        modal = amplitude_spectrum(
+            modal_record(machine_there, record).housing_acceleration.T, motion.response.period / samples
+        )
+        assert machine_there.housing is not None
+        for name, row in machine_there.housing.sensors.items():
             if places.get(name) != place:
                 continue
             spectrum = motion.spectrum(motion.histories.sensor_acceleration[name])
@@ -317,7 +321,7 @@ def _loudest(
                 rms=float(rms[name][place]),
                 frequency=frequency,
                 amplitude=amplitude,
-                excitation=line_names(here, [frequency], _NAMED * spectrum.spacing)[0].name,
+                excitation=line_names(machine_there, [frequency], _NAMED * spectrum.spacing)[0].name,
                 mode=mode + 1,
                 mode_hz=float(housing.modes.frequencies_hz[mode]),
                 share=float(shares[mode]),
@@ -346,11 +350,12 @@ def _superposed(
     progress: Progress,
 ) -> SolvedSteady:
     progress(f"the motions of {len(groups)} groups of excitations without a short common period")
-    found = superposed_response(machine.system, groups)
+    superposed = superposed_response(machine.system, groups)
     motions = tuple(
-        replace(_motion(case, machine, housing, speed, one.response), excitation=one.name) for one in found.motions
+        replace(_motion(case, machine, housing, speed, group.response), excitation=group.name)
+        for group in superposed.motions
     )
-    return SolvedSteady(machine, motions, superposed=found)
+    return SolvedSteady(machine, motions, superposed=superposed)
 
 
 def _speed_range(case: Case) -> tuple[float, float]:

@@ -56,7 +56,7 @@ class SolvedTransient:
     ----------
     machine : coupling.CoupledMachine
     speed : float
-        Of the first driver's rotor at operation [rad/s].
+        Speed of the first driver's rotor at operation [rad/s].
     method : str
         The method of time integration, "newmark" or "exact".
     turning : SpeedProfile or None
@@ -65,7 +65,7 @@ class SolvedTransient:
     record : TransientRecord
         Everything recorded, piece by piece.
     signals : Signals
-        The same at once; of a long record its last stretch.
+        Recorded signals in memory; of a long record its last stretch.
     sensor_spectra : dict of str to Spectrum
         Acceleration [m/s²]; of a long record averaged over stretches, up to the trusted limit.
     force_spectra : dict of str to Spectrum
@@ -110,7 +110,9 @@ class SolvedTransient:
     @property
     def averages(self) -> int:
         """Number of stretches over which the spectra were averaged."""
-        return next((one.averages for one in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1)
+        return next(
+            (spectrum.averages for spectrum in [*self.sensor_spectra.values(), *self.force_spectra.values()]), 1
+        )
 
     def sensor_rms(self, sensor: str) -> float:
         """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""
@@ -179,10 +181,10 @@ def solve_transient(
     Parameters
     ----------
     keep : callable, optional
-        Gives the blocks stored under a key of all that the integration depends on, which goes on behind them. By
-        default none are stored, and all are held in memory.
+        Returns the blocks stored under a key of the integration's inputs; the integration continues after them. By
+        default all blocks are held in memory.
     record_bytes, samples_per_block : int
-        The longest record stored as sampled, and about how many samples are integrated from checkpoint to checkpoint.
+        Size of the longest record stored as sampled, and approximate number of samples between checkpoints.
 
     Raises
     ------
@@ -215,7 +217,7 @@ def solve_transient(
     if keep is not None:
         blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
-    held = nothing.columns if last is None else last["held"]
+    filter_state = nothing.columns if last is None else last["held"]
     integrated = integrate_blocks(
         *integration,
         turning=turning,
@@ -225,8 +227,8 @@ def solve_transient(
         progress=lambda fraction: progress("marching through the transient", fraction),
     )
     for block in integrated:
-        columns, held = chosen.decimation.through(held, named(block).columns)
-        blocks.append(block_arrays(columns, held, block.after))
+        columns, filter_state = chosen.decimation.through(filter_state, named(block).columns)
+        blocks.append(block_arrays(columns, filter_state, block.after))
     record = TransientRecord(chosen, blocks, nothing)
     figures = transient_figures(chosen.settings, record.end)
     stretch = record.last_stretch()
@@ -238,7 +240,7 @@ def solve_transient(
 
 
 def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named: Histories) -> Histories:
-    """Histories as accelerometers show them: their motion in space, not beside a base that moves."""
+    """Return histories as accelerometers show them: motion in space, not relative to a moving base."""
     base = base_motion(case)
     if base is None or housing is None:
         return named

@@ -39,15 +39,15 @@ from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked
 
 _FOLDER_PREFIX = ".resume-"
-_KEY_DIGITS = 16  # of the folder's name: no two integrations of one folder share them by chance
+_KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * math.pi
-_OVERSAMPLING = 100.0  # of the integration over the highest frequency of interest
-_FEWEST_SAMPLES = 16  # of an integration: fewer show nothing
-_STORED_SAMPLING = 4.0  # of stored long records: what folds onto that frequency is a wide transition away
+_OVERSAMPLING = 100.0  # sampling of the integration over the highest frequency of interest
+_FEWEST_SAMPLES = 16  # least number of samples of an integration
+_STORED_SAMPLING = 4.0  # sampling of stored long records over that frequency: aliases are a wide transition away
 RECORD_BYTES = 128 << 20
 """The longest record that is stored as it was sampled, all signals together."""
 _STRETCH_BYTES = 64 << 20
@@ -125,18 +125,18 @@ class BlockFiles:
 def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
     """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
 
-    Where a living run is at the same integration in the same folder, this one stores blocks of its own.
+    If a living run performs the same integration in the same folder, this one stores blocks of its own.
 
     Parameters
     ----------
     folder : path
         The output folder.
     key : str
-        Of all that the blocks depend on.
+        Key of all inputs of the blocks.
     fresh : bool
-        Clear away what is there, and begin anew.
+        Whether to remove stored blocks, and begin anew.
     """
-    made = not folder.exists()
+    is_new = not folder.exists()
     with ExitStack() as stack:
         with exclusive_lock(folder):
             place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
@@ -146,7 +146,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
             yield blocks
         except BaseException as error:
             if blocks.is_empty:
-                _clear(place, folder if made else None)
+                _clear(place, folder if is_new else None)
             elif isinstance(error, KeyboardInterrupt):
                 error.add_note("what was marched so far is kept: the same command goes on from there, --fresh does not")
             raise
@@ -155,21 +155,26 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
 
 def _place(folder: Path, name: str, *, fresh: bool) -> Path:
     """Return a folder for the blocks, after those of any other ended run are cleared away."""
-    wanted = folder / name
-    for other in folder.glob(f"{_FOLDER_PREFIX}*"):
-        if other.is_dir() and not other.is_symlink() and (fresh or other != wanted) and not is_locked(other):
-            shutil.rmtree(other, ignore_errors=True)
-    if wanted.exists() and is_locked(wanted):
+    target = folder / name
+    for candidate in folder.glob(f"{_FOLDER_PREFIX}*"):
+        if (
+            candidate.is_dir()
+            and not candidate.is_symlink()
+            and (fresh or candidate != target)
+            and not is_locked(candidate)
+        ):
+            shutil.rmtree(candidate, ignore_errors=True)
+    if target.exists() and is_locked(target):
         return Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
-    wanted.mkdir(exist_ok=True)
-    return wanted
+    target.mkdir(exist_ok=True)
+    return target
 
 
-def _clear(place: Path, made: Path | None) -> None:
+def _clear(place: Path, created: Path | None) -> None:
     shutil.rmtree(place, ignore_errors=True)
-    if made is not None:
+    if created is not None:
         with suppress(OSError):  # another run is at work in it
-            made.rmdir()
+            created.rmdir()
 
 
 def _force_names(folder: Path) -> None:
@@ -188,13 +193,13 @@ class Sampling:
     Attributes
     ----------
     settings : coupling.TransientSettings
-        Of the integration.
+        Settings of the integration.
     samples_per_block : int
-        Of the integration, about.
+        Approximate number of the integration's samples in a block.
     decimation : Decimation
-        From recorded to stored samples; by 1 for a record that fits in memory.
+        Decimation from recorded to stored samples; by 1 for a record that fits in memory.
     stretch : int
-        Kept samples over which a spectrum is taken.
+        Number of stored samples over which a spectrum is taken.
     window : {"uniform", "hann"}
         Uniform where every shaft turns a whole number of times in a stretch.
     """
@@ -231,17 +236,17 @@ def sampling(
     Parameters
     ----------
     case : Case
-        With an operation and a transient.
+        Case with an operation and a transient.
     turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
     limit : float
         Highest frequency of interest [Hz].
     signals, rows : int
-        Numbers in a stored sample, and in one of the integration.
+        Numbers of values in a stored sample, and in a sample of the integration.
     largest : int
-        The longest record that is stored as it was sampled [bytes].
+        Size of the longest record that is stored as it was sampled [bytes].
     block : int, optional
-        Samples in a block, about; by default as many as suit the length.
+        Approximate number of samples in a block; by default as many as suit their size.
 
     Raises
     ------
@@ -250,17 +255,17 @@ def sampling(
     """
     assert case.operation is not None
     assert case.transient is not None
-    given = case.transient
+    transient = case.transient
     nominal = _TWO_PI / abs(case.operation.speed)
     period = nominal / (1.0 if turning is None else float(turning.rates.max()))
-    per_revolution = _power_of_two(max(given.points_per_revolution, _OVERSAMPLING * limit * period))
+    per_revolution = _power_of_two(max(transient.points_per_revolution, _OVERSAMPLING * limit * period))
     settings = TransientSettings(
         duration=transient_duration(case),
         record_from=_record_from(case, nominal, turning),
         sample_interval=period / per_revolution,
-        largest_step=nominal / given.points_per_revolution,
-        tolerance=given.tolerance,
-        method=given.method,
+        largest_step=nominal / transient.points_per_revolution,
+        tolerance=transient.tolerance,
+        method=transient.method,
     )
     if settings.samples < _FEWEST_SAMPLES:
         problem = Problem(
@@ -330,9 +335,9 @@ def _window(case: Case) -> Window:
     return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"
 
 
-def block_arrays(columns: FloatArray, held: FloatArray, after: Checkpoint) -> Arrays:
+def block_arrays(columns: FloatArray, filter_state: FloatArray, after: Checkpoint) -> Arrays:
     """Return the stored arrays of a block: its samples, the filter's state, and the state to restart from."""
-    return {"columns": columns, "held": held, **after.as_arrays()}
+    return {"columns": columns, "held": filter_state, **after.as_arrays()}
 
 
 @dataclass(frozen=True)
@@ -344,7 +349,7 @@ class Signals:
 
     @property
     def times(self) -> FloatArray:
-        """[s], shape (s,)."""
+        """Times [s], shape (s,)."""
         return self.histories.times
 
     @property
@@ -369,7 +374,7 @@ class TransientRecord:
     ----------
     sampling : Sampling
     blocks : Blocks
-        At least one.
+        Blocks of the record, at least one.
     signals : Signals
         Names of the signals; samples in it do not count.
     """
@@ -431,10 +436,7 @@ class TransientRecord:
         return self.signals.with_columns(settings.record_from + settings.sample_interval * recorded, columns)
 
     def spectrum(self, stretch: FloatArray, limit: float) -> Spectrum:
-        """Lines of signals over one stretch, shape (..., s), as far as the record holds them in full.
-
-        Of a long record, that is up to a limit [Hz].
-        """
+        """Return the lines of signals over one stretch, shape (..., s); of a long record up to a limit [Hz]."""
         spectrum = amplitude_spectrum(stretch, self.sampling.interval, self.sampling.window)
         return _below(spectrum, limit) if self.sampling.is_long else spectrum
 
@@ -444,8 +446,8 @@ def record_spectra(
 ) -> tuple[dict[str, Spectrum], dict[str, Spectrum]]:
     """Spectra of the sensors' accelerations and of the mesh forces.
 
-    Of the whole where it fits in memory, and given as ``last``; of a long record averaged over its stretches, up to the
-    limit [Hz] below which all of it is stored.
+    A record that fits in memory is given whole, as ``last``; the spectra of a long record are averaged over its
+    stretches, up to the limit [Hz] below which all of it is stored.
     """
     sensors, meshes = list(last.sensor_acceleration), list(last.mesh_force)
     if not record.sampling.is_long:
@@ -461,11 +463,11 @@ def record_spectra(
         for stretch in record.stretches()
     )
     together = _below(averaged_spectrum(rows, record.sampling.interval, record.sampling.window), limit)
-    each = [
+    spectra = [
         replace(together, amplitude=amplitude, phase=phase)
         for amplitude, phase in zip(together.amplitude, together.phase, strict=True)
     ]
-    return dict(zip(sensors, each, strict=False)), dict(zip(meshes, each[len(sensors) :], strict=True))
+    return dict(zip(sensors, spectra, strict=False)), dict(zip(meshes, spectra[len(sensors) :], strict=True))
 
 
 def _below(spectrum: Spectrum, limit: float) -> Spectrum:

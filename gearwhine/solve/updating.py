@@ -76,10 +76,10 @@ _TWO_PI = 2.0 * np.pi
 FloatArray = npt.NDArray[np.float64]
 
 _EXPLAINED = 2.0  # standard deviations of a frequency that its noise explains
-_MARGIN = 1.0 / 3.0  # of the least gap, for the two measures beside the one that decides
+_MARGIN = 1.0 / 3.0  # least gap of the two other measures, as a part of that of the measure that decides
 
 Observer = Callable[[Mesh], sparse.csr_array]
-"""From a mesh to the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes)."""
+"""Returns for a mesh the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes)."""
 
 
 @dataclass(frozen=True)
@@ -90,9 +90,9 @@ class Measurement:
     ----------
     target : Target
     observer : callable, optional
-        None where no shapes were measured.
+        Observer of the measured shapes; None without shapes.
     left_out : int
-        Degrees of freedom that were not measured in every mode, and take no part.
+        Number of degrees of freedom that are left out, since they were not measured in every mode.
     """
 
     target: Target
@@ -112,18 +112,18 @@ def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
         Where the survey does not lie on the housing, shapes share too few degrees of freedom, or neither shapes nor
         bearing seats tell which modes are which.
     """
-    given = case.update
-    assert given is not None
+    table = case.update
+    assert table is not None
     assert case.housing is not None
     measured = read_measured(case, progress)
-    known = given.model_modes
+    mode_count = table.model_modes
     target = Target(
         frequencies=measured.frequencies,
-        noise=np.full(len(measured.frequencies), given.frequency_noise),
+        noise=np.full(len(measured.frequencies), table.frequency_noise),
         band=dominance_band(measured.frequencies),
-        gap=given.gap,
-        margin=_MARGIN * given.gap if given.gap else -np.inf,
-        count=None if known is None else ModeCount(_TWO_PI * known.below, known.least, known.most),
+        gap=table.gap,
+        margin=_MARGIN * table.gap if table.gap else -np.inf,
+        count=None if mode_count is None else ModeCount(_TWO_PI * mode_count.below, mode_count.least, mode_count.most),
     )
     if measured.shapes is not None:
         return _with_shapes(case, target, measured)
@@ -214,7 +214,7 @@ def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -
     ----------
     start : HousingAtParameters
     effort : Effort
-        Of the update.
+        Effort of the update.
     count : int
         Number of starts of the multistart search, this one included.
     """
@@ -278,15 +278,15 @@ _PARTS = 4  # parameters named of each combination
 
 @dataclass(frozen=True)
 class FoundNumber:
-    """Parameter of an update and what was found for it.
+    """Parameter of an update and its fitted value.
 
     Attributes
     ----------
     number : FittedNumber
     value, deviation : float
-        With its standard deviation, in SI.
+        Value and its standard deviation [SI].
     left : float
-        Standard deviation as a part of the prior's.
+        Standard deviation as a part of that of the prior.
     """
 
     number: FittedNumber
@@ -301,7 +301,7 @@ class FoundNumber:
 
     @property
     def unit_in_si(self) -> float:
-        """The unit that the case gives it in."""
+        """Unit of the parameter in the case [SI]."""
         return unit_in_si(self.number.given)
 
     @property
@@ -318,13 +318,13 @@ class UpdatedPair:
     Attributes
     ----------
     measured : float
-        Circular frequency [rad/s].
+        Measured circular frequency [rad/s].
     before_error, error : float
-        ln(model / measured); NaN where it has no partner.
+        Errors ln(model / measured); NaN without a partner.
     mode : int or None
         Number of its partner after the update, from 1.
     before_mac, mac : float or None
-        None without shapes.
+        MAC with the partner; None without shapes.
     strength : float or None
         The partner's lateral acceleration strength [1/kg].
     uncertainty : float or None
@@ -397,21 +397,21 @@ class SolvedUpdate:
     ----------
     fitted : FittedCase
     before, after : HousingAtParameters
-        On the box's own mesh.
+        Designs on the box's own mesh.
     misfit_before, misfit_after : Misfit
-        Theirs.
+        Misfits of these designs.
     start : HousingAtParameters
-        Where the search began, on its coarser mesh.
+        Design at which the search begins, on its coarser mesh.
     target : Target
     left_out : int
-        Measured degrees of freedom that took no part.
+        Number of measured degrees of freedom that are left out.
     posterior : Posterior
     steps : tuple of Step
         Every true solve of the search.
     held_back : list of LeftOutMode
-        Empty where not asked for.
-    null : NullTest, or None
-        Likewise None.
+        Predictions of modes that are held back; empty where not asked for.
+    null : NullTest or None
+        Fits of random sets; None where not asked for.
     seconds : dict of str to float
     """
 
@@ -443,7 +443,7 @@ class SolvedUpdate:
     def pairs(self) -> tuple[UpdatedPair, ...]:
         """The measured modes with their partners before and after."""
         before, after = self.misfit_before, self.misfit_after
-        left = self.posterior.frequency_deviations()
+        deviations = self.posterior.frequency_deviations()
         strengths = self.after.state.dominance.acceleration
         return tuple(
             UpdatedPair(
@@ -454,14 +454,14 @@ class SolvedUpdate:
                 before_mac=None if before.mac is None else float(before.mac[place]),
                 mac=None if after.mac is None else float(after.mac[place]),
                 strength=None if mode == UNPAIRED else float(strengths[mode]),
-                uncertainty=None if mode == UNPAIRED else float(left[mode]),
+                uncertainty=None if mode == UNPAIRED else float(deviations[mode]),
             )
             for place, (measured, mode) in enumerate(zip(self.target.frequencies, after.pairs, strict=True))
         )
 
     @property
     def combinations(self) -> list[tuple[float, dict[str, float]]]:
-        """Combinations of parameters by what the data say of them: information, and the leading parts by name."""
+        """Combinations of parameters: the information of the data on each, and its leading parts by name."""
         rows = []
         for information, direction in zip(self.posterior.information, self.posterior.directions, strict=True):
             leading = np.argsort(-np.abs(direction))[:_PARTS]
@@ -495,8 +495,8 @@ def update_housing(
         Where the model cannot be solved as it stands.
     """
     require(case, "housing", "measured", "update", command="update")
-    given = case.update
-    assert given is not None
+    table = case.update
+    assert table is not None
     assert case.housing is not None
     measured = measurement_of(case, progress)
     target = measured.target
@@ -504,16 +504,16 @@ def update_housing(
         expected = "0 where shapes were measured: random frequencies have none"
         raise CaseError([Problem("--null", null, expected)])
     begin = time.perf_counter()
-    fine = ParametricHousing(fitted_case(case), given.modes, measured.observer, threads=threads, as_written=True)
-    coarse = replace(fine, case=fitted_case(case, given.mesh_size))
-    effort, count = Effort(solves=given.solves, seed=given.seed), 1 + given.explore
+    fine = ParametricHousing(fitted_case(case), table.modes, measured.observer, threads=threads, as_written=True)
+    coarse = replace(fine, case=fitted_case(case, table.mesh_size))
+    effort, count = Effort(solves=table.solves, seed=table.seed), 1 + table.explore
     before, start, raced = _raced(fine, coarse, target, effort, count, threads, progress)
     seconds = {"search": time.perf_counter() - begin}
     begin = time.perf_counter()
     progress("going on with the housing's own mesh")
-    found = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
-    # On the way modes were not counted; those that are reported are certified.
-    after = replace(fine.solve(found.design.coordinates), known=found.design.surrogate())
+    polished = polish(replace(fine, draft=True).solve, raced, target, fine.parameters, effort, progress)
+    # The search does not count modes; the reported ones are certified.
+    after = replace(fine.solve(polished.design.coordinates), known=polished.design.surrogate())
     seconds["own_mesh"] = time.perf_counter() - begin
     rows: list[LeftOutMode] = []
     null_test: NullTest | None = None
@@ -536,8 +536,8 @@ def update_housing(
         start=start,
         target=target,
         left_out=measured.left_out,
-        posterior=posterior(target, found.misfit, after.coordinates, after.surrogate().at(after.coordinates)),
-        steps=raced.steps + found.steps,
+        posterior=posterior(target, polished.misfit, after.coordinates, after.surrogate().at(after.coordinates)),
+        steps=raced.steps + polished.steps,
         held_back=rows,
         null=null_test,
         seconds=seconds,
@@ -560,8 +560,8 @@ def _raced(
 ) -> tuple[HousingAtParameters, HousingAtParameters, MultistartResult[HousingAtParameters]]:
     """Solve the housing as it stands on both meshes, and search from there and from other starts.
 
-    Where there are several starts all is done by one thread each, from the first solution on: with other numbers of
-    threads sums are rounded otherwise, and a search that is led by its last digits ends elsewhere.
+    Several starts use one thread each, from the first solution on: other numbers of threads round sums differently, and
+    a search that depends on last digits ends elsewhere.
     """
     progress("solving the housing as it stands")
     each_has = threads if count == 1 else 1
@@ -571,25 +571,25 @@ def _raced(
         tasks = [(fine, True)] if same else [(fine, False), (coarse, True)]
         solved: list[HousingAtParameters] = list(each(_as_it_stands, tasks))
         before, start = solved[0], solved[-1]
-        own = None if same else replace(fine, draft=True).solve
-        meshes = Meshes(replace(coarse, draft=True).solve, own, HousingAtParameters.light)
+        solve_fine = None if same else replace(fine, draft=True).solve
+        meshes = Meshes(replace(coarse, draft=True).solve, solve_fine, HousingAtParameters.light)
         judged = None if same else before.state
         raced = multistart_search(meshes, target, coarse.parameters, start, judged, effort, count, each, progress)
     return before, start, raced
 
 
 def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
-    """Solved where the case begins, and with its neighbourhood where that is wanted."""
-    designs, wanted = task
+    """Solve the design that the case gives, with its surrogate where asked."""
+    designs, with_surrogate = task
     design = designs.solve(designs.start)
-    return replace(design, known=design.surrogate()) if wanted else design
+    return replace(design, known=design.surrogate()) if with_surrogate else design
 
 
 def updated_case(case: Case, solved: SolvedUpdate) -> str:
     """Return the updated case as TOML; each fitted number's old value, new value and reason stand in [provenance].
 
-    The prior stays where it was: an update of the updated case begins at what was found, and is drawn to what was
-    nominal.
+    The prior stays where it was: an update of the updated case begins at the fitted value, and is drawn to the old
+    nominal one.
     """
     fitted, fine = solved.fitted, solved.misfit_after
     document, changed = fitted.document, set[Location]()
@@ -602,12 +602,14 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
         "# Each parameter before and after, with one standard deviation of what prior and measurement leave of it:",
     ]
     prior: dict[int, dict[str, Any]] = {}
-    for place, found in enumerate(solved.found):
-        number = found.number
-        was, now, give = (_shown(value, number.given) for value in (number.start, found.value, found.deviation))
+    for place, fitted_number in enumerate(solved.found):
+        number = fitted_number.number
+        was, now, give = (
+            _shown(value, number.given) for value in (number.start, fitted_number.value, fitted_number.deviation)
+        )
         remarks.append(f"#   {number.parameter.name}: {was} -> {now}, give or take {give}")
         why = f"found: by updating to the measured frequencies; {was} before, {now} give or take {give} after"
-        for location, value in number.entries(number.as_written(found.value)):
+        for location, value in number.entries(number.as_written(fitted_number.value)):
             text = f"{value:.10g}" if number.given.factor or not number.given.unit else _shown(value, number.given)
             document = with_entry(document, location, float(text) if _is_number(text) else text)
             changed.add(location)
@@ -630,20 +632,20 @@ def _clear(misfit: Misfit) -> str:
 
 
 def _prior(number: FittedNumber) -> dict[str, Any]:
-    """Return the prior as it was, now that the case's own number is another one."""
-    parameter, given = number.parameter, number.given
-    if given.factor:
+    """Return the prior about the old number of the case, as entries of the updated case."""
+    parameter, entry = number.parameter, number.given
+    if entry.factor:
         return {}
-    return {"nominal": _exact(parameter.nominal, given), "spread": _exact(parameter.spread, given)}
+    return {"nominal": _exact(parameter.nominal, entry), "spread": _exact(parameter.spread, entry)}
 
 
-def _exact(value: float, given: UpdateParameter) -> str | float:
-    return f"{value / unit_in_si(given):.12g} {given.unit}" if given.unit else value
+def _exact(value: float, entry: UpdateParameter) -> str | float:
+    return f"{value / unit_in_si(entry):.12g} {entry.unit}" if entry.unit else value
 
 
-def _shown(value: float, given: UpdateParameter) -> str:
-    """Return a value in the unit of its range, to four digits or to a hundredth of a millimetre's like."""
-    return f"{value / unit_in_si(given):.5g} {given.unit}".strip()
+def _shown(value: float, entry: UpdateParameter) -> str:
+    """Return a value in the unit of its range, to five digits."""
+    return f"{value / unit_in_si(entry):.5g} {entry.unit}".strip()
 
 
 def _is_number(text: str) -> bool:

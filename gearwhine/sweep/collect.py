@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_PEAKS = 10  # of each sensor, the highest
-_SAME_ORDER = 9  # decimals to which two lines are one
+_PEAKS = 10  # number of highest peaks of each sensor
+_SAME_ORDER = 9  # decimals to which orders of one line agree
 
 
 def collected_sweep(
@@ -44,13 +44,13 @@ def collected_sweep(
         for name, key in zip(names, keys, strict=True)
     }
     variables: dict[str, Any] = {}
-    for name, key, unit, what in (
+    for name, key, unit, long_name in (
         ("rotation_speed", "speed_rpm", "rpm", "speed of the first driver"),
         ("trusted_limit", "trusted_below_hz", "Hz", "frequency up to which the housing's modes are complete"),
         ("energy_error", "energy_error", "1", "part of the energy that is missing from the balance"),
         ("steps", "steps", "1", "time steps"),
     ):
-        variables[name] = grid.rows((), (), _entry(key), _unit(unit, what))
+        variables[name] = grid.rows((), (), _entry(key), _unit(unit, long_name))
     variables["done"] = (names, grid.filled(False, lambda outcome: isinstance(outcome, PointResult)), {})
     variables["failure"] = (names, grid.filled("", _failure), {"long_name": "why there is no result"})
     orders = _orders(grid.results())
@@ -88,21 +88,29 @@ def sweep_document(
 ) -> dict[str, Any]:
     """Return a sweep as the command's JSON, with the peaks that lie between its points."""
     rows = []
-    for one in swept:
-        values = {axis_name(key.key): key.values[place] for key, place in zip(keys, one.point.place, strict=True)}
-        row: dict[str, Any] = {"values": values, "settings": _settings(keys, one), "resumed": one.resumed}
-        row["file"] = f"{POINTS}/{one.point.file}"
-        if isinstance(one.outcome, PointFailure):
-            row |= {"status": "failed", "failure": one.outcome.message}
-            if one.outcome.traceback:
-                row["traceback"] = one.outcome.traceback
+    for swept_point in swept:
+        values = {
+            axis_name(key.key): key.values[place] for key, place in zip(keys, swept_point.point.place, strict=True)
+        }
+        row: dict[str, Any] = {
+            "values": values,
+            "settings": _settings(keys, swept_point),
+            "resumed": swept_point.resumed,
+        }
+        row["file"] = f"{POINTS}/{swept_point.point.file}"
+        if isinstance(swept_point.outcome, PointFailure):
+            row |= {"status": "failed", "failure": swept_point.outcome.message}
+            if swept_point.outcome.traceback:
+                row["traceback"] = swept_point.outcome.traceback
         else:
-            row |= {"status": "done"} | {key: value for key, value in one.outcome.document.items() if key != "warnings"}
+            row |= {"status": "done"} | {
+                key: value for key, value in swept_point.outcome.document.items() if key != "warnings"
+            }
         rows.append(row)
-    found: dict[str, Any] = {"missed_peaks": [document_of(PEAK, one) for one in peaks]}
+    missed: dict[str, Any] = {"missed_peaks": [document_of(PEAK, peak) for peak in peaks]}
     if peaks:
         speeds = speeds_to_add(peaks)
-        found |= {"speeds_to_add_rpm": speeds, "over_with_peaks": over_with(keys, swept, speeds)}
+        missed |= {"speeds_to_add_rpm": speeds, "over_with_peaks": over_with(keys, swept, speeds)}
     return {
         "axes": [
             {"key": key.key, "name": axis_name(key.key), "unit": key.unit, "values": list(key.values)} for key in keys
@@ -111,19 +119,19 @@ def sweep_document(
         "failed": sum(row["status"] == "failed" for row in rows),
         "resumed": sum(row["resumed"] for row in rows),
         "points": rows,
-        **found,
+        **missed,
         "warnings": [*_warnings(swept), *peak_warnings(peaks)],
     }
 
 
 class _Grid:
-    """The swept keys' grid, to be filled point by point."""
+    """Grid of the swept keys, which is filled point by point."""
 
     def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[SweptPoint]) -> None:
         self.names, self.shape, self.swept = names, shape, swept
 
     def results(self) -> list[PointResult]:
-        return [one.outcome for one in self.swept if isinstance(one.outcome, PointResult)]
+        return [swept_point.outcome for swept_point in self.swept if isinstance(swept_point.outcome, PointResult)]
 
     def rows(
         self,
@@ -134,9 +142,9 @@ class _Grid:
     ) -> Any:
         """Return a variable with further dimensions, NaN where there is no result."""
         values = np.full((*self.shape, *shape), np.nan)
-        for one in self.swept:
-            if isinstance(one.outcome, PointResult):
-                values[one.point.place] = of(one.outcome)
+        for swept_point in self.swept:
+            if isinstance(swept_point.outcome, PointResult):
+                values[swept_point.point.place] = of(swept_point.outcome)
         return ((*self.names, *dimensions), values, attributes)
 
     def words(
@@ -148,16 +156,16 @@ class _Grid:
     ) -> Any:
         """Return a variable of texts with a further dimension, empty where there are fewer or is no result."""
         values = np.full((*self.shape, *shape), "", dtype=object)
-        for one in self.swept:
-            if isinstance(one.outcome, PointResult):
-                found = of(one.outcome)
-                values[one.point.place][: len(found)] = found
+        for swept_point in self.swept:
+            if isinstance(swept_point.outcome, PointResult):
+                texts = of(swept_point.outcome)
+                values[swept_point.point.place][: len(texts)] = texts
         return ((*self.names, *dimensions), values.astype(str), attributes)
 
     def filled(self, start: Any, of: Callable[[PointResult | PointFailure], Any]) -> Any:
         values = np.full(self.shape, start, dtype=object if isinstance(start, str) else None)
-        for one in self.swept:
-            values[one.point.place] = of(one.outcome)
+        for swept_point in self.swept:
+            values[swept_point.point.place] = of(swept_point.outcome)
         return values.astype(str) if isinstance(start, str) else values
 
 
@@ -169,13 +177,13 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
     coordinates["peak"] = ("peak", np.arange(1, _PEAKS + 1), _unit("1", "rank of the line, highest first"))
 
     def rms(result: PointResult) -> FloatArray:
-        known = {sensor["name"]: sensor["rms_m_per_s2"] for sensor in result.document["sensors"]}
-        return np.array([known.get(name, np.nan) for name in names], dtype=np.float64)
+        by_name = {sensor["name"]: sensor["rms_m_per_s2"] for sensor in result.document["sensors"]}
+        return np.array([by_name.get(name, np.nan) for name in names], dtype=np.float64)
 
     def peaks(key: str) -> Callable[[PointResult], FloatArray]:
         def of(result: PointResult) -> FloatArray:
-            known = {sensor["name"]: [peak[key] for peak in sensor["peaks"]] for sensor in result.document["sensors"]}
-            return np.array([_padded(np.array(known.get(name, [])), _PEAKS) for name in names])
+            by_name = {sensor["name"]: [peak[key] for peak in sensor["peaks"]] for sensor in result.document["sensors"]}
+            return np.array([_padded(np.array(by_name.get(name, [])), _PEAKS) for name in names])
 
         return of
 
@@ -189,11 +197,11 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
         lambda result: _on_orders(orders, result, result.sensor_spectra, names),
         _unit("m/s2", f"peak amplitude of acceleration {within}"),
     )
-    for name, key, unit, what in (
+    for name, key, unit, long_name in (
         ("sensor_peak_frequency", "frequency_hz", "Hz", "frequency of the highest lines"),
         ("sensor_peak_amplitude", "amplitude_m_per_s2", "m/s2", "peak amplitude of the highest lines"),
     ):
-        variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, what))
+        variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, long_name))
 
 
 def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
@@ -206,18 +214,18 @@ def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coor
         def of(result: PointResult) -> FloatArray:
             # Pairs and the contacts of their drive flanks stand in one order.
             pairs = zip(result.force_spectra, result.document["gear_pairs"], strict=True)
-            known = {name: pair[key] for name, pair in pairs}
-            return np.array([known.get(name, np.nan) for name in names], dtype=np.float64)
+            by_name = {name: pair[key] for name, pair in pairs}
+            return np.array([by_name.get(name, np.nan) for name in names], dtype=np.float64)
 
         return of
 
-    for name, key, unit, what in (
+    for name, key, unit, long_name in (
         ("mesh_force_mean", "mean_force_n", "N", "mean gear-mesh force"),
         ("mesh_force_peak", "peak_force_n", "N", "largest gear-mesh force"),
         ("mesh_frequency", "mesh_frequency_hz", "Hz", "tooth-mesh frequency"),
         ("contact_loss", "contact_loss_fraction", "1", "part of the time in which the flanks are apart"),
     ):
-        variables[name] = grid.rows(("contact",), (len(names),), figures(key), _unit(unit, what))
+        variables[name] = grid.rows(("contact",), (len(names),), figures(key), _unit(unit, long_name))
     variables["mesh_force_spectrum"] = grid.rows(
         ("contact", "order"),
         (len(names), orders.size),
@@ -240,40 +248,49 @@ def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str,
 
     for kind, axis, unit, parts in (("force", "axis", "N", slice(3)), ("moment", "moment_axis", "N m", slice(3, 5))):
         size = (len(names), parts.stop - (parts.start or 0))
-        for mean, what in (("mean", "mean {} of the shaft on its bearing"), ("rms", "rms of that {} without its mean")):
+        for mean, long_name in (
+            ("mean", "mean {} of the shaft on its bearing"),
+            ("rms", "rms of that {} without its mean"),
+        ):
             of = loads(f"bearing_force_{mean}", parts)
-            variables[f"bearing_{kind}_{mean}"] = grid.rows(("bearing", axis), size, of, _unit(unit, what.format(kind)))
+            variables[f"bearing_{kind}_{mean}"] = grid.rows(
+                ("bearing", axis), size, of, _unit(unit, long_name.format(kind))
+            )
 
 
 def _add_operating_points(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
     """Add misalignment and K_Hβ of every gear pair, and the bearing forces, of each point's equilibrium."""
     loads = [result.document["load"] for result in grid.results() if "load" in result.document]
     pairs = _union([_pair_name(pair) for pair in load["gear_pairs"]] for load in loads)
-    bearings = _union([one["name"] for one in load["bearings"]] for load in loads)
+    bearings = _union([bearing["name"] for bearing in load["bearings"]] for load in loads)
 
     def of_pairs(key: str) -> Callable[[PointResult], FloatArray]:
         def of(result: PointResult) -> FloatArray:
-            known = {_pair_name(pair): pair[key] for pair in result.document.get("load", {}).get("gear_pairs", ())}
-            return np.array([known.get(name, np.nan) for name in pairs], dtype=np.float64)
+            by_name = {_pair_name(pair): pair[key] for pair in result.document.get("load", {}).get("gear_pairs", ())}
+            return np.array([by_name.get(name, np.nan) for name in pairs], dtype=np.float64)
 
         return of
 
     def forces(result: PointResult) -> FloatArray:
-        known = {one["name"]: one["force_n"] for one in result.document.get("load", {}).get("bearings", ())}
-        return np.array([known.get(name, [np.nan] * 3) for name in bearings])
+        by_name = {
+            bearing["name"]: bearing["force_n"] for bearing in result.document.get("load", {}).get("bearings", ())
+        }
+        return np.array([by_name.get(name, [np.nan] * 3) for name in bearings])
 
     if pairs:
         coordinates["loaded_pair"] = ("loaded_pair", pairs, {})
-        for name, key, unit, what in (
+        for name, key, unit, long_name in (
             ("misalignment", "misalignment_rad", "rad", "angle between the flanks at the operating point"),
             ("misalignment_taken", "misalignment_taken_rad", "rad", "misalignment that the motion takes"),
             ("face_load_factor", "k_h_beta", "1", "face load factor K_Hbeta at the operating point"),
         ):
-            variables[name] = grid.rows(("loaded_pair",), (len(pairs),), of_pairs(key), _unit(unit, what))
+            variables[name] = grid.rows(("loaded_pair",), (len(pairs),), of_pairs(key), _unit(unit, long_name))
     if bearings:
         coordinates |= {"loaded_bearing": ("loaded_bearing", bearings, {}), "axis": ("axis", ["x", "y", "z"], {})}
-        told = _unit("N", "force of the shaft on its bearing at the operating point")
-        variables["bearing_operating_force"] = grid.rows(("loaded_bearing", "axis"), (len(bearings), 3), forces, told)
+        attributes = _unit("N", "force of the shaft on its bearing at the operating point")
+        variables["bearing_operating_force"] = grid.rows(
+            ("loaded_bearing", "axis"), (len(bearings), 3), forces, attributes
+        )
 
 
 def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
@@ -291,24 +308,26 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         lines = result.document.get("sound", {}).get("lines", ())[:count]
         return [document_of(SWEPT_LINE, (line, result.housing_frequencies_hz)) for line in lines]
 
-    for name, key, unit, what in (
+    for name, key, unit, long_name in (
         ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
         ("sound_power_level_a", "total_db_a", "dB", "A-weighted sound power level of all lines re 1 pW"),
     ):
-        variables[name] = grid.rows((), (), total(key), _unit(unit, what))
+        variables[name] = grid.rows((), (), total(key), _unit(unit, long_name))
 
     def numbers(key: str) -> Callable[[PointResult], FloatArray]:
-        return lambda result: _padded(np.array([one[key] for one in rows(result)], dtype=np.float64), count)
+        return lambda result: _padded(np.array([row[key] for row in rows(result)], dtype=np.float64), count)
 
     def words(key: str) -> Callable[[PointResult], list[str]]:
-        return lambda result: [str(one[key]) for one in rows(result)]
+        return lambda result: [str(row[key]) for row in rows(result)]
 
     along, size = ("sound_line",), (count,)
-    for one in SWEPT_LINE:
-        if one.unit:
-            variables[one.name] = grid.rows(along, size, numbers(one.key), _unit(one.unit, one.long_name))
+    for quantity in SWEPT_LINE:
+        if quantity.unit:
+            variables[quantity.name] = grid.rows(
+                along, size, numbers(quantity.key), _unit(quantity.unit, quantity.long_name)
+            )
         else:
-            variables[one.name] = grid.words(along, size, words(one.key), {"long_name": one.long_name})
+            variables[quantity.name] = grid.words(along, size, words(quantity.key), {"long_name": quantity.long_name})
     harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
     if not harmonics:
         return
@@ -319,8 +338,10 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         return np.array([levels.get(name, np.nan) for name in harmonics])
 
     coordinates["mesh_harmonic"] = ("mesh_harmonic", harmonics, {})
-    what = "sound power level of each mesh harmonic re 1 pW; none where its part of the point's power is too small"
-    variables["mesh_harmonic_level"] = grid.rows(("mesh_harmonic",), (len(harmonics),), of_harmonics, _unit("dB", what))
+    long_name = "sound power level of each mesh harmonic re 1 pW; none where its part of the point's power is too small"
+    variables["mesh_harmonic_level"] = grid.rows(
+        ("mesh_harmonic",), (len(harmonics),), of_harmonics, _unit("dB", long_name)
+    )
 
 
 def _add_missed_peaks(peaks: Sequence[MissedPeak], variables: dict[str, Any]) -> None:
@@ -331,8 +352,8 @@ def _add_missed_peaks(peaks: Sequence[MissedPeak], variables: dict[str, Any]) ->
     for quantity in PEAK:
         if quantity.name:
             values = [quantity.of(peak) for peak in peaks]
-            told = {"units": quantity.unit} if quantity.unit else {}
-            variables[quantity.name] = (along, values, told | {"long_name": quantity.long_name})
+            attributes = {"units": quantity.unit} if quantity.unit else {}
+            variables[quantity.name] = (along, values, attributes | {"long_name": quantity.long_name})
 
 
 def _pair_name(pair: Mapping[str, Any]) -> str:
@@ -374,19 +395,19 @@ def _failure(outcome: PointResult | PointFailure) -> str:
     return outcome.message if isinstance(outcome, PointFailure) else ""
 
 
-def _settings(keys: Sequence[SweptKey], one: SweptPoint) -> dict[str, str]:
-    return {key.key: text for key, text in zip(keys, one.point.texts, strict=True)}
+def _settings(keys: Sequence[SweptKey], swept_point: SweptPoint) -> dict[str, str]:
+    return {key.key: text for key, text in zip(keys, swept_point.point.texts, strict=True)}
 
 
 def _warnings(swept: Sequence[SweptPoint]) -> list[dict[str, Any]]:
     """Warnings of the points' housings, each once."""
-    found: dict[str, dict[str, Any]] = {}
-    for one in swept:
-        if isinstance(one.outcome, PointResult):
-            for warning in one.outcome.document.get("warnings", ()):
-                found.setdefault(warning["message"], warning)
-    return list(found.values())
+    by_message: dict[str, dict[str, Any]] = {}
+    for swept_point in swept:
+        if isinstance(swept_point.outcome, PointResult):
+            for warning in swept_point.outcome.document.get("warnings", ()):
+                by_message.setdefault(warning["message"], warning)
+    return list(by_message.values())
 
 
-def _unit(unit: str, what: str) -> dict[str, str]:
-    return {"units": unit, "long_name": what}
+def _unit(unit: str, long_name: str) -> dict[str, str]:
+    return {"units": unit, "long_name": long_name}

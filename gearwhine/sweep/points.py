@@ -26,17 +26,17 @@ class Point:
     Attributes
     ----------
     place : tuple of int
-        Along each swept key.
+        Index along each swept key.
     texts : tuple of str
-        The value of each swept key, as ``--set`` takes it.
+        Value of each swept key, as ``--set`` takes it.
     case : Case
-        With these values.
+        Case with these values.
     key : str
-        Of the content that its result depends on: case, files, libraries and our code.
+        Key of the content that its result depends on: case, files, libraries and our code.
     modes_key : str or None
-        Of what its housing's modes are solved from; None without a housing.
+        Key of the inputs of its housing's modes; None without a housing.
     housing_key : str or None
-        Of all that its machine takes of the housing, damping and sensors with it.
+        Key of all that its machine takes of the housing, with damping and sensors.
     file : str
         Name of its file.
     duration : float
@@ -58,23 +58,23 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
 
     Parameters
     ----------
-    source
-        The case file or bundled name.
-    settings
+    source : str
+        Case file or bundled name.
+    settings : sequence of str
         Changes by ``--set``, made before those of the sweep.
-    keys
-        From :func:`gearwhine.case.swept_keys`.
+    keys : sequence of SweptKey
+        Keys of :func:`gearwhine.case.swept_keys`.
 
     Raises
     ------
     CaseError
-        With what is wrong at any of the points, each problem once.
+        With the problems of all points, each once.
     """
     grid = list(product(*(range(len(key.texts)) for key in keys)))
     stems = file_stems([_described(keys, place) for place in grid])
     points, problems = list[Point](), dict[Problem, None]()
     for place, stem in zip(grid, stems, strict=True):
-        overrides = [one for key, index in zip(keys, place, strict=True) for one in key.overrides[index]]
+        overrides = [override for key, index in zip(keys, place, strict=True) for override in key.overrides[index]]
         try:
             case = load_case(source, [*settings, *overrides]).case
             require(case, "rotor", "operation", "transient", command="sweep")
@@ -90,7 +90,7 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
 
 
 def code_digest() -> str:
-    """SHA-256 of all our code that makes numbers: points and workers of another are not used."""
+    """SHA-256 of all our code that makes numbers: points and workers of other code are not used."""
     return source_digest("meshes", "housing", "rotors", "coupling", "gearwhine", without=PRESENTATION)
 
 

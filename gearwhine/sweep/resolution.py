@@ -28,11 +28,11 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _SAME = 1e-6  # relative difference of two orders that are one
-_NEAR = 0.5  # of the spacing of a record's lines: distance of a line from its order
-_ONE = 0.5  # of the half-power half-width: distance of two speeds to be added that are one
+_NEAR = 0.5  # largest distance of a line from its order, over the spacing of a record's lines
+_ONE = 0.5  # distance up to which two speeds to be added are one, over the half-power half-width
 _TINY = 1e-300
-_STEPS = 21  # within a mode's half-power bandwidth
-_OUTSIDE = 2.0  # half-power half-widths beside a peak where the curve is lower
+_STEPS = 21  # number of frequencies within a mode's half-power bandwidth
+_OUTSIDE = 2.0  # distance from a peak at which the curve must be lower, in half-power half-widths
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class MissedPeak:
     line : str
         Name of the mesh harmonic.
     frequency_hz : float
-        Of the mode, where the line meets it.
+        Frequency of the mode at which the line meets it [Hz].
     damping_ratio : float
     mode : str
         Kind and place of the coupled mode.
@@ -61,7 +61,7 @@ class MissedPeak:
     level_db : float
         Estimated level of the line at the peak: sound power level re 1 pW, or of the amplitude re 1 m/s².
     rise_db : float
-        The same over the level of all lines at the louder of the two points.
+        This level over that of all lines at the louder of the two points.
     """
 
     settings: dict[str, str]
@@ -86,25 +86,27 @@ def missed_peaks(
 ) -> list[MissedPeak]:
     """Return the peaks between the points of a sweep over speed that are louder than all at both points.
 
-    The one that rises most first. Of a sweep with sound they are those of the sound power, else of the sensors.
+    The peak that rises most comes first. Peaks are those of the sound power in a sweep with sound, else of the sensors.
 
     Parameters
     ----------
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
-        Done, with the sound in their documents.
+        Solved points, with the sound in their documents.
     radiated : callable, optional
-        Takes a frequency [Hz] and the rates of the housing's coordinates, shape (n,), and returns their sound power
-        level [dB]. By default the sound is that of a body of even walls.
+        Returns the sound power level [dB] of a frequency [Hz] and the rates of the housing's coordinates, shape (n,).
+        By default the sound is that of a body of even walls.
     """
     along = next((number for number, key in enumerate(keys) if SPEED_KEY in key.keys), None)
     if along is None or not keys[along].is_numeric:
         return []
     rows: dict[tuple[int, ...], list[SweptPoint]] = {}
-    for one in swept:
-        if isinstance(one.outcome, PointResult) and one.outcome.resonances is not None:
-            rows.setdefault(one.point.place[:along] + one.point.place[along + 1 :], []).append(one)
-    found: list[MissedPeak] = []
+    for swept_point in swept:
+        if isinstance(swept_point.outcome, PointResult) and swept_point.outcome.resonances is not None:
+            rows.setdefault(swept_point.point.place[:along] + swept_point.point.place[along + 1 :], []).append(
+                swept_point
+            )
+    peaks: list[MissedPeak] = []
     for points in rows.values():
         points.sort(key=_speed)
         settings = {
@@ -115,12 +117,12 @@ def missed_peaks(
         for below, above in pairwise(points):
             # Speeds of two senses have a standstill between them.
             if _speed(below) * _speed(above) > 0.0:
-                found += _between(settings, below, above, radiated)
-    return sorted(found, key=lambda peak: -peak.rise_db)
+                peaks += _between(settings, below, above, radiated)
+    return sorted(peaks, key=lambda peak: -peak.rise_db)
 
 
 def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
-    """Return the speeds of peaks [rpm], ascending, those within half a half-width of a higher peak's left out."""
+    """Return the speeds of peaks [rpm], ascending, without those within half a half-width of a higher peak's."""
     chosen: list[float] = []
     for peak in peaks:
         if all(abs(speed - peak.speed_rpm) > _ONE * peak.half_width_rpm for speed in chosen):
@@ -131,9 +133,9 @@ def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
 
 
 def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], speeds: Sequence[float]) -> str:
-    """Return the option of the command that goes through the speeds of a sweep and further ones [rpm]."""
+    """Return the option of the command for a sweep with further speeds [rpm]."""
     along, key = next((number, key) for number, key in enumerate(keys) if SPEED_KEY in key.keys)
-    texts = {one.point.texts[along]: _speed(one) for one in swept}
+    texts = {point.point.texts[along]: _speed(point) for point in swept}
     sign = -1.0 if max(texts.values()) < 0.0 else 1.0
     texts |= {f"{sign * speed:g} rpm": sign * speed for speed in speeds}
     return f"--over {key.key}='{','.join(sorted(texts, key=lambda text: texts[text]))}'"
@@ -145,23 +147,23 @@ def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
         return []
     first = peaks[0]
     where = "".join(f", {key}={text}" for key, text in first.settings.items())
-    what = "the sound power" if first.output == SOUND else first.output
+    subject = "the sound power" if first.output == SOUND else first.output
     speeds = speeds_to_add(peaks)
     message = (
         f"between {first.below_rpm:g} and {first.above_rpm:g} rpm{where} {first.line} meets the mode at "
         f"{first.frequency_hz:.1f} Hz ({first.mode}), whose half-power bandwidth of "
         f"{2.0 * first.half_width_rpm:.2g} rpm is narrower than the spacing of the points: by the linear response "
-        f"{what} peaks at {first.speed_rpm:.1f} rpm, {first.rise_db:.1f} dB above the louder point"
+        f"{subject} peaks at {first.speed_rpm:.1f} rpm, {first.rise_db:.1f} dB above the louder point"
     )
     more = f"; {len(peaks) - 1} more in the table" if len(peaks) > 1 else ""
     added = ", ".join(f"{speed:g} rpm" for speed in speeds)
     return [warning("sweep_resolution", f"{message}{more}; add {added}", speeds_rpm=speeds)]
 
 
-def _speed(one: SweptPoint) -> float:
+def _speed(swept_point: SweptPoint) -> float:
     """Return the speed of a point in rpm, signed."""
-    assert one.point.case.operation is not None
-    return float(f"{to_rpm(one.point.case.operation.speed):.12g}")
+    assert swept_point.point.case.operation is not None
+    return float(f"{to_rpm(swept_point.point.case.operation.speed):.12g}")
 
 
 @dataclass(frozen=True)
@@ -177,8 +179,8 @@ class _End:
         """Level of a line at an output; None where it is not known."""
         if output == SOUND:
             lines = self.result.document["sound"]["lines"]
-            known = (line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME * order)
-            return next(known, None)
+            levels = (line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME * order)
+            return next(levels, None)
         orders = self.result.orders
         place = int(np.argmin(np.abs(orders - order)))
         if len(orders) < 2 or abs(orders[place] - order) > _NEAR * (orders[1] - orders[0]):
@@ -198,32 +200,34 @@ class _End:
 
     def correction(self, output: str, mesh: int, harmonic: int, mode: int) -> float:
         """Level by which a mode's peak over the line at this point differs from that of even walls [dB]."""
-        found = self.resonances
-        if output != SOUND or self.radiated is None or harmonic > found.harmonic_rates.shape[1]:
+        resonances = self.resonances
+        if output != SOUND or self.radiated is None or harmonic > resonances.harmonic_rates.shape[1]:
             return 0.0
-        at = np.array([float(found.frequencies[mode]), harmonic * found.mesh_orders[mesh] * self.speed_rpm / 60.0])
-        rates = (found.mode_rates[mesh, mode], found.harmonic_rates[mesh, harmonic - 1])
-        if not all(np.any(one) for one in rates):
+        at = np.array(
+            [float(resonances.frequencies[mode]), harmonic * resonances.mesh_orders[mesh] * self.speed_rpm / 60.0]
+        )
+        rates = (resonances.mode_rates[mesh, mode], resonances.harmonic_rates[mesh, harmonic - 1])
+        if not all(np.any(rate) for rate in rates):
             return 0.0
-        peak, line = (self.radiated(hertz, one) for hertz, one in zip(at.tolist(), rates, strict=True))
+        peak, line = (self.radiated(hertz, rate) for hertz, rate in zip(at.tolist(), rates, strict=True))
         even = self.response(output, mesh, at)
         return peak - line - float(even[0] - even[1])
 
     def response(self, output: str, mesh: int, frequencies: FloatArray) -> FloatArray:
         """Level of the response of an output to a mesh's error at some frequencies [Hz]."""
-        found = self.resonances
-        curve = found.response[found.outputs.index(output), mesh]
-        return np.asarray(np.interp(frequencies, found.grid, curve))
+        resonances = self.resonances
+        curve = resonances.response[resonances.outputs.index(output), mesh]
+        return np.asarray(np.interp(frequencies, resonances.grid, curve))
 
 
 def _between(
     settings: dict[str, str], below: SweptPoint, above: SweptPoint, radiated: RadiatedLevel | None
 ) -> Iterator[MissedPeak]:
     ends = []
-    for one in sorted((below, above), key=lambda point: abs(_speed(point))):
-        assert isinstance(one.outcome, PointResult)
-        assert one.outcome.resonances is not None
-        ends.append(_End(abs(_speed(one)), one.outcome.resonances, one.outcome, radiated))
+    for swept_point in sorted((below, above), key=lambda point: abs(_speed(point))):
+        assert isinstance(swept_point.outcome, PointResult)
+        assert swept_point.outcome.resonances is not None
+        ends.append(_End(abs(_speed(swept_point)), swept_point.outcome.resonances, swept_point.outcome, radiated))
     low, high = ends
     if (low.resonances.meshes, low.resonances.outputs) != (high.resonances.meshes, high.resonances.outputs):
         return
@@ -231,9 +235,9 @@ def _between(
     if all("sound" in end.result.document for end in ends):
         outputs = [SOUND]
     totals = {name: max(end.total(name) for end in ends) for name in outputs}
-    found = low.resonances
-    for mesh, (name, order) in enumerate(zip(found.meshes, found.mesh_orders.tolist(), strict=True)):
-        for harmonic in range(1, 1 + int(60.0 * found.grid[-1] / (order * low.speed_rpm))):
+    resonances = low.resonances
+    for mesh, (name, order) in enumerate(zip(resonances.meshes, resonances.mesh_orders.tolist(), strict=True)):
+        for harmonic in range(1, 1 + int(60.0 * resonances.grid[-1] / (order * low.speed_rpm))):
             peaks: dict[int, MissedPeak] = {}
             for output in outputs:
                 for number, hertz, level in _peaks(low, high, output, mesh, harmonic):
@@ -245,11 +249,11 @@ def _between(
                             below_rpm=low.speed_rpm,
                             above_rpm=high.speed_rpm,
                             speed_rpm=rpm * hertz,
-                            half_width_rpm=rpm * float(found.half_widths[number]),
+                            half_width_rpm=rpm * float(resonances.half_widths[number]),
                             line=f"{harmonic}× {name}",
                             frequency_hz=hertz,
-                            damping_ratio=float(found.half_widths[number] / found.frequencies[number]),
-                            mode=found.names[number],
+                            damping_ratio=float(resonances.half_widths[number] / resonances.frequencies[number]),
+                            mode=resonances.names[number],
                             output=output,
                             level_db=level,
                             rise_db=rise,
@@ -259,10 +263,10 @@ def _between(
 
 def _apart(peaks: Iterable[MissedPeak]) -> Iterator[MissedPeak]:
     """Yield the peaks of a line, the one that rises most first, without those of modes within its half-power band."""
-    kept: list[MissedPeak] = []
-    for peak in sorted(peaks, key=lambda one: -one.rise_db):
-        if all(abs(peak.speed_rpm - one.speed_rpm) > one.half_width_rpm for one in kept):
-            kept.append(peak)
+    separate: list[MissedPeak] = []
+    for peak in sorted(peaks, key=lambda missed: -missed.rise_db):
+        if all(abs(peak.speed_rpm - louder.speed_rpm) > louder.half_width_rpm for louder in separate):
+            separate.append(peak)
             yield peak
 
 
@@ -271,29 +275,31 @@ def _peaks(low: _End, high: _End, output: str, mesh: int, harmonic: int) -> Iter
     order = harmonic * float(low.resonances.mesh_orders[mesh])
     first, last = order * low.speed_rpm / 60.0, order * high.speed_rpm / 60.0
     levels = [(end, at, end.level(output, order)) for end, at in ((low, first), (high, last))]
-    known = [(end, at, level) for end, at, level in levels if level is not None]
-    found = low.resonances
-    if not known:
+    at_ends = [(end, at, level) for end, at, level in levels if level is not None]
+    resonances = low.resonances
+    if not at_ends:
         return
 
-    def between(frequencies: FloatArray, each: Sequence[FloatArray | float]) -> FloatArray:
+    def between(frequencies: FloatArray, values: Sequence[FloatArray | float]) -> FloatArray:
         part = (frequencies - first) / (last - first)
-        return np.asarray(each[0] if len(each) == 1 else (1.0 - part) * each[0] + part * each[1])
+        return np.asarray(values[0] if len(values) == 1 else (1.0 - part) * values[0] + part * values[1])
 
     def curve(frequencies: FloatArray) -> FloatArray:
-        each = [
+        values = [
             level + end.response(output, mesh, frequencies) - end.response(output, mesh, np.array([at]))
-            for end, at, level in known
+            for end, at, level in at_ends
         ]
-        return between(frequencies, each)
+        return between(frequencies, values)
 
-    inside = (found.frequencies - found.half_widths > first) & (found.frequencies + found.half_widths < last)
+    inside = (resonances.frequencies - resonances.half_widths > first) & (
+        resonances.frequencies + resonances.half_widths < last
+    )
     for number in np.flatnonzero(inside).tolist():
-        middle, half = float(found.frequencies[number]), float(found.half_widths[number])
+        middle, half = float(resonances.frequencies[number]), float(resonances.half_widths[number])
         near = middle + half * np.linspace(-1.0, 1.0, _STEPS)
         level = curve(near)
         top = int(np.argmax(level))
-        # On the flank of a higher peak a mode is not what the points miss.
+        # A mode on the flank of a higher peak has no peak of its own.
         if level[top] > curve(middle + half * np.array([-_OUTSIDE, _OUTSIDE])).max():
-            each = [end.correction(output, mesh, harmonic, end.mode_near(middle)) for end, _, _ in known]
-            yield number, float(near[top]), float(level[top] + between(near[top], each))
+            values = [end.correction(output, mesh, harmonic, end.mode_near(middle)) for end, _, _ in at_ends]
+            yield number, float(near[top]), float(level[top] + between(near[top], values))

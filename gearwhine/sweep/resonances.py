@@ -57,7 +57,7 @@ class Resonances:
         Rates of the housing's coordinates by a unit transmission error of each mesh at each mode's frequency; n is 0
         where the housing does not radiate.
     harmonic_rates : ndarray of complex, shape (k, h, n)
-        The same at the multiples of each mesh frequency at this speed, 0 above the limit.
+        Such rates at the multiples of each mesh frequency at this speed, 0 above the limit.
     """
 
     frequencies: FloatArray
@@ -78,9 +78,9 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
     Parameters
     ----------
     case : Case
-        Of the machine.
+        Case of the machine.
     machine : CoupledMachine
-        That turns at a steady speed.
+        Machine at a steady speed.
     limit_hz : float
         Frequency up to which the housing's modes are complete [Hz].
     """
@@ -96,19 +96,22 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
     try:
         modes = coupled_modes(machine.system, contact)
         grid = resonance_grid(modes, _TWO_PI * _LOWEST_HZ, _TWO_PI * limit_hz)
-        found = [mesh_error_response(machine, grid, mesh=one, contact=contact, modes=modes) for one in touching]
+        responses = [
+            mesh_error_response(machine, grid, mesh=response, contact=contact, modes=modes) for response in touching
+        ]
     except ModesError:
         return None
     outputs: dict[str, list[FloatArray]] = {
-        name: [20.0 * _log(np.abs(one.sensor_acceleration[name])) for one in found]
-        for name in found[0].sensor_acceleration
+        name: [20.0 * _log(np.abs(response.sensor_acceleration[name])) for response in responses]
+        for name in responses[0].sensor_acceleration
     }
     if heard:
         assert case.acoustics is not None
         # The surface is not known here: a body of a square metre stands for it, in proportion alone.
         efficiency = pulsating_efficiency(grid / _TWO_PI, 1.0, case.acoustics.speed_of_sound)
         outputs[SOUND] = [
-            10.0 * _log((np.abs(_rates(machine, one.coordinates, grid)) ** 2).sum(axis=1) * efficiency) for one in found
+            10.0 * _log((np.abs(_rates(machine, response.coordinates, grid)) ** 2).sum(axis=1) * efficiency)
+            for response in responses
         ]
     chosen = _swinging(modes, limit_hz)
     # One line for each mesh, in their order.
@@ -123,9 +126,9 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
 
     def harmonics(mesh: int) -> ComplexArray:
         multiples = np.asarray(orders[mesh] * turning_hz * np.arange(1, most + 1), dtype=np.float64)
-        known = multiples[multiples <= limit_hz]
-        own = rates(known, mesh) if len(known) else np.zeros((0, size), dtype=np.complex128)
-        return np.concatenate([own, np.zeros((most - len(own), size), dtype=np.complex128)])
+        inside = multiples[multiples <= limit_hz]
+        rates_inside = rates(inside, mesh) if len(inside) else np.zeros((0, size), dtype=np.complex128)
+        return np.concatenate([rates_inside, np.zeros((most - len(rates_inside), size), dtype=np.complex128)])
 
     damped = modes.eigenvalues.imag[chosen] / _TWO_PI
     none = np.zeros((len(touching), len(damped), 0), dtype=np.complex128)
@@ -158,8 +161,8 @@ def _swinging(modes: CoupledModes, limit_hz: float) -> npt.NDArray[np.intp]:
 def _rates(machine: CoupledMachine, coordinates: ComplexArray, omega: FloatArray) -> ComplexArray:
     """Rates of the housing's coordinates, whose shapes are normalised to the mass, shape (f, n)."""
     assert machine.housing is not None
-    own = machine.rows(machine.housing.name, np.eye(machine.housing.size))
-    return np.asarray(1j * omega[:, None] * (coordinates @ own.T))
+    housing_rows = machine.rows(machine.housing.name, np.eye(machine.housing.size))
+    return np.asarray(1j * omega[:, None] * (coordinates @ housing_rows.T))
 
 
 def _log(values: FloatArray) -> FloatArray:

@@ -35,7 +35,7 @@ Outcome = PointResult | PointFailure
 
 @dataclass(frozen=True)
 class SweptPoint:
-    """A point with what came of it, and whether an earlier run left it."""
+    """A point with its outcome, and whether that comes from an earlier run."""
 
     point: Point
     outcome: Outcome
@@ -58,14 +58,15 @@ def run_sweep(
 
     Parameters
     ----------
-    points
-        From :func:`gearwhine.sweep.sweep_points`.
-    folder
-        For the results.
+    points : sequence of Point
+        Points of :func:`gearwhine.sweep.sweep_points`.
+    folder : path
+        Folder for the results.
+    progress : callable
     workers, scheduler
         See :func:`gearwhine.workers.connected`.
-    fresh
-        Solve also what the folder holds.
+    fresh : bool
+        Whether to solve points that the folder holds as well.
 
     Raises
     ------
@@ -74,8 +75,8 @@ def run_sweep(
     """
     outcomes: dict[int, Outcome] = {}
     if not fresh:
-        held = ((number, read_point(folder, point)) for number, point in enumerate(points))
-        outcomes = {number: outcome for number, outcome in held if isinstance(outcome, PointResult)}
+        stored = ((number, read_point(folder, point)) for number, point in enumerate(points))
+        outcomes = {number: outcome for number, outcome in stored if isinstance(outcome, PointResult)}
     resumed = frozenset(outcomes)
     todo = [number for number in range(len(points)) if number not in resumed]
     if todo:
@@ -85,7 +86,7 @@ def run_sweep(
         with staging(folder) as place:
             progress(f"starting {workers} workers" if scheduler is None else f"calling {scheduler}")
             with connected(workers, scheduler, place, [WarmUp()]) as client:
-                # What takes long goes first, lest all wait for it at the end.
+                # Long points go first, lest all wait for them at the end.
                 todo.sort(key=lambda number: -points[number].duration)
                 shared, uncached = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
                 if scheduler is None:
@@ -93,9 +94,9 @@ def run_sweep(
                 report = _teller(len(points), len(resumed), progress)
                 report(0)
                 futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
-                # Now, not before: the points need not wait for this.
+                # The cache is written now, since the points need not wait for it.
                 _cache(uncached, folder)
-                _read_what_writes()
+                _preload_writers()
                 for count, (number, outcome) in enumerate(each_from_thread(_as_they_end(client, futures)), start=1):
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
@@ -108,29 +109,29 @@ def run_sweep(
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
 ) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
-    """Solve each housing that its points share, by its key; nothing where they differ or are none.
+    """Solve the housings that points share, by key; none where their modes differ or they have no housing.
 
-    Beside it the solution that is still to be cached.
+    Return as well the solution that is still to be cached.
     """
-    found: dict[str | None, ReducedHousing] = {}
+    housings: dict[str | None, ReducedHousing] = {}
     solved = None
     if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
-        return found, solved
+        return housings, solved
     for point in points:
-        if point.housing_key in found:
+        if point.housing_key in housings:
             continue
-        # The next one reads the modes that this one keeps.
+        # The next housing reads the modes that this one caches.
         _cache(solved, folder)
         solved = solve_housing(
             point.case,
             progress,
             command="sweep",
             folder=folder,
-            fresh=fresh and not found,
+            fresh=fresh and not housings,
             before=check_before_modes(point.case),
         )
-        found[point.housing_key] = reduce_housing(point.case, solved)
-    return found, solved
+        housings[point.housing_key] = reduce_housing(point.case, solved)
+    return housings, solved
 
 
 def _cache(solved: SolvedHousing | None, folder: Path) -> None:
@@ -139,8 +140,8 @@ def _cache(solved: SolvedHousing | None, folder: Path) -> None:
             write_mode_cache(place, solved)
 
 
-def _read_what_writes() -> None:
-    """Import what takes seconds and is used only once there are results."""
+def _preload_writers() -> None:
+    """Import modules that take seconds and are used only once there are results."""
     import xarray  # noqa: F401
 
     from gearwhine import figures  # noqa: F401
@@ -149,7 +150,7 @@ def _read_what_writes() -> None:
 def _submitted(
     client: Client, points: dict[int, Point], shared: dict[str | None, ReducedHousing]
 ) -> dict[Future[Any], int]:
-    """Hand every point to the workers, and before it its housing where that is not shared."""
+    """Submit every point to the workers, and before it its housing where that is not shared."""
     code = code_digest()
     housings: dict[str | None, Any] = dict(shared)
     futures = {}
@@ -164,7 +165,7 @@ def _submitted(
 
 
 def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tuple[int, Outcome]]:
-    """Each point's number and outcome as it comes."""
+    """Yield each point's number and outcome as it comes."""
     from distributed import KilledWorker, as_completed
 
     for future in as_completed(list(futures), loop=client.loop):
@@ -183,12 +184,12 @@ def _as_they_end(client: Client, futures: dict[Future[Any], int]) -> Iterator[tu
             raise WorkersError("the workers were lost; run the sweep again to do the points that are missing")
         else:
             yield number, future.result()
-        # What is written need not stay in the workers' memory.
+        # Written results need not stay in the workers' memory.
         future.release()
 
 
 def _teller(total: int, before: int, progress: Progress) -> Callable[[int], None]:
-    """Progress by the number of points done, with an estimate of the time left."""
+    """Return a function that reports the number of points done, with an estimate of the time left."""
     start = time.perf_counter()
 
     def report(count: int) -> None:

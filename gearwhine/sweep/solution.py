@@ -41,12 +41,12 @@ _TWO_PI = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class PointResult:
-    """A machine in motion, reduced to what a sweep gathers.
+    """A machine in motion, reduced to the quantities that a sweep collects.
 
     Attributes
     ----------
     document : dict
-        As the main job's JSON has it for the transient.
+        Document of the transient, as in the JSON of ``run``.
     orders : ndarray, shape (m,)
         Lines of the spectra, in cycles for each turn of the first driver, up to the trusted limit. The record holds a
         number of its turns, so these are the same at every speed.
@@ -55,19 +55,19 @@ class PointResult:
     force_spectra : dict of str to ndarray, shape (m,)
         Peak amplitude of the gear-mesh force [N], its mean at order zero.
     bearing_force_mean, bearing_force_rms : dict of str to ndarray, shape (5,)
-        Along x and y [N]; the latter without the mean.
+        Mean loads along x, y, z [N] and about x, y [N m], and their rms values without the mean.
     housing_frequencies_hz : ndarray, shape (n_modes,)
-        Empty without a housing.
+        Natural frequencies of the housing [Hz]; empty without a housing.
     window : str
-        Of the spectra.
+        Window of the spectra.
     line_frequencies : ndarray, shape (l,)
-        Of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
+        Frequencies of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
     line_rates : ndarray, shape (l, n, 2)
         Rates of the housing's coordinates there, real and imaginary part.
     line_names, line_kinds : tuple of str
-        Their names and causes, see :class:`coupling.signals.line_names.LineName`.
+        Names and causes of these lines, see :class:`coupling.signals.line_names.LineName`.
     resonances : Resonances or None
-        Of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
+        Resonances of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
     """
 
     document: dict[str, Any]
@@ -92,9 +92,9 @@ class PointFailure:
     Attributes
     ----------
     message : str
-        A sentence: what happened, and what to try where that is known.
+        Sentence on the failure, with a remedy where one is known.
     traceback : str
-        Of what nobody foresaw; empty otherwise.
+        Traceback of an unexpected error; empty otherwise.
     """
 
     message: str
@@ -102,29 +102,29 @@ class PointFailure:
 
 
 def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code: str) -> PointResult | PointFailure:
-    """Run the transient of a case whose housing is solved; what goes wrong is the answer, not an error.
+    """Run the transient of a case whose housing is solved; errors are returned as failures, not raised.
 
     Parameters
     ----------
-    case
-        Of the point.
-    housing
-        Solved, where the case has one; a failure is handed on.
-    code
-        Digest of the code of whoever asks; another one here could give other numbers.
+    case : Case
+        Case of the point.
+    housing : ReducedHousing, PointFailure or None
+        Solved housing, where the case has one; a failure is returned.
+    code : str
+        Digest of the caller's code; other code on the worker could give other numbers.
     """
     if isinstance(housing, PointFailure):
         return housing
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        load, told = find_load(case, housing)
+        load, warnings_of_load = find_load(case, housing)
         point = None if load is None else load.point
         pairs = solve_pairs(case, housing, point=point)
         machine = build_machine(case, housing, pairs, point=point)
         frequencies = mesh_frequencies(case) if case.gear_pair else ()
         solved = solve_transient(case, machine, frequencies, housing=housing)
-        result = _reduced(case, solved, housing, time.perf_counter() - begin, told)
+        result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
         if load is not None:
             result.document["load"] = load_part(load)
         error = basis_error(case, machine, housing, pairs, point=point)
@@ -164,7 +164,11 @@ def _failure(error: Exception) -> PointFailure:
 
 
 def _reduced(
-    case: Case, solved: SolvedTransient, housing: ReducedHousing | None, seconds: float, told: list[dict[str, Any]]
+    case: Case,
+    solved: SolvedTransient,
+    housing: ReducedHousing | None,
+    seconds: float,
+    warnings_of_load: list[dict[str, Any]],
 ) -> PointResult:
     assert case.operation is not None
     turning_hz = abs(case.operation.speed) / _TWO_PI
@@ -172,14 +176,14 @@ def _reduced(
     lines = spectra[0].frequencies if spectra else np.empty(0)
     count = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
     contacts = solved.machine.system.contacts
-    # Under the drive flanks' name at every point, whichever are pressed there.
+    # Forces have the drive flanks' name at every point, whichever flanks are loaded there.
     pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.loaded_contacts)}
     document = transient_document(solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)
     add_warnings(document, machine_warnings(solved.machine))
-    add_warnings(document, told)
-    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=told))
+    add_warnings(document, warnings_of_load)
+    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=warnings_of_load))
     forces = solved.histories.bearing_load
     frequencies, rates, names = np.empty(0), np.empty((0, 0, 2)), list[LineName]()
     if case.acoustics is not None and solved.machine.housing is not None:
@@ -190,15 +194,15 @@ def _reduced(
         document=document,
         orders=lines[:count] / turning_hz,
         sensor_spectra={name: spectrum.amplitude[:count] for name, spectrum in solved.sensor_spectra.items()},
-        force_spectra={name: solved.force_spectra[one].amplitude[:count] for name, one in pressed.items()},
+        force_spectra={name: solved.force_spectra[contact].amplitude[:count] for name, contact in pressed.items()},
         bearing_force_mean={name: force.mean(axis=0) for name, force in forces.items()},
         bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
         housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,
         window=spectra[0].window if spectra else "uniform",
         line_frequencies=frequencies,
         line_rates=rates,
-        line_names=tuple(one.name for one in names),
-        line_kinds=tuple(one.kind for one in names),
+        line_names=tuple(line.name for line in names),
+        line_kinds=tuple(line.kind for line in names),
         resonances=find_resonances(case, solved.machine, solved.trusted_limit),
     )
 
@@ -206,7 +210,7 @@ def _reduced(
 POINTS = "points"
 """Folder of the points within the results folder."""
 
-# Group of results, its dimension, unit, and what it is.
+# Group of results, its dimension, unit and long name.
 _SPECTRA = {
     "sensor_spectra": ("sensor", "m/s2", "peak amplitude of acceleration"),
     "force_spectra": ("contact", "N", "peak amplitude of the gear-mesh force"),
@@ -223,11 +227,12 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
 
     Parameters
     ----------
-    folder
-        The results folder.
-    place
-        A staging folder on the same file system.
-    point, result
+    folder : path
+        Results folder.
+    place : path
+        Staging folder on the same file system.
+    point : Point
+    result : PointResult or PointFailure
         Result to write.
     """
     attributes = {
@@ -250,10 +255,10 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
 
 
 def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
-    """Read a point; None where there is no file of it, or one that is of other content or damaged."""
+    """Read a point; None where its file is missing, damaged or of other content."""
     file = folder / POINTS / point.file
     try:
-        # Before HDF5 sees it, which may read a damaged file for ever.
+        # The check precedes HDF5, which may read a damaged file for ever.
         if not checksum_holds(file):
             return None
         arrays, attributes = read_netcdf(file)
@@ -267,7 +272,7 @@ def read_point(folder: Path, point: Point) -> PointResult | PointFailure | None:
 
 
 def outdated_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
-    """Files of points that are not of this sweep: those of the case as it was."""
+    """Return files of points that are not of this sweep but of the case as it was."""
     names = {point.file for point in points}
     return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]
 
@@ -276,23 +281,26 @@ def _arrays(result: PointResult) -> Variables:
     arrays: Variables = {
         "order": ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
     }
-    for group, (dimension, unit, what) in _SPECTRA.items():
+    for group, (dimension, unit, long_name) in _SPECTRA.items():
         spectra = getattr(result, group)
         if spectra:
             arrays[dimension] = (dimension, list(spectra), {})
             values = np.array(list(spectra.values()))
-            arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": what})
-    for group, what in _FORCES.items():
+            arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": long_name})
+    for group, long_name in _FORCES.items():
         forces = getattr(result, group)
         if forces:
             arrays |= {"bearing": ("bearing", list(forces), {}), "load": ("load", list(_LOADS), {})}
             values = np.array(list(forces.values()))
-            arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": what})
+            arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": long_name})
     if result.line_frequencies.size:
-        told = {"units": "Hz", "long_name": "frequency of a line whose sound is wanted"}
-        arrays["line_frequencies"] = ("sound_line", result.line_frequencies, told)
-        told = {"units": "m kg^0.5 / s", "long_name": "rates of the housing's coordinates, real and imaginary"}
-        arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, told)
+        line_attributes = {"units": "Hz", "long_name": "frequency of a line whose sound is wanted"}
+        arrays["line_frequencies"] = ("sound_line", result.line_frequencies, line_attributes)
+        line_attributes = {
+            "units": "m kg^0.5 / s",
+            "long_name": "rates of the housing's coordinates, real and imaginary",
+        }
+        arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, line_attributes)
         arrays["line_names"] = ("sound_line", list(result.line_names), {"long_name": "name of the line"})
         arrays["line_kinds"] = ("sound_line", list(result.line_kinds), {"long_name": "cause of the line"})
     if result.resonances is not None:
@@ -302,26 +310,33 @@ def _arrays(result: PointResult) -> Variables:
     return arrays
 
 
-def _resonance_arrays(found: Resonances) -> Variables:
+def _resonance_arrays(resonances: Resonances) -> Variables:
     mode, mesh, grid, output = ("coupled_mode",), ("mesh",), ("response_frequency",), ("output",)
-    parts, told = ("coordinate", "part"), {"units": "s-1 kg0.5", "long_name": "rates by a unit transmission error"}
+    parts, rate_attributes = (
+        ("coordinate", "part"),
+        {"units": "s-1 kg0.5", "long_name": "rates by a unit transmission error"},
+    )
     arrays: Variables = {}
-    if found.mode_rates.size and found.harmonic_rates.size:
+    if resonances.mode_rates.size and resonances.harmonic_rates.size:
         arrays = {
-            "mode_rates": ((*mesh, *mode, *parts), _parts(found.mode_rates), told),
-            "harmonic_rates": ((*mesh, "harmonic", *parts), _parts(found.harmonic_rates), told),
+            "mode_rates": ((*mesh, *mode, *parts), _parts(resonances.mode_rates), rate_attributes),
+            "harmonic_rates": ((*mesh, "harmonic", *parts), _parts(resonances.harmonic_rates), rate_attributes),
         }
     return arrays | {
-        "coupled_frequency": (mode, found.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
-        "coupled_half_width": (mode, found.half_widths, {"units": "Hz", "long_name": "half the half-power bandwidth"}),
-        "coupled_name": (mode, list(found.names), {"long_name": "kind and place of the coupled mode"}),
-        "mesh": (mesh, list(found.meshes), {}),
-        "mesh_order": (mesh, found.mesh_orders, {"units": "1", "long_name": "mesh order over the first driver"}),
-        "response_frequency": (grid, found.grid, {"units": "Hz", "long_name": "frequency of the response"}),
-        "output": (output, list(found.outputs), {}),
+        "coupled_frequency": (mode, resonances.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
+        "coupled_half_width": (
+            mode,
+            resonances.half_widths,
+            {"units": "Hz", "long_name": "half the half-power bandwidth"},
+        ),
+        "coupled_name": (mode, list(resonances.names), {"long_name": "kind and place of the coupled mode"}),
+        "mesh": (mesh, list(resonances.meshes), {}),
+        "mesh_order": (mesh, resonances.mesh_orders, {"units": "1", "long_name": "mesh order over the first driver"}),
+        "response_frequency": (grid, resonances.grid, {"units": "Hz", "long_name": "frequency of the response"}),
+        "output": (output, list(resonances.outputs), {}),
         "response": (
             (*output, *mesh, *grid),
-            found.response,
+            resonances.response,
             {"units": "dB", "long_name": "level of the output by a unit transmission error of the mesh"},
         ),
     }

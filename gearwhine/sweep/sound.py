@@ -63,11 +63,11 @@ def add_sound(
     Parameters
     ----------
     case : Case
-        With `[acoustics]`.
+        Case with `[acoustics]`.
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
     housing : SolvedHousing
-        Of all points.
+        Housing of all points.
     progress : callable
 
     Returns
@@ -75,7 +75,7 @@ def add_sound(
     list of dict
         Warnings.
     SolvedHousing
-        Whose record holds the radiation over frequency, where that was of use.
+        The housing, whose record holds the radiation over frequency where it is solved.
     callable or None
         Sound power level of other rates of the housing's coordinates, without a solution: interpolated where the
         radiation is known over frequency, else by their equivalent power. None where there is no sound.
@@ -94,19 +94,19 @@ def add_sound(
     if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
         message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
         return [warning("sound_of_sweep", message)], housing, None
-    if told := left_out_warnings(case):
-        return told, housing, None
-    told = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
+    if warnings := left_out_warnings(case):
+        return warnings, housing, None
+    warnings = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing.mesh)
     places = np.array(list(positions.values())).reshape(-1, 3)
     natural = len(housing.modes.frequencies_hz)
     jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates
-    for number, one in enumerate(swept):
-        if not isinstance(one.outcome, PointResult) or not len(one.outcome.line_frequencies):
+    for number, swept_point in enumerate(swept):
+        if not isinstance(swept_point.outcome, PointResult) or not len(swept_point.outcome.line_frequencies):
             continue
-        frequencies = one.outcome.line_frequencies
-        rates = one.outcome.line_rates[..., 0] + 1j * one.outcome.line_rates[..., 1]
+        frequencies = swept_point.outcome.line_frequencies
+        rates = swept_point.outcome.line_rates[..., 0] + 1j * swept_point.outcome.line_rates[..., 1]
         estimate = radiation.equivalent_power(rates.T) * pulsating_efficiency(
             frequencies, radiation.area, radiation.medium.speed_of_sound
         )
@@ -132,36 +132,36 @@ def add_sound(
         line.entry.update(order=order, name=outcome.line_names[place], kind=outcome.line_kinds[place])
         lines.setdefault(number, []).append(line)
     failures: list[HousingError] = []
-    for number, found in lines.items():
-        counted = counting(found)
+    for number, point_lines in lines.items():
+        counted = counting(point_lines)
         refused = next((line.refused for line in counted if line.refused is not None), None)
         if refused is not None:
             failures.append(refused)
             where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, swept[number].point.texts, strict=True))
-            told.append(warning("sound_of_point", f"the sound at {where} is left out: {refused}"))
+            warnings.append(warning("sound_of_point", f"the sound at {where} is left out: {refused}"))
             continue
-        told += [entry for line in counted for entry in line.told]
+        warnings += [entry for line in counted for entry in line.warnings]
         balances = [line.entry["power_balance_db"] for line in counted]
         leaks = [line.entry["interior_pressure"] for line in counted]
         sources = [line.entry for line in counted if line.entry["known_source_error"] is not None]
-        worst = max(sources, key=lambda entry: float(entry["known_source_error"]), default=_UNPROVED)
-        entries = sorted((line.entry for line in found), key=lambda entry: -float(entry["sound_power_db"]))
+        worst_source = max(sources, key=lambda entry: float(entry["known_source_error"]), default=_UNPROVED)
+        entries = sorted((line.entry for line in point_lines), key=lambda entry: -float(entry["sound_power_db"]))
         outcome = swept[number].outcome
         assert isinstance(outcome, PointResult)
         outcome.document["sound"] = {
             "method": radiation.method,
             "total_db": sum_of_levels(entry["sound_power_db"] for entry in entries),
             "total_db_a": sum_of_levels(entry["sound_power_db_a"] for entry in entries),
-            "power_balance_db": max((one for one in balances if one is not None), key=abs, default=None),
-            "interior_pressure": max((one for one in leaks if one is not None), default=None),
-            **{key: worst[key] for key in _UNPROVED},
+            "power_balance_db": max((value for value in balances if value is not None), key=abs, default=None),
+            "interior_pressure": max((value for value in leaks if value is not None), default=None),
+            **{key: worst_source[key] for key in _UNPROVED},
             "loudest": document_of(SWEPT_LINE, (entries[0], housing.modes.frequencies_hz)),
             "lines": entries,
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    told = [*gathered(told), *_beyond_warnings(keys, swept, highest_frequency(case, housing))]
-    return told, housing, partial(_radiated, radiation, table)
+    warnings = [*gathered(warnings), *_beyond_warnings(keys, swept, highest_frequency(case, housing))]
+    return warnings, housing, partial(_radiated, radiation, table)
 
 
 def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: float, rates: ComplexArray) -> float:
@@ -177,13 +177,13 @@ def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: 
 def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:
     """Warn where a mesh frequency is above the highest frequency of the sound [Hz]: its lines are left out there."""
     beyond = [
-        (max(above), one.point)
-        for one in swept
-        if isinstance(one.outcome, PointResult)
-        and (above := [hertz for hertz in mesh_frequencies(one.point.case) if hertz > limit])
+        (max(above), swept_point.point)
+        for swept_point in swept
+        if isinstance(swept_point.outcome, PointResult)
+        and (above := [hertz for hertz in mesh_frequencies(swept_point.point.case) if hertz > limit])
     ]
     if beyond:
-        highest, point = max(beyond, key=lambda found: found[0])
+        highest, point = max(beyond, key=lambda entry: entry[0])
         where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, point.texts, strict=True))
         yield warning(
             "sound_left_out",
@@ -195,17 +195,17 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
 
 @dataclass(frozen=True)
 class _Line:
-    """Sound of a line of a point: its entry in the document, its powers, and what its proofs say if it counts."""
+    """Sound of a line of a point: its entry in the document, its powers, and warnings or the refusal of its proofs."""
 
     entry: dict[str, Any]
     power: float
     surface_power: float
-    told: list[dict[str, Any]]
+    warnings: list[dict[str, Any]]
     refused: HousingError | None
 
 
 def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: FloatArray, natural: int) -> _Line:
-    """Return the figures of a sound, which is not held: a sweep has thousands."""
+    """Return the figures of a sound, without the sound itself: a sweep has thousands."""
     refused = None
     try:
         sound.require_proofs()
@@ -218,11 +218,11 @@ def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: Flo
     entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
     proof, off = known_source(sound), known_source_at(sound, places)
     entry |= _UNPROVED if proof is None else {"known_source_error": proof.largest, "known_source_rms": proof.rms}
-    told = doubts(sound, "a line")
+    warnings = doubts(sound, "a line")
     if off is not None:
-        told += microphone_doubts(sound.frequency_hz, dict(zip(positions, off.tolist(), strict=True)))
+        warnings += microphone_doubts(sound.frequency_hz, dict(zip(positions, off.tolist(), strict=True)))
     entry["contributions"] = {"housing_modes": parts_of_modes(sound.by_mode, natural, sound.power)}
-    return _Line(entry, sound.power, sound.surface_power, told, refused)
+    return _Line(entry, sound.power, sound.surface_power, warnings, refused)
 
 
 def _interpolated(
@@ -233,7 +233,7 @@ def _interpolated(
     positions: Mapping[str, FloatArray],
     natural: int,
 ) -> _Line | None:
-    """Return the figures of a line by interpolation; None where that is doubtful, or a proof is."""
+    """Return the figures of a line by interpolation; None where that or a proof is doubtful."""
     if not table.holds(hertz):
         return None
     power, surface_power, error = table.power(hertz, rates)
@@ -267,5 +267,5 @@ def _entry(hertz: float, power: float, efficiency: float, heard: Mapping[str, co
         "radiation_efficiency": efficiency,
     }
     if heard:
-        entry["microphones_db"] = {name: float(pressure_level(one)) for name, one in heard.items()}
+        entry["microphones_db"] = {name: float(pressure_level(pressure)) for name, pressure in heard.items()}
     return entry

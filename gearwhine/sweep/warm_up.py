@@ -23,12 +23,12 @@ class WarmUp(WorkerPlugin):
         self.case = load_case("spur-pair", _BRIEF).case
 
     def setup(self, worker: Worker) -> None:
-        """Queue it where points are solved: they wait for it, what the worker has to say to others does not."""
+        """Queue the warm-up where points are solved: they wait for it, but the worker's communication does not."""
         worker.executors["default"].submit(_rehearse, self.case)
 
 
 def _rehearse(case: Case) -> Any:
-    # Read here, not by the thread that talks to the scheduler. What fails, the points will tell of.
+    # The import is here, not in the thread that talks to the scheduler. The points report its failures.
     from gearwhine.sweep.solution import solve_point
 
     return solve_point(case, None, code_digest())

@@ -15,7 +15,7 @@ from gearwhine.solve.gear_pairs import PairAnalysis
 
 
 def draw_gear_pairs(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
-    """Draw each pair: its teeth, stiffness, transmission error and flanks, and what it does under load and over torque.
+    """Draw each pair: its teeth, stiffness, transmission error and flanks, and its analyses under load and over torque.
 
     Parameters
     ----------

@@ -44,12 +44,14 @@ def draw_contact_path(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    pair, contact, mesh
-        Under a load, over one mesh period.
-    pressure
-        (n, m): of the pairs of `mesh`, Pa, NaN where it has no meaning; None leaves its panel out.
+    title : str
+        Title of the sheet.
+    pair : GearPairGeometry
+    contact : ToothContact
+    mesh : LoadedMesh
+        Statics under a load, over one mesh period.
+    pressure : ndarray, shape (n, m), or None
+        Pressure of the pairs of `mesh` [Pa], NaN where it has no meaning; None leaves its panel out.
     """
     present = contact.pairs(mesh.phases).present
     order = np.argsort(mesh.positions[present], kind="stable")
@@ -79,8 +81,10 @@ def draw_contact_path(
     for name, color, sliding in zip(
         ("driver", "driven gear"), (BLUE, SERIES[1]), specific_sliding(pair, on_path), strict=True
     ):
-        shown = np.where(sliding < -_STEEPEST, np.nan, sliding)
-        handles += axes.plot(np.degrees(pair.driver_roll_angle(on_path)), shown, color=color, lw=1.3, label=name)
+        drawn_sliding = np.where(sliding < -_STEEPEST, np.nan, sliding)
+        handles += axes.plot(
+            np.degrees(pair.driver_roll_angle(on_path)), drawn_sliding, color=color, lw=1.3, label=name
+        )
     axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
     axes.set(xlabel="roll angle of the driver [°]", ylabel="specific sliding")
     legend(figure, handles)
@@ -93,7 +97,7 @@ def draw_contact_path(
 
 
 def mark_points(panels: list[Axes], places: FloatArray) -> None:
-    """Lines at the named points of the path in all panels, and their letters above the first."""
+    """Draw lines at the named points of the path in all panels, and their letters above the first."""
     for letter, place in zip(_NAMES, places.tolist(), strict=True):
         for axes in panels:
             axes.axvline(place, color=GREY, lw=0.7, ls=(0, (2, 2)), zorder=1, label="_point")
@@ -109,9 +113,9 @@ def mark_points(panels: list[Axes], places: FloatArray) -> None:
         )
 
 
-_MAP, _MAP_GAP, _MAP_LETTERS = 52.0, 6.0, 5.0  # height of a map, and rooms between them and above [mm of paper]
-_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
-_PLACES = 240  # along the path of contact
+_MAP, _MAP_GAP, _MAP_LETTERS = 52.0, 6.0, 5.0  # height of a map, and gaps between maps and above them [mm of paper]
+_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # widths of the colour bar, of the gap before it and of its numbers [mm]
+_PLACES = 240  # places along the path of contact
 _N_PER_MM = 1e-3
 
 
@@ -120,10 +124,13 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    pair, contact, mesh
-        Under a load, over one mesh period, of a contact with faces.
+    title : str
+        Title of the sheet.
+    pair : GearPairGeometry
+    contact : ToothContact
+        Contact with faces.
+    mesh : LoadedMesh
+        Statics under a load, over one mesh period.
 
     Raises
     ------
@@ -149,34 +156,34 @@ def draw_contact_pattern(title: str, pair: GearPairGeometry, contact: ToothConta
     figure = sheet(HEAD + _MAP_LETTERS + 2.0 * _MAP + _MAP_GAP + FOOT, title, note)
     rolls = np.degrees(pair.driver_roll_angle(places))
     edges = MILLI * np.concatenate([faces.z - 0.5 * faces.width, [faces.z[-1] + 0.5 * faces.width]])
-    drawn = []
-    for bottom, values, what in (
+    panels = []
+    for bottom, values, quantity in (
         (FOOT + _MAP + _MAP_GAP, _N_PER_MM * loads, "line load of a tooth pair [N/mm]"),
         (FOOT, MEGA * pressures, "contact pressure [MPa]"),
     ):
         axes = panel(figure, bottom, _MAP, width=PANEL_WIDTH - _BESIDE - _SCALE - _NUMBERS)
-        _draw_map(axes, rolls, edges, values, what)
+        _draw_map(axes, rolls, edges, values, quantity)
         _draw_lines(axes, pair, contact, mesh)
-        drawn.append(axes)
-    drawn[0].tick_params(labelbottom=False)
-    drawn[1].set_xlabel("roll angle of the driver [°]")
-    mark_points(drawn, np.degrees(path_of_contact(pair).driver_roll_angle))
+        panels.append(axes)
+    panels[0].tick_params(labelbottom=False)
+    panels[1].set_xlabel("roll angle of the driver [°]")
+    mark_points(panels, np.degrees(path_of_contact(pair).driver_roll_angle))
     return figure
 
 
 def over_flank(
     values: FloatArray, positions: FloatArray, present: npt.NDArray[np.bool_], shift: FloatArray, places: FloatArray
 ) -> FloatArray:
-    """Values of slices (n, m, s) of the pairs at `positions` (n, m), by slice and place along the path, (s, p).
+    """Return values of slices (n, m, s) of the pairs at `positions` (n, m), by slice and place along the path, (s, p).
 
-    What has no value on the way stays without one, and nothing is carried where no slice comes.
+    Places between NaN values stay NaN; places that no slice reaches have zero.
     """
-    found = np.zeros((shift.size, places.size))
+    by_slice = np.zeros((shift.size, places.size))
     at, rows = positions[present], values[present]
     order = np.argsort(at, kind="stable")
-    for number, own in enumerate(shift):
-        found[number] = np.interp(places, at[order] + own, rows[order, number], left=0.0, right=0.0)
-    return found
+    for number, slice_shift in enumerate(shift):
+        by_slice[number] = np.interp(places, at[order] + slice_shift, rows[order, number], left=0.0, right=0.0)
+    return by_slice
 
 
 def _reach(contact: ToothContact) -> tuple[float, float]:
@@ -186,13 +193,13 @@ def _reach(contact: ToothContact) -> tuple[float, float]:
     return contact.contact_range[0] + reach, contact.contact_range[1] - reach
 
 
-def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, what: str) -> None:
+def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArray, quantity: str) -> None:
     figure = axes.get_figure(root=True)
     assert figure is not None
     half = 0.5 * (rolls[1] - rolls[0])
     sides = np.concatenate([rolls - half, [rolls[-1] + half]])
-    shown = np.ma.masked_where(~(values > 0.0), values)
-    colors = axes.pcolormesh(sides, edges, shown, cmap=colormaps["viridis"], vmin=0.0, rasterized=True, label="_map")
+    loaded = np.ma.masked_where(~(values > 0.0), values)
+    colors = axes.pcolormesh(sides, edges, loaded, cmap=colormaps["viridis"], vmin=0.0, rasterized=True, label="_map")
     axes.grid(visible=False)
     axes.set(ylabel="z across the face [mm]", xlim=(rolls[0], rolls[-1]), ylim=(edges[0], edges[-1]))
     across, up = (float(inches) * MM_PER_INCH for inches in figure.get_size_inches())
@@ -200,7 +207,7 @@ def _draw_map(axes: Axes, rolls: FloatArray, edges: FloatArray, values: FloatArr
     place = (box.x1 + _BESIDE / across, box.y0, _SCALE / across, _MAP / up)
     bar = figure.colorbar(colors, cax=figure.add_axes(place))
     bar.ax.tick_params(labelsize=TICK, colors=INK)
-    bar.set_label(what, size=LABEL, color=INK)
+    bar.set_label(quantity, size=LABEL, color=INK)
 
 
 def _draw_lines(axes: Axes, pair: GearPairGeometry, contact: ToothContact, mesh: LoadedMesh) -> None:

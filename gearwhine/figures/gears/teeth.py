@@ -41,10 +41,10 @@ from gearwhine.figures.style import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT = 104.0  # of the panel [mm of paper]
-_PITCHES = 5.6  # teeth side by side
-_POINTS = 60  # on each curve of a tooth
-_LETTERS = "ABCDE"  # of the path of contact, as everywhere in the field
+_HEIGHT = 104.0  # height of the panel [mm of paper]
+_PITCHES = 5.6  # number of teeth side by side
+_POINTS = 60  # points on each curve of a tooth
+_LETTERS = "ABCDE"  # usual names of points on the path of contact
 _UP = 0.5 * math.pi  # the driven gear stands above the driver
 _OUTLINES = (BLUE, SERIES[1])
 _DASHES = {"pitch circles": (0, (8, 2, 1.5, 2)), "base circles": (0, (3, 2)), "tip circles": (0, (1, 1.6))}
@@ -55,10 +55,10 @@ def draw_tooth_pair(pair: GearPairGeometry, phase: float | None = None) -> Figur
 
     Parameters
     ----------
-    pair
+    pair : GearPairGeometry
         Helical gears are drawn in the transverse section where tooth 0 has the phase.
-    phase
-        In mesh periods; None: midway between where a pair enters and where one leaves.
+    phase : float, optional
+        Phase in mesh periods; by default midway between the entry of a pair and the exit of another.
     """
     if phase is None:
         phase = 0.5 * (pair.contact_ratio % 1.0)
@@ -109,7 +109,7 @@ def _line_of_action(axes: Axes, pair: GearPairGeometry, phase: float, centre: Fl
     """Draw the line of action, the named points on it, and the points of contact at the phase."""
     angle = pair.line_of_action_angle(_UP)
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
-    # The tangent point is where the line meets the driver's base circle at a right angle.
+    # At the tangent point the line meets a radius of the driver's base circle at a right angle.
     tangent = centre + pair.driver.base_radius * across
 
     def place(position: npt.ArrayLike) -> FloatArray:
@@ -142,8 +142,8 @@ def _senses(axes: Axes, half: float) -> None:
         axes.add_patch(arrow)
 
 
-_ROW, _BETWEEN, _NAMES, _GAP = 50.0, 12.0, 5.0, 14.0  # height of a row, rooms below it, above all and between [mm]
-_PLACES = 400  # along a flank
+_ROW, _BETWEEN, _NAMES, _GAP = 50.0, 12.0, 5.0, 14.0  # height of a row, gaps below it, above all and between [mm]
+_PLACES = 400  # places along a flank
 
 
 def has_charts(pair: GearPairGeometry) -> bool:
@@ -152,16 +152,16 @@ def has_charts(pair: GearPairGeometry) -> bool:
 
 
 def draw_flank_charts(title: str, pair: GearPairGeometry, best: TipRelief | None = None) -> Figure:
-    """Draw what the flanks of both gears differ from perfect ones, material outward upward; the driver at the left.
+    """Draw the deviations of both gears' flanks from perfect ones, outward material upward; the driver at the left.
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    pair
+    title : str
+        Title of the sheet.
+    pair : GearPairGeometry
         Rows without any deviation are left out, except the profile's where `best` is drawn.
-    best
-        A relief to draw beside that of the gears.
+    best : TipRelief, optional
+        Relief to draw beside that of the gears.
 
     Raises
     ------
@@ -213,7 +213,7 @@ def _rows(pair: GearPairGeometry, best: TipRelief | None) -> Sequence[Callable[[
 
 
 def _profile(gear: Gear) -> tuple[FloatArray, FloatArray]:
-    """Roll angles from the form circle to the tip [rad], and what the flank stands out there [m]."""
+    """Return roll angles from the form circle to the tip [rad], and the material over the involute there [m]."""
     roll = np.linspace(gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius), _PLACES)
     return roll, -flank_gap(gear, roll)
 

@@ -41,7 +41,7 @@ from gearwhine.figures.style import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the room between them [mm of paper]
+_STIFFNESS, _SHARES, _BETWEEN = 66.0, 42.0, 5.0  # heights of the panels and the gap between them [mm of paper]
 
 
 def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, shared: bool = True) -> Figure:
@@ -49,12 +49,13 @@ def draw_mesh_stiffness(title: str, contact: ToothContact, mesh: LoadedMesh, *, 
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    contact, mesh
-        The pair's law, and its statics over one mesh period.
-    shared
-        Whether there are single pairs to share the load, not the mesh as one spring. Without load none shares.
+    title : str
+        Title of the sheet.
+    contact : ToothContact
+    mesh : LoadedMesh
+        Statics over one mesh period.
+    shared : bool
+        Whether single pairs share the load, rather than the mesh as one spring. Without load none shares.
     """
     loaded = mesh.force > 0.0
     below = _SHARES + _BETWEEN if shared and loaded else 0.0
@@ -106,8 +107,8 @@ def _name(before: int) -> str:
     return "pair before" if before == 1 else f"{before} pairs before"
 
 
-_CURVE, _HUNTING, _BARS, _CURVE_GAP = 58.0, 34.0, 36.0, 12.0  # heights and the room between [mm of paper]
-_NOTHING = 1e-6  # part of the largest harmonic
+_CURVE, _HUNTING, _BARS, _CURVE_GAP = 58.0, 34.0, 36.0, 12.0  # heights and the gap between them [mm of paper]
+_NOTHING = 1e-6  # part of the largest harmonic up to which another counts as zero
 _SLIM = 0.42  # width of a bar, in harmonics
 
 
@@ -124,16 +125,16 @@ def draw_transmission_error(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    phases, unloaded
-        (n,): without load over one mesh period, m.
-    harmonics
-        By ``"unloaded"`` and ``"loaded"``, those that are drawn: (h,), m, from the mesh frequency up.
-    loaded
-        Over the same period.
-    hunting
-        Under the load over the whole hunting period, where mesh periods differ.
+    title : str
+        Title of the sheet.
+    phases, unloaded : ndarray, shape (n,)
+        Phases, and transmission error without load over one mesh period [m].
+    harmonics : dict of str to ndarray, shape (h,)
+        Harmonics from the mesh frequency up [m], by ``"unloaded"`` and ``"loaded"``.
+    loaded : LoadedMesh, optional
+        Statics under the load over the same period.
+    hunting : LoadedMesh, optional
+        Statics under the load over the whole hunting period, where mesh periods differ.
     """
     curves = [("without load", phases, unloaded, GREY)]
     if loaded is not None:
@@ -164,7 +165,7 @@ def draw_transmission_error(
 
 def _draw_bars(axes: Axes, harmonics: dict[str, FloatArray]) -> None:
     largest = max((float(row.max(initial=0.0)) for row in harmonics.values()), default=0.0)
-    # Perfect involutes without load have no harmonics: the others' bars then stand at their numbers.
+    # Perfect involutes without load have no harmonics: bars under load then stand at their numbers.
     harmonics = {name: row for name, row in harmonics.items() if row.max(initial=0.0) > _NOTHING * largest} or harmonics
     shift = 0.5 * _SLIM * (len(harmonics) - 1)
     for number, (name, row) in enumerate(harmonics.items()):
@@ -182,10 +183,10 @@ def _draw_bars(axes: Axes, harmonics: dict[str, FloatArray]) -> None:
     axes.grid(visible=False, axis="x")
 
 
-_CURVES, _SWING, _MAP_GAP = 78.0, 42.0, 12.0  # heights of the panels and the room between them [mm of paper]
-_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # the colours' bar, the room before it and for its numbers [mm of paper]
+_CURVES, _SWING, _MAP_GAP = 78.0, 42.0, 12.0  # heights of the panels and the gap between them [mm of paper]
+_SCALE, _BESIDE, _NUMBERS = 3.0, 3.0, 13.0  # widths of the colour bar, of the gap before it and of its numbers [mm]
 _COLORS = colormaps["viridis"]
-_BRIGHTEST = 0.92  # of the colours: yellow on white is hard to see
+_BRIGHTEST = 0.92  # end of the colour scale: yellow on white is hard to see
 
 
 def draw_harris_map(title: str, harris: HarrisMap, base_radius: float, torque: float | None = None) -> Figure:
@@ -193,14 +194,14 @@ def draw_harris_map(title: str, harris: HarrisMap, base_radius: float, torque: f
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    harris
+    title : str
+        Title of the sheet.
+    harris : HarrisMap
         Transmission error by force and phase; two forces or more.
-    base_radius
-        Of the driver, which turns forces into torques, m.
-    torque
-        Of operation, marked in both panels where it is in the map's range, N m.
+    base_radius : float
+        Base radius of the driver, which turns forces into torques [m].
+    torque : float, optional
+        Torque of operation, marked in both panels where it is in the map's range [N m].
 
     Raises
     ------

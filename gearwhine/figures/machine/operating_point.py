@@ -47,13 +47,13 @@ from rotors import Segment
 
 FloatArray = npt.NDArray[np.float64]
 
-_TALLEST, _SLIMMEST = 34.0, 7.0  # of a shaft with its gears between the largest diameters [mm of paper]
-_BESIDE, _BETWEEN = 6.0, 6.0  # margins and room between the two planes [mm of paper]
-_LARGEST, _ARROW, _WORDS = 5.0, 13.0, 5.0  # deflection, arrow of the largest force and its number [mm of paper]
+_TALLEST, _SLIMMEST = 34.0, 7.0  # largest and least height of a shaft with its gears [mm of paper]
+_BESIDE, _BETWEEN = 6.0, 6.0  # margins and gap between the two planes [mm of paper]
+_LARGEST, _ARROW, _WORDS = 5.0, 13.0, 5.0  # largest deflection, longest arrow and height of its number [mm of paper]
 _STEPS = (1, 2, 5)
 _ROW, _GLYPH, _ARC = 12.0, 2.5, 1.5  # row of thrusts or moments, its middle from its top, radius [mm of paper]
 _LEAST = 1e-3  # part of the largest force below which none is drawn
-_LEAST_MOMENT = 0.02  # the same of moments
+_LEAST_MOMENT = 0.02  # part of the largest moment below which none is drawn
 _BODY, _SHAFT = "#d9cfb4", "#c9d5e0"
 _N_PER_MM = 1e-3
 
@@ -67,13 +67,13 @@ class DrawnForce:
     at : float
         Place from the left end [m].
     force : tuple of float
-        Along x and y [N].
+        Force along x and y [N].
     of_gear : bool
-        Of a gear, else of a bearing.
+        Whether a gear exerts it, rather than a bearing.
     thrust : float
-        Along z [N].
+        Force along z [N].
     moment : tuple of float
-        About x and y [N m].
+        Moment about x and y [N m].
     """
 
     at: float
@@ -106,17 +106,17 @@ def draw_deflected_shaft(
         The shaft with its gears.
     shaft : DeflectedShaft
     forces : sequence of DrawnForce
-        Of bearings and gears.
+        Forces of bearings and gears.
     """
     width = 0.5 * (SHEET_WIDTH - 2.0 * _BESIDE - _BETWEEN)
     view = _view(assembly, width)
     across, _ = shaft.largest
     factor = _exaggeration(across, view)
-    strongest = max((abs(part) for one in forces for part in (*one.force, one.thrust)), default=0.0) or 1.0
+    strongest = max((abs(part) for force in forces for part in (*force.force, force.thrust)), default=0.0) or 1.0
     below, above = _extent(assembly, view, shaft, forces, factor, strongest)
-    thrusts = [one for one in forces if abs(one.thrust) >= _LEAST * strongest]
-    largest = max((abs(part) for one in forces for part in one.moment), default=0.0)
-    turned = [[one for one in forces if abs(one.turning(plane)) > _LEAST_MOMENT * largest] for plane in range(2)]
+    thrusts = [force for force in forces if abs(force.thrust) >= _LEAST * strongest]
+    largest = max((abs(part) for force in forces for part in force.moment), default=0.0)
+    turned = [[force for force in forces if abs(force.turning(plane)) > _LEAST_MOMENT * largest] for plane in range(2)]
     # Moments of a thousandth of a millimetre of arm are rounding of the picture.
     turned = turned if largest > 1e-6 * strongest else [[], []]
     rows = bool(thrusts) + any(turned)
@@ -124,8 +124,8 @@ def draw_deflected_shaft(
     height = below + above
     note = f"deflections {factor:g} times as large as lengths, {MICRO * across:.3g} µm at most"
     note = note if across else "no deflection across the axis"
-    what = " and ".join(["thrusts"] * bool(thrusts) + ["moments"] * any(turned))
-    note += "; arrows: forces on the shaft" + (f", below them {what}" if what else "")
+    rows_shown = " and ".join(["thrusts"] * bool(thrusts) + ["moments"] * any(turned))
+    note += "; arrows: forces on the shaft" + (f", below them {rows_shown}" if rows_shown else "")
     if view.stretch > 1:
         note += f"; diameters {view.stretch} times as large as lengths"
     figure = sheet(HEAD + 4.0 + height + FOOT, title, note)
@@ -142,8 +142,8 @@ def draw_deflected_shaft(
         _draw_bodies(axes, assembly, view, shaft.at, np.zeros(shaft.at.size), at_rest=True)
         _draw_bodies(axes, assembly, view, shaft.at, moved, at_rest=False)
         axes.plot(MM * shaft.at, moved, color=BLUE, lw=1.3, zorder=5, label="deflection")
-        for one in forces:
-            _draw_force(axes, assembly, view, one, plane, strongest, float(np.interp(one.at, shaft.at, moved)))
+        for force in forces:
+            _draw_force(axes, assembly, view, force, plane, strongest, float(np.interp(force.at, shaft.at, moved)))
         level = below - lowest - _GLYPH
         if thrusts:
             _draw_thrusts(axes, view, thrusts, level, below, strongest)
@@ -176,23 +176,23 @@ def _extent(
     factor: float,
     strongest: float,
 ) -> tuple[float, float]:
-    """Room below and above the axis that shaft and arrows take in either plane [mm of paper]."""
+    """Return the height below and above the axis that shaft and arrows take in either plane [mm of paper]."""
     moved = MM * factor * shaft.motion[:2] / view.per_paper
     room = [view.half_height + max(0.0, float((sense * moved).max())) for sense in (-1.0, 1.0)]
-    for one in forces:
-        for value, shift in zip(one.force, moved, strict=True):
+    for force in forces:
+        for value, shift in zip(force.force, moved, strict=True):
             if abs(value) < _LEAST * strongest:
                 continue
             side, sense = (0, -1.0) if value > 0.0 else (1, 1.0)
-            surface = view.across(_surface(assembly, one)) / view.per_paper
+            surface = view.across(_surface(assembly, force)) / view.per_paper
             arrow = _arrow_length(value, strongest) + _WORDS
-            room[side] = max(room[side], surface + arrow + sense * float(np.interp(one.at, shaft.at, shift)))
+            room[side] = max(room[side], surface + arrow + sense * float(np.interp(force.at, shaft.at, shift)))
     return room[0] + 2.0, room[1] + 2.0
 
 
-def _surface(assembly: RotorAssembly, one: DrawnForce) -> float:
+def _surface(assembly: RotorAssembly, force: DrawnForce) -> float:
     """Radius at which a force's arrow ends [m]."""
-    return assembly.outer_radius(one.at) if one.of_gear else assembly.shaft_radius(one.at)
+    return assembly.outer_radius(force.at) if force.of_gear else assembly.shaft_radius(force.at)
 
 
 def _arrow_length(value: float, strongest: float) -> float:
@@ -200,12 +200,12 @@ def _arrow_length(value: float, strongest: float) -> float:
 
 
 def _exaggeration(largest: float, view: ShaftView) -> float:
-    """Round factor at which the largest deflection [m] has about `_LARGEST` on paper; 1 without a deflection."""
+    """Return a round factor at which the largest deflection [m] has about `_LARGEST` on paper; 1 without one."""
     if largest == 0.0:
         return 1.0
-    wanted = _LARGEST * view.per_paper / (MM * largest)
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max(step * power for step in _STEPS if step * power <= wanted * (1.0 + 1e-9)))
+    factor = _LARGEST * view.per_paper / (MM * largest)
+    power = 10.0 ** np.floor(np.log10(factor))
+    return float(max(step * power for step in _STEPS if step * power <= factor * (1.0 + 1e-9)))
 
 
 def _draw_bodies(
@@ -242,24 +242,24 @@ def _draw_force(
     axes: Axes,
     assembly: RotorAssembly,
     view: ShaftView,
-    one: DrawnForce,
+    force: DrawnForce,
     plane: int,
     strongest: float,
     moved: float,
 ) -> None:
     """Draw a force's component in a plane as an arrow that pushes the surface, with its number at the tail."""
-    value = one.force[plane]
+    value = force.force[plane]
     if abs(value) < _LEAST * strongest:
         return
     sense = 1.0 if value > 0.0 else -1.0
-    tip = moved - sense * view.across(_surface(assembly, one))
+    tip = moved - sense * view.across(_surface(assembly, force))
     tail = tip - sense * view.length(_arrow_length(value, strongest))
-    color = one.color
+    color = force.color
     arrow = {"arrowstyle": "-|>,head_width=0.16,head_length=0.4", "color": color, "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (MM * one.at, tip), (MM * one.at, tail), arrowprops=arrow, zorder=6)
+    axes.annotate("", (MM * force.at, tip), (MM * force.at, tail), arrowprops=arrow, zorder=6)
     axes.annotate(
         f"{abs(value):.4g} N",
-        (MM * one.at, tail),
+        (MM * force.at, tail),
         (0.0, -2.0 * sense),
         textcoords="offset points",
         fontsize=NOTE,
@@ -277,10 +277,10 @@ def _draw_thrusts(
 ) -> None:
     """Draw thrusts as arrows along the shaft in a row, ``level`` [mm of paper] from the panel's bottom."""
     y = view.length(level - below)
-    for one in thrusts:
-        half = 0.5 * view.length(_arrow_length(one.thrust, strongest)) * (1.0 if one.thrust > 0.0 else -1.0)
-        _add_arrow(axes, (MM * one.at - half, y), (MM * one.at + half, y), one.color, "_thrust")
-    _name_row(axes, view, [(one, f"{abs(one.thrust):.4g} N") for one in thrusts], y, level)
+    for force in thrusts:
+        half = 0.5 * view.length(_arrow_length(force.thrust, strongest)) * (1.0 if force.thrust > 0.0 else -1.0)
+        _add_arrow(axes, (MM * force.at - half, y), (MM * force.at + half, y), force.color, "_thrust")
+    _name_row(axes, view, [(force, f"{abs(force.thrust):.4g} N") for force in thrusts], y, level)
 
 
 def _draw_moments(
@@ -288,13 +288,13 @@ def _draw_moments(
 ) -> None:
     """Draw moments in a plane as arcs with an arrow in their sense in a row, as thrusts."""
     y, radius = view.length(level - below), view.length(_ARC)
-    for one in turned:
-        sense = 1.0 if one.turning(plane) > 0.0 else -1.0
+    for force in turned:
+        sense = 1.0 if force.turning(plane) > 0.0 else -1.0
         angles = np.radians(np.linspace(-40.0, 200.0, 40))
-        across, up = MM * one.at + sense * radius * np.cos(angles), y + radius * np.sin(angles)
-        axes.plot(across[:-4], up[:-4], color=one.color, lw=1.1, zorder=6, label="_arc", solid_capstyle="butt")
-        _add_arrow(axes, (across[-6], up[-6]), (across[-1], up[-1]), one.color, "_moment")
-    _name_row(axes, view, [(one, f"{abs(one.turning(plane)):.3g} N·m") for one in turned], y, level)
+        across, up = MM * force.at + sense * radius * np.cos(angles), y + radius * np.sin(angles)
+        axes.plot(across[:-4], up[:-4], color=force.color, lw=1.1, zorder=6, label="_arc", solid_capstyle="butt")
+        _add_arrow(axes, (across[-6], up[-6]), (across[-1], up[-1]), force.color, "_moment")
+    _name_row(axes, view, [(force, f"{abs(force.turning(plane)):.3g} N·m") for force in turned], y, level)
 
 
 def _add_arrow(axes: Axes, tail: tuple[float, float], tip: tuple[float, float], color: str, label: str) -> None:
@@ -315,8 +315,8 @@ def _add_arrow(axes: Axes, tail: tuple[float, float], tip: tuple[float, float], 
 
 def _name_row(axes: Axes, view: ShaftView, named: Sequence[tuple[DrawnForce, str]], y: float, level: float) -> None:
     """Write the numbers of a row below its arrows."""
-    labels = [Label(text, MM * one.at, y - view.length(_ARC), one.color) for one, text in named]
-    row = arrange(labels, [view.paper(one.at) for one, _ in named], panel_size(axes)[0])
+    labels = [Label(text, MM * force.at, y - view.length(_ARC), force.color) for force, text in named]
+    row = arrange(labels, [view.paper(force.at) for force, _ in named], panel_size(axes)[0])
     draw_row(axes, row, level - _ARC, above=False)
 
 
@@ -330,11 +330,11 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     ----------
     title : str
     pair : PairLoad
-        Under a force.
+        Pair under a force.
     """
     width = pair.pair.geometry.face_width
     z, gap = MILLI * pair.z, pair.gap
-    made = gap + pair.pair.contact.flank_gap
+    whole_gap = gap + pair.pair.contact.flank_gap
     load, phases = pair.line_load, pair.fine.line_load
     note = (
         f"K_Hβ = {pair.k_h_beta:.3f}; flanks {MICRO * pair.misalignment * width:z.2f} µm out of line over the face, "
@@ -347,10 +347,10 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     color, style = (GREY, "--") if modified else (BLUE, "-")
     upper.plot(z, MICRO * (gap - gap.min()), color=color, lw=1.3, ls=style, label="by deflection")
     if modified:
-        upper.plot(z, MICRO * (made - made.min()), color=BLUE, lw=1.4, label="with modifications")
-    upper.fill_between(z, 0.0, MICRO * (made - made.min()), color="#dfe7ef", lw=0.0, zorder=1)
+        upper.plot(z, MICRO * (whole_gap - whole_gap.min()), color=BLUE, lw=1.4, label="with modifications")
+    upper.fill_between(z, 0.0, MICRO * (whole_gap - whole_gap.min()), color="#dfe7ef", lw=0.0, zorder=1)
     # Gaps of nanometres are no gaps.
-    upper.set_ylim(0.0, max(1.15 * MICRO * float(max(np.ptp(made), np.ptp(gap))), 0.1))
+    upper.set_ylim(0.0, max(1.15 * MICRO * float(max(np.ptp(whole_gap), np.ptp(gap))), 0.1))
     upper.set_ylabel("gap before the load [µm]")
     upper.tick_params(labelbottom=False)
     lower.fill_between(
@@ -373,9 +373,9 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
     return figure
 
 
-_NARROWEST = 1.0  # to either side of zero [µrad]
+_NARROWEST = 1.0  # least range on either side of zero [µrad]
 _BAR = 11.0  # height of a pair's row [mm of paper]
-_NAMES, _SUMS = 26.0, 30.0  # for the pairs' names and their sums [mm of paper]
+_NAMES, _SUMS = 26.0, 30.0  # widths of the pairs' names and of their sums [mm of paper]
 
 
 def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
@@ -396,8 +396,8 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
         color = SERIES[number]
         for row, pair in enumerate(pairs):
             part = MICRO * pair.misalignment_by_cause[cause]
-            before = [MICRO * pair.misalignment_by_cause[one] for one in CAUSES[:number]]
-            start = sum(one for one in before if (one > 0.0) == (part > 0.0))
+            before = [MICRO * pair.misalignment_by_cause[other_cause] for other_cause in CAUSES[:number]]
+            start = sum(value for value in before if (value > 0.0) == (part > 0.0))
             axes.barh(-row, part, left=start, height=0.5, color=color, lw=0.0, zorder=3, label=f"_{cause}")
         if any(pair.misalignment_by_cause[cause] for pair in pairs):  # rigid seats give none
             handles.append(Patch(color=color, label=cause))
@@ -421,7 +421,7 @@ def draw_misalignment(title: str, pairs: Sequence[PairLoad]) -> Figure:
     return figure
 
 
-_SMALL, _SMALL_ROOM = 30.0, 4.0  # height of a panel over torque and the room between two [mm of paper]
+_SMALL, _SMALL_ROOM = 30.0, 4.0  # height of a panel over torque and gap between two [mm of paper]
 
 
 def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
@@ -431,32 +431,32 @@ def draw_over_torque(title: str, solved: SolvedLoad) -> Figure:
     ----------
     title : str
     solved : SolvedLoad
-        With equilibria over torque.
+        Operating point with equilibria over torque.
     """
     torques = np.array(list(solved.over_torque))
     rows = list(solved.over_torque.values())
-    shown: tuple[tuple[str, Callable[[PairLoad], float]], ...] = (
+    quantities: tuple[tuple[str, Callable[[PairLoad], float]], ...] = (
         ("TE p-p [µm]", lambda pair: MICRO * float(np.ptp(pair.transmission_error))),
         ("stiffness [N/µm]", lambda pair: MEGA * pair.mean_stiffness),
         ("K_Hβ", lambda pair: pair.k_h_beta),
         ("misalignment [µrad]", lambda pair: MICRO * pair.misalignment),
     )
-    figure = sheet(HEAD + len(shown) * (_SMALL + _SMALL_ROOM) + FOOT, title, "dashed: torque of operation")
+    figure = sheet(HEAD + len(quantities) * (_SMALL + _SMALL_ROOM) + FOOT, title, "dashed: torque of operation")
     handles: list[Line2D] = []
-    for number, (what, of) in enumerate(shown):
+    for number, (label, value_of) in enumerate(quantities):
         axes = panel(figure, FOOT + number * (_SMALL + _SMALL_ROOM), _SMALL)
         for place, pair in enumerate(solved.point.pairs):
             if pair.force == 0.0:
                 continue
             name = f"{name_in_legend(pair.pair.driver.name)} → {name_in_legend(pair.pair.driven.name)}"
-            values = [of(row.pairs[place]) for row in rows]
+            values = [value_of(row.pairs[place]) for row in rows]
             color = SERIES[place % len(SERIES)]
             (line,) = axes.plot(torques, values, color=color, lw=1.3, marker=".", ms=3, label=name)
             handles += [line] if number == 0 else []
         axes.axvline(solved.machine.torque, color=GREY, lw=0.8, ls="--", zorder=1)
         if number in (0, 3):
             axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
-        axes.set_ylabel(what)
+        axes.set_ylabel(label)
         axes.set_xlim(*sorted((0.0, float(torques[np.abs(torques).argmax()]))))
         if number == 0:
             axes.set_xlabel("torque of the first driver [N m]")
@@ -479,7 +479,7 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     ----------
     case : Case
     solved : SolvedLoad
-        Of the case.
+        Operating point of the case.
 
     Yields
     ------
@@ -489,8 +489,8 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     matplotlib.figure.Figure
     """
     acting: dict[str, list[DrawnForce]] = {shaft.name: [] for shaft in solved.shafts}
-    for one in solved.point.bearings:
-        acting[one.mounted.rotor].append(_drawn(one.mounted.bearing.at, -one.force, of_gear=False))
+    for load in solved.point.bearings:
+        acting[load.mounted.rotor].append(_drawn(load.mounted.bearing.at, -load.force, of_gear=False))
     gears: dict[tuple[str, float], FloatArray] = {}
     for number, pair in enumerate(solved.point.pairs):
         for gear, force in zip((pair.pair.driver, pair.pair.driven), solved.point.gear_forces(number), strict=True):
@@ -499,8 +499,8 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         acting[name].append(_drawn(at, force, of_gear=True))
     stems = file_stems([shaft.name for shaft in solved.shafts], "load-shaft-")
     for stem, shaft in zip(stems, solved.shafts, strict=True):
-        held = [one.mounted.bearing for one in solved.point.bearings if one.mounted.rotor == shaft.name]
-        assembly = rotor_assembly(case, solved.machine.rotor(shaft.name), held)
+        on_shaft = [load.mounted.bearing for load in solved.point.bearings if load.mounted.rotor == shaft.name]
+        assembly = rotor_assembly(case, solved.machine.rotor(shaft.name), on_shaft)
         title = f"Shaft {shortened(shaft.name, 20)} under load"
         yield stem, draw_deflected_shaft(title, assembly, shaft, acting[shaft.name])
     pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]

@@ -27,13 +27,13 @@ from gearwhine.solve.run_up import RunSignature
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT = 80.0  # of the panel of order slices [mm of paper]
-_COLUMNS = 3  # of their legend
-_EVEN = 0.2  # least step of the speed between two spectra, part of the mean one, for an axis of speed
-_DECADES = 5.0  # of amplitude that they show at most
+_HEIGHT = 80.0  # height of the panel of order slices [mm of paper]
+_COLUMNS = 3  # columns of their legend
+_EVEN = 0.2  # least step of the speed between two spectra for an axis of speed, as a part of the mean step
+_DECADES = 5.0  # decades of amplitude that they show at most
 
 
-def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
+def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
     """Draw the waterfall and the orders of every signal of a run.
 
     Yields ``run-up-waterfall-SIGNAL`` and ``run-up-orders-SIGNAL``, each with its figure.
@@ -42,15 +42,15 @@ def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> 
     turns_per_second = abs(case.operation.speed) / (2.0 * np.pi)
     mesh_orders = [frequency / turns_per_second for frequency in mesh_frequencies(case)]
     modes = None if housing is None else housing.modes.frequencies_hz
-    names = [name.replace(" -> ", "-") for name in found.spectra]
+    names = [name.replace(" -> ", "-") for name in run.spectra]
     pairs = [f"{pair.driver} → {pair.driven}" for pair in case.gear_pair]
-    for stem, (name, spectra) in zip(file_stems(names), found.spectra.items(), strict=True):
-        unit, what, told = found.units[name], arrowed(name), f"{case.title}; {run_words(case, found)}"
+    for stem, (name, spectra) in zip(file_stems(names), run.spectra.items(), strict=True):
+        unit, signal_name, remark = run.units[name], arrowed(name), f"{case.title}; {run_words(case, run)}"
         waterfall = draw_run_up_waterfall(
-            f"{what}: spectra along the run",
+            f"{signal_name}: spectra along the run",
             spectra,
-            found.speeds_rpm,
-            note=told,
+            run.speeds_rpm,
+            note=remark,
             mesh_names=pairs,
             unit=unit,
             limit=float(spectra.frequencies[-1]),
@@ -58,13 +58,13 @@ def draw_run(case: Case, found: RunSignature, housing: SolvedHousing | None) -> 
             housing_frequencies=modes,
         )
         yield f"run-up-waterfall-{stem}", waterfall
-        slices = draw_order_slices(f"{what}: orders", found.orders[name], found.named, unit=unit, note=told)
+        slices = draw_order_slices(f"{signal_name}: orders", run.orders[name], run.named, unit=unit, note=remark)
         yield f"run-up-orders-{stem}", slices
 
 
-def run_words(case: Case, found: RunSignature) -> str:
+def run_words(case: Case, signature: RunSignature) -> str:
     """Return the kind of a run and the range of its spectra in words."""
-    first, last = float(found.speeds_rpm[0]), float(found.speeds_rpm[-1])
+    first, last = float(signature.speeds_rpm[0]), float(signature.speeds_rpm[-1])
     run = None if case.transient is None else case.transient.run
     kind = "run-up" if abs(last) > abs(first) else "run-down"
     if run is not None and run.free:
@@ -100,32 +100,32 @@ def draw_run_up_waterfall(
 
     Parameters
     ----------
-    title
-        Of the figure.
-    spectra
-        Of stretches along the run.
-    speeds_rpm
-        (t,): of the leading shaft in the middle of each stretch.
-    unit
-        Of the amplitudes.
-    limit
-        Of the frequency axis, Hz.
-    note
+    title : str
+        Title of the figure.
+    spectra : Spectrogram
+        Spectra of stretches along the run.
+    speeds_rpm : ndarray, shape (t,)
+        Speeds of the leading shaft in the middle of each stretch [rpm].
+    unit : str
+        Unit of the amplitudes.
+    limit : float
+        Limit of the frequency axis [Hz].
+    note : str
         Begin of the note below the title.
-    mesh_orders, mesh_names
-        Of each gear pair, cycles each turn of the leading shaft.
-    housing_frequencies
-        (n,): Hz.
+    mesh_orders, mesh_names : sequence
+        Orders of each gear pair in cycles each turn of the leading shaft, and names of the pairs.
+    housing_frequencies : ndarray, shape (n,), optional
+        Natural frequencies of the housing [Hz].
     """
-    shown = spectra.frequencies <= limit * (1.0 + 1e-9)
+    inside = spectra.frequencies <= limit * (1.0 + 1e-9)
     rows = len(speeds_rpm)
     modes = np.empty(0) if housing_frequencies is None else housing_frequencies
     values, value_name = _axis(speeds_rpm, spectra.times)
     return draw_waterfall(
         title,
         values,
-        np.tile(spectra.frequencies[shown], (rows, 1)),
-        spectra.amplitude[:, shown],
+        np.tile(spectra.frequencies[inside], (rows, 1)),
+        spectra.amplitude[:, inside],
         value_name=value_name,
         unit=unit,
         note=note,
@@ -140,16 +140,16 @@ def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, 
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    orders
+    title : str
+        Title of the sheet.
+    orders : OrderMap
         Order spectra along the run.
-    named
+    named : dict of str to float
         Orders by their names.
-    unit
-        Of the amplitudes.
-    note
-        Below the title.
+    unit : str
+        Unit of the amplitudes.
+    note : str
+        Note below the title.
 
     Raises
     ------

@@ -46,20 +46,20 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and between them [mm]
-_ABOVE = 2.0  # the panel, for the leaders of the names [mm]
-_NAMED = 5  # lines
-_RANGE = 60.0  # of levels below the highest that are drawn [dB]
-_HEARD = 25.0  # below the loudest line down to which lines have names and directivities [dB]
-_STEP = 10.0  # of levels [dB]
+_POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and gap between them [mm]
+_ABOVE = 2.0  # height above the panel for the leaders of the names [mm]
+_NAMED = 5  # number of lines with names
+_RANGE = 60.0  # range of levels below the highest that is drawn [dB]
+_HEARD = 25.0  # range below the loudest line in which lines have names and directivities [dB]
+_STEP = 10.0  # step of the axis of levels [dB]
 _FEWEST_BANDS = 8
-_EFFICIENCY = 62.0  # height [mm]
-_NUMBERED = 12  # modes
-_ROSE, _ROSE_ROOM = 41.0, 14.0  # diameter of a directivity and the room between two of them [mm]
-_ROSE_RANGE = 30.0  # [dB]
-_LOUDEST = 2  # lines whose directivity is drawn
+_EFFICIENCY = 62.0  # height of the panel of efficiencies [mm]
+_NUMBERED = 12  # number of modes with numbers
+_ROSE, _ROSE_ROOM = 41.0, 14.0  # diameter of a directivity and gap between two of them [mm]
+_ROSE_RANGE = 30.0  # range of levels of a directivity [dB]
+_LOUDEST = 2  # number of lines whose directivity is drawn
 _ANGLES = np.radians(np.arange(0.0, 360.5, 2.0))
-_PLANES = (  # heading, axes of the plane to the right and upwards as seen, and their names
+_PLANES = (  # heading, axes of the plane to the right and upwards, and their names
     ("horizontal, seen from above", (1.0, 0.0, 0.0), (0.0, 0.0, -1.0), ("x", "−z")),
     ("vertical, seen from +z", (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), ("x", "y")),
     ("vertical, seen from +x", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), ("−z", "y")),
@@ -79,7 +79,7 @@ def draw_sound_power(title: str, solved: "SolvedSound") -> Figure:
     ----------
     title : str
     solved : SolvedSound
-        With a line that sounds.
+        Sound with a line that radiates.
     """
     lines = loudest_lines(solved, _RANGE)
     limit = 1.02 * max(solved.limit_hz, *(line.frequency_hz for line in lines))
@@ -129,9 +129,13 @@ def _draw_bands(axes: Axes, solved: "SolvedSound") -> None:
     low, high = _level_limits(levels[levels >= levels.max() - _RANGE])
     first = max(min(int(np.argmax(levels > low)), len(levels) - _FEWEST_BANDS), 0)
     nominal, levels = nominal[first:], levels[first:]
-    weighted, places, shown = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
-    axes.bar(places[shown], levels[shown] - low, bottom=low, width=0.8, color=BLUE, alpha=0.85, lw=0.0, zorder=3)
-    axes.hlines(weighted[shown], places[shown] - 0.4, places[shown] + 0.4, color="#c77d1e", lw=1.6, zorder=4)
+    weighted, places, drawn_bands = levels + a_weighting(nominal), np.arange(len(nominal)), levels > low
+    axes.bar(
+        places[drawn_bands], levels[drawn_bands] - low, bottom=low, width=0.8, color=BLUE, alpha=0.85, lw=0.0, zorder=3
+    )
+    axes.hlines(
+        weighted[drawn_bands], places[drawn_bands] - 0.4, places[drawn_bands] + 0.4, color="#c77d1e", lw=1.6, zorder=4
+    )
     every = -(-len(nominal) // 20)
     axes.set_xticks(places[::every], [_nominal(hertz) for hertz in nominal[::every]])
     axes.grid(visible=False, axis="x")
@@ -153,9 +157,9 @@ def _nominal(hertz: float) -> str:
 
 def _level_limits(*levels: FloatArray) -> tuple[float, float]:
     """Return even limits around levels [dB], at most 60 dB below the highest of the first."""
-    known = np.concatenate([values[np.isfinite(values)] for values in levels])
-    high = _STEP * np.ceil((float(known.max()) + 2.0) / _STEP)
-    lowest = max(float(known.min()) - 3.0, float(levels[0].max()) - _RANGE)
+    finite = np.concatenate([values[np.isfinite(values)] for values in levels])
+    high = _STEP * np.ceil((float(finite.max()) + 2.0) / _STEP)
+    lowest = max(float(finite.min()) - 3.0, float(levels[0].max()) - _RANGE)
     return float(min(_STEP * np.floor(lowest / _STEP), high - 4.0 * _STEP)), float(high)
 
 
@@ -166,7 +170,7 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     ----------
     title : str
     solved : SolvedSound
-        With a mode that radiates.
+        Sound with a mode that radiates.
     """
     modes = [mode for mode in solved.modes if mode.radiation_efficiency > 0.0]
     frequencies = np.array([mode.frequency_hz for mode in modes])
@@ -187,15 +191,15 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
     )
     log_axis(axes, 10.0 ** np.floor(np.log10(everything.min())), 1.6 * everything.max())
     # The first mode of a crowd, from the most efficient, has its number; the others are in the table.
-    taken: list[FloatArray] = []
+    labelled: list[FloatArray] = []
     for place in np.argsort(-values):
         at = axes.transData.transform((frequencies[place], values[place])) / figure.dpi * MM_PER_INCH
-        if all(abs(at[0] - other[0]) > 5.0 or abs(at[1] - other[1]) > 3.5 for other in taken):
+        if all(abs(at[0] - label_at[0]) > 5.0 or abs(at[1] - label_at[1]) > 3.5 for label_at in labelled):
             axes.annotate(
                 str(modes[place].number), (frequencies[place], values[place]), (0.0, 3.0), ha="center",
                 textcoords="offset points", fontsize=NOTE, color=INK, zorder=5,
             )  # fmt: skip
-            taken.append(at)
+            labelled.append(at)
     handles = [Line2D([], [], color=BLUE, marker="o", ms=4, ls="", label="mode at its natural frequency")]
     if of_lines:
         handles.append(Line2D([], [], color=GREY, marker="x", ms=3, ls="", label="line of the motion"))
@@ -218,7 +222,7 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
     ----------
     title : str
     lines : sequence of SoundLine
-        Solved by boundary elements.
+        Lines solved by boundary elements.
     """
     curves = []
     for _, right, up, _ in _PLANES:
@@ -233,8 +237,8 @@ def draw_directivity(title: str, lines: "Sequence[SoundLine]") -> Figure:
         axes = figure.add_axes(box, projection="polar")
         assert isinstance(axes, PolarAxes)
         for number, (line, curve) in enumerate(zip(lines, plane, strict=True)):
-            shown = np.maximum(curve, top - _ROSE_RANGE)
-            axes.plot(_ANGLES, shown, color=SERIES[number], lw=1.2, label=_text(line), zorder=3)
+            level = np.maximum(curve, top - _ROSE_RANGE)
+            axes.plot(_ANGLES, level, color=SERIES[number], lw=1.2, label=_text(line), zorder=3)
         axes.set_rlim(top - _ROSE_RANGE, top)
         rings = np.arange(top - _ROSE_RANGE + 10.0, top + 1.0, 10.0)
         axes.set_yticks(rings, [f"{ring:.0f}" for ring in rings])
@@ -267,7 +271,7 @@ def draw_sound(case: Case, solved: "SolvedSound") -> Iterator[tuple[str, Figure]
     ----------
     case : Case
     solved : SolvedSound
-        Of the case.
+        Sound of the case.
 
     Yields
     ------

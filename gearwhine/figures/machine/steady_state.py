@@ -38,10 +38,10 @@ from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT, _BETWEEN = 46.0, 6.0  # of the panels of a branch, and between them [mm]
-_ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # rows of a motion, the room between them and above the first [mm]
-_MOST_TEETH, _FEW_TEETH = 24, 6  # mesh periods that are drawn at most, and where there are more
-_COLUMNS = 2  # of the names of excitations
+_HEIGHT, _BETWEEN = 46.0, 6.0  # height of a branch's panels, and gap between them [mm]
+_ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # height of a motion's rows, gaps between them and above the first [mm]
+_MOST_TEETH, _FEW_TEETH = 24, 6  # largest number of mesh periods drawn, and the number drawn of longer periods
+_COLUMNS = 2  # columns of the names of excitations
 _UNSTABLE = (0, (3, 2))
 _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jumps, stand out
     "fold": ("o", RED, RED),
@@ -52,7 +52,7 @@ _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jum
 
 
 def draw_steady(case: Case, solved: SolvedSteady) -> Iterator[tuple[str, Figure]]:
-    """Draw what was found: yields ``steady-motion`` and, over speed, ``steady-curve``, each with its figure."""
+    """Draw a steady state: yield ``steady-motion`` and, over speed, ``steady-curve``, each with its figure."""
     if solved.machine.meshes:
         yield "steady-motion", _motion_sheet(case, solved)
     if solved.curve is not None:
@@ -61,7 +61,7 @@ def draw_steady(case: Case, solved: SolvedSteady) -> Iterator[tuple[str, Figure]
 
 def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, *, note: str = "") -> Figure:
     """Draw a branch: vibration in the teeth, largest force, contact loss and sensors over speed; unstable dashed."""
-    told = [note] if note else []
+    remarks = [note] if note else []
     drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
     quantities: list[tuple[str, dict[str, FloatArray]]] = []
     if drives:
@@ -79,26 +79,26 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
         quantities.append(("acceleration, rms [m/s²]", solved.branch_rms))
     speeds = RPM * np.abs(curve.speeds)
     operation = RPM * abs(solved.motions[0].speed)
-    told.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")
+    remarks.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")
     if speeds.min() <= operation <= speeds.max():
-        told.append("dash-dotted: speed of operation")
+        remarks.append("dash-dotted: speed of operation")
     if curve.ending != "end":
-        told.append(f"left at {speeds[-1]:.4g} rpm")
+        remarks.append(f"left at {speeds[-1]:.4g} rpm")
     foot = FOOT + legend_height(1)
-    figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + foot, title, "; ".join(told))
+    figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + foot, title, "; ".join(remarks))
     # Panels with the same names have them once, in the uppermost.
-    legends = {tuple(lines): what for what, lines in reversed(quantities) if len(lines) > 1}
-    for number, (what, lines) in enumerate(reversed(quantities)):
+    legends = {tuple(lines): quantity for quantity, lines in reversed(quantities) if len(lines) > 1}
+    for number, (quantity, lines) in enumerate(reversed(quantities)):
         axes = panel(figure, foot + number * (_HEIGHT + _BETWEEN), _HEIGHT)
         _draw_branch(axes, speeds, lines, curve)
         axes.axvline(operation, color=INK, lw=0.8, ls="-.", zorder=1)
-        axes.set(xlim=(speeds.min(), speeds.max()), ylabel=what)
+        axes.set(xlim=(speeds.min(), speeds.max()), ylabel=quantity)
         axes.set_ylim(bottom=0.0)
         if number:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("speed of the first driver [rpm]")
-        if legends.get(tuple(lines)) == what:
+        if legends.get(tuple(lines)) == quantity:
             axes.legend(loc="best", fontsize=NOTE, frameon=False)
     met = {event.kind for event in curve.bifurcations}
     lines_of = [Line2D([], [], color=INK, lw=1.2, label="stable")]
@@ -161,24 +161,24 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
             for motion in solved.motions:
                 color = BLUE if motion.response.stable else GREY
                 left.plot(MILLI * motion.histories.times, motion.histories.mesh_force[name], color=color, lw=0.9)
-            end, what = float(solved.motions[0].histories.times[-1]), "one period"
-            # Many teeth in a row are an area: each wants some eight widths of its line.
+            end, span = float(solved.motions[0].histories.times[-1]), "one period"
+            # Many teeth in a row merge into an area: each needs the width of some eight lines.
             if end * meshes[number] > _MOST_TEETH:
-                end, what = _FEW_TEETH / meshes[number], f"{_FEW_TEETH} mesh periods"
+                end, span = _FEW_TEETH / meshes[number], f"{_FEW_TEETH} mesh periods"
             left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
             _spectrum(right, (stable or list(solved.motions))[:1], name)
         else:
-            drawn, what = [], "one period"
+            curves, span = [], "one period"
             for motion, color in zip(solved.motions, SERIES * len(solved.motions), strict=False):
                 force = motion.histories.mesh_force[name]
                 part = np.arange(len(force)) / len(force)
                 label = name_in_legend(motion.excitation, 40)
-                drawn += left.plot(part, force, color=color, lw=0.9, label=label)
-            handles = handles or list(drawn)
+                curves += left.plot(part, force, color=color, lw=0.9, label=label)
+            handles = handles or list(curves)
             left.set(xlabel="part of each motion's period", xlim=(0.0, 1.0))
             _spectrum(right, list(solved.motions), name)
         left.set_ylabel("mesh force [N]")
-        panel_title(left, f"{name}: {what}")
+        panel_title(left, f"{name}: {span}")
     legend_below(figure, handles, _COLUMNS)
     return figure
 

@@ -38,14 +38,14 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_MOST_WATERFALLS = 12  # of a grid over several keys
-_LOUD = 40.0  # levels below the highest that have colours of their own [dB]
-_MARKS = 30  # points up to which each is marked
-_LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and between two for a title [mm of paper]
-_FORCES, _FORCES_GAP = 42.0, 8.0  # the same of a gear pair's panels
-_LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and room for its scale of colours
-_FIRST = 5.0  # above the first, for its title
-_COLUMNS = 3  # of the names of lines
+_MOST_WATERFALLS = 12  # largest number of waterfalls of a grid over several keys
+_LOUD = 40.0  # range of levels below the highest that the colours distinguish [dB]
+_MARKS = 30  # number of points up to which each is marked
+_LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and gap with a title between two [mm of paper]
+_FORCES, _FORCES_GAP = 42.0, 8.0  # height of a gear pair's panels, and gap with a title between two [mm of paper]
+_LINES, _SCALE = 50.0, 17.0  # height of the panel of loudest lines, and width of its colour scale [mm of paper]
+_FIRST = 5.0  # height of the first panel's title [mm of paper]
+_COLUMNS = 3  # columns of the names of lines
 _HARMONICS = 3  # mesh harmonics that have a line of their own
 _CIRCLES = "; circles: peaks that the points pass by, an estimate"
 _ORDERS = 6  # multiples of a mesh frequency that are drawn among the loudest lines
@@ -54,15 +54,17 @@ _ORDERS = 6  # multiples of a mesh frequency that are drawn among the loudest li
 def draw_sweep(title: str, dataset: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Draw a gathered sweep: yields the name of each figure, such as ``sweep-rms``, and the figure.
 
-    Levels stand over the speed, or over the first key where the speed is not swept; of other keys each combination has
-    a line of its own in them, and a waterfall of its own up to twelve pictures in all.
+    Levels stand over the speed, or over the first key where the speed is not swept. Each combination of the other keys
+    has a line of its own, and a waterfall of its own up to twelve pictures in all.
     """
     if not bool(dataset["done"].any()):
         return
     swept = [str(name) for name in dataset["done"].dims]
     along = "speed" if "speed" in swept else swept[0]
-    others = [name for name in swept if name != along]
-    places = [dict(zip(others, place, strict=True)) for place in product(*(range(dataset.sizes[n]) for n in others))]
+    other_keys = [name for name in swept if name != along]
+    places = [
+        dict(zip(other_keys, place, strict=True)) for place in product(*(range(dataset.sizes[n]) for n in other_keys))
+    ]
     if "sensor_rms" in dataset:
         yield "sweep-rms", _sensor_levels(title, dataset, along, places)
         yield from _waterfalls(title, dataset, along, places)
@@ -76,7 +78,7 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
     sensors = [str(name) for name in dataset["sensor"].values]
     below, count = _legend_height(places), len(sensors)
     height = HEAD + _FIRST + count * _LEVELS + (count - 1) * _LEVELS_GAP + FOOT + below
-    # Of a grid the peaks of several lines would stand beside each other.
+    # In a grid over several keys the peaks of several lines would stand beside each other.
     missed = {sensor: _missed_peaks(dataset, along, sensor) for sensor in sensors if len(places) == 1}
     circles = _CIRCLES if any(len(speeds) for speeds, _ in missed.values()) else ""
     figure = sheet(height, f"Acceleration over {_key(dataset, along)}", f"{title}{circles}")
@@ -110,19 +112,19 @@ def _mesh_forces(title: str, dataset: xr.Dataset, along: str, places: list[dict[
     figure = sheet(height, f"Gear-mesh force over {_key(dataset, along)}", note)
     for number, contact in enumerate(reversed(contacts)):
         bottom = FOOT + below + number * (_FORCES + _FORCES_GAP)
-        shown = list(panel_pair(figure, bottom, _FORCES) if parts else (panel(figure, bottom, _FORCES),))
-        left = shown[0]
+        panels = list(panel_pair(figure, bottom, _FORCES) if parts else (panel(figure, bottom, _FORCES),))
+        left = panels[0]
         _draw_lines(left, dataset["mesh_force_peak"].sel(contact=contact), along, places)
         _draw_lines(left, dataset["mesh_force_mean"].sel(contact=contact), along, places, dashed=True)
         left.set_ylabel("mesh force [N]")
         left.set_ylim(0.0, 1.08 * float(dataset["mesh_force_peak"].sel(contact=contact).max()) or 1.0)
         panel_title(left, contact)
         if parts:
-            right = shown[1]
+            right = panels[1]
             _draw_lines(right, 100.0 * dataset["contact_loss"].sel(contact=contact), along, places)
             right.set_ylabel("time apart [%]")
             right.set_ylim(0.0, max(1.08 * 100.0 * float(dataset["contact_loss"].sel(contact=contact).max()), 1.0))
-        for axes in shown:
+        for axes in panels:
             if number:
                 axes.tick_params(labelbottom=False)
             else:
@@ -179,9 +181,9 @@ def _missed_peaks(dataset: xr.Dataset, along: str, output: str) -> tuple[FloatAr
     """Speeds [rpm] and estimated levels [dB] of the peaks of an output between the points."""
     if along != "speed" or "missed_peak_speed" not in dataset or dataset["speed"].attrs.get("units") != "rpm":
         return np.empty(0), np.empty(0)
-    own = dataset["missed_peak_output"].values == output
+    of_output = dataset["missed_peak_output"].values == output
     sign = np.sign(float(dataset["speed"].values[0]))
-    return sign * dataset["missed_peak_speed"].values[own], dataset["missed_peak_level"].values[own]
+    return sign * dataset["missed_peak_speed"].values[of_output], dataset["missed_peak_level"].values[of_output]
 
 
 def _mark_missed_peaks(axes: Any, speeds: FloatArray, values: FloatArray) -> None:
@@ -195,8 +197,8 @@ def _loudest_harmonics(dataset: xr.Dataset) -> list[str]:
         return []
     levels = dataset["mesh_harmonic_level"]
     highest = levels.max(dim=[name for name in levels.dims if name != "mesh_harmonic"]).values
-    known = np.flatnonzero(np.isfinite(highest))
-    ranked = known[np.argsort(-highest[known], kind="stable")][:_HARMONICS]
+    finite = np.flatnonzero(np.isfinite(highest))
+    ranked = finite[np.argsort(-highest[finite], kind="stable")][:_HARMONICS]
     return [str(name) for name in dataset["mesh_harmonic"].values[ranked]]
 
 
@@ -209,10 +211,10 @@ def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
     order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
     color = levels.ravel()[order]
     low = max(float(color.min()), float(color.max()) - _LOUD)
-    drawn = axes.scatter(
+    points = axes.scatter(
         at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=12.0, lw=0.0, zorder=3
     )
-    axes.figure.colorbar(drawn, cax=bar)
+    axes.figure.colorbar(points, cax=bar)
     bar.set_ylabel("sound power level [dB]", size=LABEL, color=INK)
     bar.yaxis.set_label_coords(3.6, 0.5)
     axes.set_ylabel("frequency [Hz]")
@@ -227,15 +229,15 @@ def _draw_mesh_orders(axes: Any, dataset: xr.Dataset, highest: float) -> None:
     """Draw the low multiples of each mesh frequency over the speed up to a frequency [Hz], numbered where they end."""
     speeds = _numbers(dataset, "speed")
     fastest = int(np.argmax(speeds))
-    drawn = set[float]()
+    drawn_orders = set[float]()
     for contact in dataset["contact"].values:
         mesh = dataset["mesh_frequency"].sel(contact=contact).transpose("speed").values
         for number in range(1, _ORDERS + 1):
             order = round(number * float(mesh[fastest] / speeds[fastest]), 9)
             end = min(float(speeds[fastest]), highest / order if order > 0.0 else 0.0)
-            if not order > 0.0 or order in drawn or end <= speeds.min():
+            if not order > 0.0 or order in drawn_orders or end <= speeds.min():
                 continue
-            drawn.add(order)
+            drawn_orders.add(order)
             axes.plot([0.0, end], [0.0, order * end], color=INK, lw=0.6, ls=(0, (4, 3)), alpha=0.5, zorder=1)
             axes.annotate(
                 f"{number}×",
@@ -318,7 +320,7 @@ def _numbers(data: xr.Dataset | xr.DataArray, along: str) -> Any:
 
 
 def _name_values(axis: Any, data: xr.Dataset, along: str) -> None:
-    """Words in place of numbers where the swept values are words."""
+    """Write words in place of numbers where the swept values are words."""
     values = data[along].values
     if values.dtype.kind not in "fiu":
         axis.set_ticks(range(len(values)), [str(value) for value in values])
@@ -345,6 +347,6 @@ def _described(dataset: xr.Dataset, place: dict[str, int]) -> list[str]:
     for name, index in place.items():
         value, unit = dataset[name].values[index], _unit(dataset, name)
         last = dataset[name].attrs.get("long_name", name).rpartition(".")[2]
-        shown = f"{value:g}" if dataset[name].dtype.kind in "fiu" else str(value)
-        texts.append(f"{last} {shown}{f' {unit}' if unit not in ('', '1') else ''}")
+        value_text = f"{value:g}" if dataset[name].dtype.kind in "fiu" else str(value)
+        texts.append(f"{last} {value_text}{f' {unit}' if unit not in ('', '1') else ''}")
     return texts

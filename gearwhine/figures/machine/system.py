@@ -1,6 +1,6 @@
 """Coupled system figures: Campbell diagram and transmissibility.
 
-In the Campbell diagram the modes are coloured by the part that moves, with shaft and mesh orders across. The
+The Campbell diagram colours modes by the part that moves, and shows shaft and mesh orders as lines. The
 transmissibility gives mesh forces, bearing forces and sensors per transmission error at one mesh, over frequency.
 """
 
@@ -59,14 +59,14 @@ KIND_COLORS = {
     "residual": "#c9ced3",
 }
 _PALE_GREY = "#c3c9ce"
-_HEIGHT = 105.0  # of the panel [mm]
+_HEIGHT = 105.0  # height of the panel [mm]
 _LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
 _MICROMETRE = 1e-6
-_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # of a panel and the room between two [mm]
-_DECADES = 4.0  # of amplitude that a panel shows at most
-_NAMED = 8  # curves that a panel tells apart by colour
-_COLUMNS = 4  # of their names above it
-_CAMPBELL_COLUMNS = 8  # of the kinds of modes below the Campbell diagram
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # height of a panel and gap between two [mm]
+_DECADES = 4.0  # decades of amplitude that a panel shows at most
+_NAMED = 8  # number of curves that a panel distinguishes by colour
+_COLUMNS = 4  # columns of their names above it
+_CAMPBELL_COLUMNS = 8  # columns of the kinds of modes below the Campbell diagram
 
 
 def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_speed: float | None = None) -> Figure:
@@ -74,12 +74,11 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    campbell
-        The diagram.
-    operating_speed
-        Of the leading rotor, rad/s, drawn as a line.
+    title : str
+        Title of the sheet.
+    campbell : SystemCampbell
+    operating_speed : float, optional
+        Speed of the leading rotor in operation, drawn as a line [rad/s].
     """
     note = (
         "lines: shaft orders (dotted), mesh orders (dashed); ● where a mesh order meets a mode, larger the more of its "
@@ -121,7 +120,7 @@ def draw_system_campbell(title: str, campbell: SystemCampbell, *, operating_spee
 
 
 def _draw_branches(axes: Axes, speeds: FloatArray, campbell: SystemCampbell) -> list[str]:
-    """Each branch in the colours of what moves in it; returns the kinds met, in the order of the colours."""
+    """Draw each branch in the colours of its kinds; return the kinds that occur, in the order of the colours."""
     met = set()
     for frequency, kinds in zip(campbell.frequencies_hz.T, campbell.kinds.T, strict=True):
         for run, kind in stretches(kinds.tolist()):
@@ -143,13 +142,13 @@ def _draw_line(axes: Axes, line: ExcitationLine, last: float) -> None:
 
 
 def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
-    for one in campbell.crossings:
-        place = (RPM * abs(one.speed), one.eigenvalue.imag / HERTZ)
-        color = KIND_COLORS.get(one.kind, INK)
-        if one.line.kind == "mesh" and one.kind != "residual":
-            area = 9.0 + _LARGEST * min(one.teeth, 1.0)
+    for crossing in campbell.crossings:
+        place = (RPM * abs(crossing.speed), crossing.eigenvalue.imag / HERTZ)
+        color = KIND_COLORS.get(crossing.kind, INK)
+        if crossing.line.kind == "mesh" and crossing.kind != "residual":
+            area = 9.0 + _LARGEST * min(crossing.teeth, 1.0)
             axes.scatter(*place, s=area, color=color, edgecolors="white", linewidths=0.4, zorder=4, label="crossing")
-        elif one.line.kind == "shaft" and one.kind == "rotor":
+        elif crossing.line.kind == "shaft" and crossing.kind == "rotor":
             axes.scatter(
                 *place, s=14.0, facecolors="white", edgecolors=color, linewidths=0.9, zorder=4, label="crossing"
             )
@@ -162,14 +161,14 @@ def draw_transmissibility(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    response
-        To a unit transmission error [1/m].
-    mesh_frequencies
-        At the speed of operation, Hz; they and their multiples are marked.
-    limit
-        End of the frequency axis, Hz; that of the response where not given.
+    title : str
+        Title of the sheet.
+    response : FrequencyResponse
+        Response to a unit transmission error [1/m].
+    mesh_frequencies : sequence of float
+        Mesh frequencies at the speed of operation [Hz]; they and their multiples are marked.
+    limit : float, optional
+        End of the frequency axis [Hz]; by default that of the response.
     """
     frequencies = response.frequencies / HERTZ
     resultants = {name: np.linalg.norm(force, axis=1) for name, force in response.bearing_force.items()}
@@ -178,19 +177,19 @@ def draw_transmissibility(
         ("bearing force [N/µm]", resultants),
         ("acceleration [m/s²/µm]", {name: np.abs(a) for name, a in response.sensor_acceleration.items()}),
     ]
-    shown = [(what, curves) for what, curves in panels if curves]
-    names = [legend_height(min(len(curves), _NAMED), _COLUMNS) for _, curves in shown]
+    quantities = [(quantity, curves) for quantity, curves in panels if curves]
+    names = [legend_height(min(len(curves), _NAMED), _COLUMNS) for _, curves in quantities]
     note = "peak amplitudes by a harmonic error of 1 µm alone at any frequency, without load shuttling"
     if len(mesh_frequencies):
         note += "; dashed: mesh frequencies at operation, and multiples"
-    figure = sheet(HEAD + len(shown) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + sum(names) + FOOT, title, note)
+    figure = sheet(HEAD + len(quantities) * (_RESPONSE_HEIGHT + _RESPONSE_GAP) + sum(names) + FOOT, title, note)
     end = limit or float(frequencies[-1])
     bottom = FOOT
-    for number, ((what, curves), above) in enumerate(zip(reversed(shown), reversed(names), strict=True)):
+    for number, ((quantity, curves), above) in enumerate(zip(reversed(quantities), reversed(names), strict=True)):
         axes = panel(figure, bottom, _RESPONSE_HEIGHT)
         bottom += _RESPONSE_HEIGHT + above + _RESPONSE_GAP
         _draw(axes, frequencies, curves, end)
-        axes.set_ylabel(what)
+        axes.set_ylabel(quantity)
         axes.set_xlim(0.0, end)
         for base in mesh_frequencies:
             for harmonic in range(1, int(end / base) + 1 if base > 0.0 else 1):
@@ -210,10 +209,10 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     for number, (name, values) in enumerate(curves.items()):
         size = _MICROMETRE * values
         top = max(top, float(size[inside].max(initial=0.0)))
-        drawn = axes.plot(
+        line = axes.plot(
             frequencies, size, color=SERIES[number % _NAMED], lw=1.0, label=name_in_legend(name, 24), zorder=3
         )
-        handles += drawn if number < _NAMED else []
+        handles += line if number < _NAMED else []
     if top > 0.0:
         least = min(
             float(_MICROMETRE * values[inside & (values > 0.0)].min(initial=np.inf)) for values in curves.values()
@@ -240,7 +239,7 @@ def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]
     ----------
     case : Case
     solved : SolvedSystem
-        Of the case.
+        Coupled system of the case.
 
     Yields
     ------
@@ -257,7 +256,7 @@ def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]
             draw_system_campbell("Coupled modes over speed", solved.campbell, operating_speed=speed),
         )
     meshes = [frequency for frequency in mesh_frequencies(case) if frequency > 0.0] if case.gear_pair else []
-    pairs = [one.excitation.removeprefix("transmission error of ") for one in solved.responses]
+    pairs = [response.excitation.removeprefix("transmission error of ") for response in solved.responses]
     # An arrow is no letter of a file's name.
     named = [name.replace(" -> ", "-") for name in pairs]
     for stem, name, response in zip(file_stems(named, "transmissibility-"), pairs, solved.responses, strict=True):

@@ -59,10 +59,10 @@ from housing.correlation.comparison import Comparison
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # of a panel, above it, and beside it for levels [mm]
-_ABOVE = 4.5  # of the first panel, for the name of its sensor [mm]
-_NAMED = 5  # lines of a sensor
-_LEAST = 1e-4  # of the highest line, below which none is named
+_HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # height of a panel, gap above it, and width beside it for levels [mm]
+_ABOVE = 4.5  # height above the first panel for the name of its sensor [mm]
+_NAMED = 5  # named lines of a sensor
+_LEAST = 1e-4  # part of the highest line below which no line is named
 
 
 def draw_sensor_spectra(
@@ -78,26 +78,25 @@ def draw_sensor_spectra(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    solved
-        The transient.
-    lines
-        Of each sensor, highest first.
-    mesh_frequencies
-        Hz; they and their multiples are marked.
-    marked
-        (n,): frequencies of modes, Hz.
-    marked_as
-        Names of the quantities.
+    title : str
+        Title of the sheet.
+    solved : SolvedTransient
+    lines : dict of str to tuple of TracedLine
+        Lines of each sensor, highest first.
+    mesh_frequencies : sequence of float
+        Mesh frequencies [Hz]; they and their multiples are marked.
+    marked : ndarray, shape (n,)
+        Frequencies of modes [Hz].
+    marked_as : str
+        Name of these modes in the legend.
     """
     width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
     named = {
-        name: [line for line in found if abs(line.value) >= _LEAST * abs(found[0].value)][:_NAMED]
-        for name, found in lines.items()
+        name: [line for line in sensor_lines if abs(line.value) >= _LEAST * abs(sensor_lines[0].value)][:_NAMED]
+        for name, sensor_lines in lines.items()
     }
     # A line stands at the same frequency for all sensors: its name stands once, above them all.
-    once = {_text(line): line for found in named.values() for line in found}
+    once = {_text(line): line for sensor_lines in named.values() for line in sensor_lines}
     labels = [Label(text, line.frequency, 1.0, _color(line)) for text, line in once.items()]
     row = arrange(labels, [label.x / limit * width for label in labels], width)
     count = len(solved.sensor_spectra)
@@ -154,21 +153,23 @@ def _color(line: TracedLine) -> str:
     return RED if line.named.kind == "mesh" else INK
 
 
-_LINES = 3  # of each sensor
-_PARTS = 6  # of each kind
-_BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, room for its name, and above a panel [mm]
+_LINES = 3  # lines of each sensor
+_PARTS = 6  # parts of each kind
+_BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, width of its name, and gap above a panel [mm]
 _MARGIN = 4.0
-_VISIBLE = 0.05  # percent, below which a part is next to nothing
+_VISIBLE = 0.05  # size below which a part counts as zero [%]
 
 
 def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> Figure:
-    """Draw the parts in phase with each line, in percent of it: those of modes, then those of bearings, largest first.
+    """Draw the parts of modes and of bearings in phase with each line, in percent of it, largest first.
 
-    Bars to the left work against the line. Beyond the largest parts of each kind there is a bar of all others.
+    Bars to the left work against the line. The smaller parts of each kind are one bar together.
     """
     width = (SHEET_WIDTH - 2.0 * _MARGIN) / 2.0 - _NAMES - 3.0
-    shown = [(name, line) for name, named in lines.items() for line in named[:_LINES]]
-    groups = [(name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in shown]
+    leading_lines = [(name, line) for name, named in lines.items() for line in named[:_LINES]]
+    groups = [
+        (name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in leading_lines
+    ]
     heights = [_BAR * max(len(modes), len(bearings)) for _, _, modes, bearings in groups]
     height = HEAD + FOOT + sum(heights) + _BARS_GAP * len(groups)
     note = f"{title}; parts in phase with the line, in percent of it; left: housing modes, right: bearings"
@@ -226,13 +227,13 @@ def _percent(share: float) -> str:
     return "0" if abs(share) < _VISIBLE else f"{share:.{0 if abs(share) >= 10.0 else 1}f}"
 
 
-_PERIODS = 6  # of the mesh that are drawn
-_FINE = 40  # points of a mesh period that a curve has at least
-_SMOOTH = 24  # the same of an orbit
-_EDGE = 10  # samples on either side that a curve between samples is made of
-_BETA = 8.0  # of Kaiser's window over them
-_ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and between two for axis and title [mm of paper]
-_FIRST = 5.0  # above the first row, for its titles [mm of paper]
+_PERIODS = 6  # mesh periods that are drawn
+_FINE = 40  # least number of a curve's points in a mesh period
+_SMOOTH = 24  # least number of an orbit's points in a mesh period
+_EDGE = 10  # samples on either side from which a point between samples is interpolated
+_BETA = 8.0  # parameter of Kaiser's window over them
+_ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and gap with axis and title between two [mm of paper]
+_FIRST = 5.0  # height of the first row's titles [mm of paper]
 
 
 def _rows_of_pairs(count: int, title: str, note: str, height: float = _ROW) -> tuple[Figure, list[tuple[Axes, Axes]]]:
@@ -243,32 +244,32 @@ def _rows_of_pairs(count: int, title: str, note: str, height: float = _ROW) -> t
 
 
 def between_samples(times: FloatArray, values: FloatArray, end: float, period: float) -> tuple[FloatArray, FloatArray]:
-    """Return a signal from its first sample to a time, with points enough to show its form in each period.
+    """Return a signal from its first sample to a time, with enough points to show its form in each period.
 
-    Samples too few for that are joined by the band-limited curve through them (Shannon's series, tapered by Kaiser's
-    window): no peak of the signal falls between two points, as it does where samples are joined by straight lines.
+    Too few samples are joined by the band-limited curve through them (Shannon's series, tapered by Kaiser's window), so
+    that no peak of the signal falls between two points, as it does where samples are joined by straight lines.
 
     Parameters
     ----------
-    times, values
-        (s,): evenly spaced [s], and the signal.
-    end
-        Up to which time it is drawn [s].
-    period
-        Of the signal [s].
+    times, values : ndarray, shape (s,)
+        Evenly spaced times [s], and the signal.
+    end : float
+        Time up to which the signal is drawn [s].
+    period : float
+        Period of the signal [s].
 
     Returns
     -------
-    times, values
-        (n,): the samples among them.
+    times, values : ndarray, shape (n,)
+        Times [s] and values, the samples among them.
     """
     interval = float(times[1] - times[0])
-    shown = int(np.searchsorted(times, end + 1e-9 * interval, side="right"))
+    n_samples = int(np.searchsorted(times, end + 1e-9 * interval, side="right"))
     factor = int(np.ceil(_FINE * interval / period))
-    if factor <= 1 or shown < 2:
-        return times[:shown], values[:shown]
-    count = factor * (shown - 1) + 1
-    return times[0] + interval / factor * np.arange(count), _refined(values[: shown + _EDGE], factor)[:count]
+    if factor <= 1 or n_samples < 2:
+        return times[:n_samples], values[:n_samples]
+    count = factor * (n_samples - 1) + 1
+    return times[0] + interval / factor * np.arange(count), _refined(values[: n_samples + _EDGE], factor)[:count]
 
 
 def _refined(values: FloatArray, factor: int) -> FloatArray:
@@ -281,19 +282,19 @@ def _refined(values: FloatArray, factor: int) -> FloatArray:
     where w is Kaiser's window.
     """
     reach = min(_EDGE, len(values) - 1)
-    # Mirrored about its ends, so that these are met without ringing; beyond what a short one has, nothing.
+    # The signal is mirrored about its ends against ringing; beyond the mirrored samples of a short one it is zero.
     begin, after = values[1 : reach + 1][::-1], values[-reach - 1 : -1][::-1]
     nothing = np.zeros((_EDGE - reach, *values.shape[1:]))
     whole = np.concatenate([nothing, 2.0 * values[:1] - begin, values, 2.0 * values[-1:] - after, nothing])
-    # Not scipy.signal.resample_poly, which does the same: that import takes longer than to draw a figure.
+    # scipy.signal.resample_poly does the same, but importing it takes longer than drawing a figure.
     taps = np.sinc(np.arange(-_EDGE * factor, _EDGE * factor + 1) / factor) * np.kaiser(2 * _EDGE * factor + 1, _BETA)
     taps *= factor / taps.sum()
-    found = np.zeros((factor * (len(values) - 1) + 1, *values.shape[1:]))
-    found[::factor] = values
+    refined = np.zeros((factor * (len(values) - 1) + 1, *values.shape[1:]))
+    refined[::factor] = values
     between = sliding_window_view(whole, 2 * _EDGE, axis=0)[1 : len(values)]
     for part in range(1, factor):
-        found[part::factor] = between @ taps[part::factor][::-1]
-    return found
+        refined[part::factor] = between @ taps[part::factor][::-1]
+    return refined
 
 
 def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, float], *, note: str = "") -> Figure:
@@ -301,29 +302,29 @@ def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, 
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    histories
-        With friction.
-    mesh_frequencies
-        Of the contacts, Hz.
-    note
-        Below the title.
+    title : str
+        Title of the sheet.
+    histories : Histories
+        Histories with friction.
+    mesh_frequencies : dict of str to float
+        Mesh frequencies of the contacts [Hz].
+    note : str
+        Note below the title.
     """
-    shown = {name: found for name, found in histories.mesh_friction.items() if name in mesh_frequencies}
-    figure, rows = _rows_of_pairs(len(shown), title, note)
-    for (left, right), (name, found) in zip(rows, shown.items(), strict=True):
+    records = {name: record for name, record in histories.mesh_friction.items() if name in mesh_frequencies}
+    figure, rows = _rows_of_pairs(len(records), title, note)
+    for (left, right), (name, record) in zip(rows, records.items(), strict=True):
         period = 1.0 / mesh_frequencies[name]
-        mean = float(np.mean(found[:, 1]))
-        for axes, column, color, what in (
+        mean = float(np.mean(record[:, 1]))
+        for axes, column, color, quantity in (
             (left, 0, BLUE, "friction force [N]"),
             (right, 1, RED, "power that friction takes [W]"),
         ):
             times, values = between_samples(
-                histories.times - histories.times[0], found[:, column], _PERIODS * period, period
+                histories.times - histories.times[0], record[:, column], _PERIODS * period, period
             )
-            axes.plot(MILLI * times, values, color=color, lw=1.0, label=f"_{what}")
-            axes.set(xlabel="time [ms]", ylabel=what, xlim=(0.0, MILLI * _PERIODS * period))
+            axes.plot(MILLI * times, values, color=color, lw=1.0, label=f"_{quantity}")
+            axes.set(xlabel="time [ms]", ylabel=quantity, xlim=(0.0, MILLI * _PERIODS * period))
         left.axhline(0.0, color=GREY, lw=0.6)
         right.axhline(mean, color=GREY, lw=0.8, ls="--")
         panel_title(left, f"{name}: across the line of action")
@@ -331,22 +332,21 @@ def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, 
     return figure
 
 
-_MODES = 4  # that a panel tells apart
-_LONGEST = 6000  # points of a curve
-_LEGEND_BAND = 3.4  # of the legend's line for a mode above a panel [mm of paper]
+_MODES = 4  # largest number of modes in a panel
+_LONGEST = 6000  # largest number of points of a curve
+_LEGEND_BAND = 3.4  # height of a legend's line for a mode [mm of paper]
 
 
 def outlined(times: FloatArray, values: FloatArray, most: int) -> tuple[FloatArray, FloatArray]:
-    """Return a signal in at most so many points: of each stretch the least and the largest sample, in their order.
+    """Return a signal in at most ``most`` points: of each stretch the least and the largest sample, in their order.
 
-    A picture of these is that of all samples; every tenth of them would show frequencies that the signal has not.
+    A picture of these looks like that of all samples; every tenth sample would show aliases.
 
     Parameters
     ----------
-    times, values
-        (s,) each.
-    most
-        Points, 2 or more.
+    times, values : ndarray, shape (s,)
+    most : int
+        Number of points, 2 or more.
     """
     if times.size <= most:
         return times, values
@@ -368,22 +368,22 @@ def draw_modal_coordinates(
     *,
     note: str = "",
 ) -> Figure:
-    """Draw each kind of coordinates of each part: left over time, right their spectra without the d.c. part.
+    """Draw the coordinates of each part by kind: over time at the left, their spectra without mean at the right.
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    times
-        (s,): s, evenly spaced.
-    coordinates
-        (s,) each, named ``part: kind number``, with an axis after a comma.
-    limit
-        Of the frequency axis, Hz.
-    window
-        Of the spectra.
-    note
-        Below the title.
+    title : str
+        Title of the sheet.
+    times : ndarray, shape (s,)
+        Evenly spaced times [s].
+    coordinates : mapping of str to ndarray, shape (s,)
+        Coordinates by names ``part: kind number``, with an axis after a comma.
+    limit : float
+        Limit of the frequency axis [Hz].
+    window : Window
+        Window of the spectra.
+    note : str
+        Note below the title.
     """
     groups: dict[str, dict[str, FloatArray]] = {}
     for name, values in coordinates.items():
@@ -401,9 +401,9 @@ def draw_modal_coordinates(
             at, outline = outlined(times - times[0], values, _LONGEST)
             left.plot(MILLI * at, outline, color=color, lw=0.7, label=label)
             spectrum = amplitude_spectrum(values, interval, window)
-            shown = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
-            right.plot(spectrum.frequencies[shown], spectrum.amplitude[shown], color=color, lw=0.8)
-            top = max(top, float(spectrum.amplitude[shown].max(initial=0.0)))
+            inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
+            right.plot(spectrum.frequencies[inside], spectrum.amplitude[inside], color=color, lw=0.8)
+            top = max(top, float(spectrum.amplitude[inside].max(initial=0.0)))
         if top > 0.0:
             right.set_yscale("log")
             right.set_ylim(1e-5 * top, 3.0 * top)
@@ -412,8 +412,8 @@ def draw_modal_coordinates(
         left.legend(fontsize=NOTE, frameon=False, loc="upper left", borderaxespad=0.2, handlelength=1.6)
         # Room for the legend above the curves.
         low, high = left.get_ylim()
-        taken = _LEGEND_BAND * min(len(group), _MODES) / _ROW
-        left.set_ylim(low, low + (high - low) / (1.0 - taken))
+        legend_part = _LEGEND_BAND * min(len(group), _MODES) / _ROW
+        left.set_ylim(low, low + (high - low) / (1.0 - legend_part))
         panel_title(left, f"{name} over time")
         panel_title(right, "peak amplitudes")
         left.set_xlabel("time [ms]")
@@ -421,8 +421,8 @@ def draw_modal_coordinates(
     return figure
 
 
-_ORBIT_ROWS = 20.0  # between both rows, for an axis and a title of two lines [mm]
-_ORBITS_IN_ROW, _ORBIT_GAP, _LARGEST_ORBIT = 4, 11.0, 56.0  # panels beside each other, room between, largest side [mm]
+_ORBIT_ROWS = 20.0  # gap between both rows, for an axis and a title of two lines [mm]
+_ORBITS_IN_ROW, _ORBIT_GAP, _LARGEST_ORBIT = 4, 11.0, 56.0  # panels in a row, gap between them, largest side [mm]
 
 
 def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = "", refined: int = 1) -> Figure:
@@ -430,13 +430,13 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    motions
-        x, y of each gear's centre [m] in the first columns, shape (s, 2 or more). Gears of a row have one scale.
-    note
+    title : str
+        Title of the sheet.
+    motions : mapping of str to ndarray, shape (s, 2 or more)
+        Motion of each gear's centre, x and y in the first columns [m]. Gears of a row have one scale.
+    note : str
         Begin of the note below the title.
-    refined
+    refined : int
         Points drawn for each sample, on the band-limited curve through them.
     """
     orbits = {
@@ -447,9 +447,11 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
     bands = -(-len(orbits) // columns)
     side = min((PANEL_WIDTH - (columns - 1) * _ORBIT_GAP) / columns, _LARGEST_ORBIT)
     height = 2.0 * side + _ORBIT_ROWS
-    told = "above: from where the shaft stands without load; below: enlarged about the mean"
+    legend_text = "above: from where the shaft stands without load; below: enlarged about the mean"
     figure = sheet(
-        HEAD + _FIRST + bands * height + (bands - 1) * _ROW_GAP + FOOT, title, f"{note}; {told}" if note else told
+        HEAD + _FIRST + bands * height + (bands - 1) * _ROW_GAP + FOOT,
+        title,
+        f"{note}; {legend_text}" if note else legend_text,
     )
     reach = [1.12 * max(float(np.abs(orbit).max()) for orbit in orbits.values()) or 1.0, 0.0]
     reach[1] = 1.12 * max(float(np.abs(orbit - orbit.mean(axis=0)).max()) for orbit in orbits.values()) or 1.0
@@ -477,7 +479,7 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
                 axes.set_ylabel("y [µm]")
         above.set_title(shortened(name, 20), fontsize=LABEL, loc="left", pad=3.0, parse_math=False)
         swing = 0.5 * np.ptp(orbit, axis=0)
-        # Of the mean as many digits as can be seen.
+        # The mean has as many digits as can be seen.
         digits = max(0, 2 - int(np.floor(np.log10(reach[0]))))
         mean = ", ".join(f"{part:z.{digits}f}" for part in center)
         about = f"mean {mean} µm\n± {plain(swing[0], 2)}, {plain(swing[1], 2)} µm"
@@ -485,7 +487,7 @@ def draw_orbits(title: str, motions: Mapping[str, FloatArray], *, note: str = ""
     return figure
 
 
-_ORBIT_SAMPLES = 1 << 14  # of a long record: a path of hundreds of thousands takes long to draw, and memory
+_ORBIT_SAMPLES = 1 << 14  # samples drawn of a long record: hundreds of thousands take long to draw, and memory
 
 
 def draw_transient(
@@ -495,7 +497,7 @@ def draw_transient(
     housing: SolvedHousing | None,
     comparison: Comparison | None,
 ) -> Iterator[tuple[str, Figure]]:
-    """Draw what a transient shows: yields the name of each figure, such as ``spectrum``, and the figure."""
+    """Draw the figures of a transient: yield the name of each, such as ``spectrum``, and the figure."""
     lines: dict[str, tuple[TracedLine, ...]] = dict.fromkeys(solved.sensor_spectra, ())
     if signature is not None:
         lines = signature.lines
@@ -505,8 +507,8 @@ def draw_transient(
     marks = meshes if solved.turning is None else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
-        found = "dominant" if comparison is None or comparison.shapes is None else "measured"
-        legend = "housing modes" if comparison is None else f"{found} housing modes"
+        kind = "dominant" if comparison is None or comparison.shapes is None else "measured"
+        legend = "housing modes" if comparison is None else f"{kind} housing modes"
         heading = f"{case.title}, {speed}"
         spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
         yield "spectrum", spectra
@@ -554,13 +556,13 @@ def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) 
     times = solved.histories.times
     figure, rows = _rows_of_pairs(len(drives), "Gear-mesh force", f"{case.title}, {_speed(case, solved)}")
     for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
-        period, what = 1.0 / frequency, "six mesh periods"
+        period, span = 1.0 / frequency, "six mesh periods"
         if solved.turning is not None:
-            what = f"its first {_PERIODS * MILLI * period:.3g} ms"
+            span = f"its first {_PERIODS * MILLI * period:.3g} ms"
         at, force = between_samples(times - times[0], solved.histories.mesh_force[name], _PERIODS * period, period)
         left.plot(MILLI * at, force, color=BLUE, lw=1.0)
         left.set(xlabel="time [ms]", ylabel="mesh force [N]", xlim=(0.0, MILLI * _PERIODS * period))
-        panel_title(left, f"{name}: {what}")
+        panel_title(left, f"{name}: {span}")
         limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         draw_lines(right, solved.force_spectra[name], limit)
         if solved.turning is None:

@@ -34,20 +34,20 @@ from rotors import Segment as RotorSegment
 FloatArray = npt.NDArray[np.float64]
 
 _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
-_MODES = 6  # drawn of each kind
+_MODES = 6  # modes drawn of each kind
 
 
 def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
-    """Draw each rotor: the shaft, its modes, its whirl at speed, and what its analyses gave.
+    """Draw each rotor: the shaft, its modes, its whirl at speed, and the results of its analyses.
 
     These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
-    deflection, each where the case has what it takes.
+    deflection, each where it is solved.
 
     Parameters
     ----------
     case : Case
     solved : sequence of SolvedRotor
-        Of the case.
+        Rotors of the case.
     progress : callable
         Receives the name of the rotor being drawn.
 
@@ -57,17 +57,17 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
         Name of the figure: ``rotor-NAME-shaft`` and so on.
     matplotlib.figure.Figure
     """
-    stems = file_stems([one.rotor.name for one in solved], "rotor-")
-    for stem, one in zip(stems, solved, strict=True):
-        progress(f"drawing rotor {one.rotor.name}")
-        for kind, figure in _figures(case, one):
+    stems = file_stems([rotor.rotor.name for rotor in solved], "rotor-")
+    for stem, rotor in zip(stems, solved, strict=True):
+        progress(f"drawing rotor {rotor.rotor.name}")
+        for kind, figure in _figures(case, rotor):
             yield f"{stem}-{kind}", figure
 
 
 def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> RotorAssembly:
     """Return the assembly of a rotor of a case as it is drawn: its gears by their size rather than as discs."""
     name = rotor.name
-    given = case.rotor_named(name)
+    entry = case.rotor_named(name)
     gears = []
     for gear in case.gear:
         if gear.rotor != name or gear.at is None:
@@ -87,104 +87,109 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
         )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
     # The materials of a rotor's own file have no names in the case.
-    rows = zip(rotor.segments, given.segments, strict=True) if given.saved is None else ()
+    rows = zip(rotor.segments, entry.segments, strict=True) if entry.saved is None else ()
     return RotorAssembly(
         rotor=rotor,
         bearings=bearings,
         gears=gears,
-        unbalances=[DrawnUnbalance(one.at, one.moment, one.phase) for one in given.unbalance],
+        unbalances=[DrawnUnbalance(mass.at, mass.moment, mass.phase) for mass in entry.unbalance],
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
         materials={
-            part.material: segment.material or given.material or ""
+            part.material: segment.material or entry.material or ""
             for part, segment in rows
             if isinstance(part, RotorSegment) and isinstance(segment, Segment)
         },
     )
 
 
-def _figures(case: Case, one: SolvedRotor) -> list[tuple[str, Figure]]:
-    assembly = rotor_assembly(case, one.rotor, one.bearings)
+def _figures(case: Case, solved: SolvedRotor) -> list[tuple[str, Figure]]:
+    assembly = rotor_assembly(case, solved.rotor, solved.bearings)
     figures = [
         ("shaft", draw_shaft(assembly)),
-        ("modes", draw_lateral_modes(assembly, one.lateral, most=_MODES)),
-        ("torsion", draw_torsional_modes(assembly, one.torsional, most=_MODES)),
+        ("modes", draw_lateral_modes(assembly, solved.lateral, most=_MODES)),
+        ("torsion", draw_torsional_modes(assembly, solved.torsional, most=_MODES)),
     ]
-    operation = one.operation
-    if operation is not None and one.whirl[0].frequencies.size:
-        figures.append(("whirl", draw_whirl_modes(assembly, one.whirl[0], most=_MODES)))
-    critical, directions = _critical_speeds(one)
-    name = f"Rotor {shortened(one.rotor.name, 20)}"
-    if one.campbell is not None and one.campbell.speeds.size > 1 and one.campbell.eigenvalues.size:
-        crossed, senses, orders = _with_other_orders(one, critical, directions)
+    operation = solved.operation
+    if operation is not None and solved.whirl[0].frequencies.size:
+        figures.append(("whirl", draw_whirl_modes(assembly, solved.whirl[0], most=_MODES)))
+    critical, directions = _critical_speeds(solved)
+    name = f"Rotor {shortened(solved.rotor.name, 20)}"
+    if solved.campbell is not None and solved.campbell.speeds.size > 1 and solved.campbell.eigenvalues.size:
+        crossed, senses, orders = _with_other_orders(solved, critical, directions)
         campbell = draw_campbell(
             f"{name}: Campbell diagram",
-            one.campbell,
+            solved.campbell,
             critical_speeds=crossed,
             critical_directions=senses,
             critical_orders=orders,
-            orders=sorted({1.0, *one.orders}),
+            orders=sorted({1.0, *solved.orders}),
             operating_speed=operation,
         )
         figures.append(("campbell", campbell))
-    if one.stiffness_map is not None:
+    if solved.stiffness_map is not None:
         sheet = draw_critical_map(
             f"{name}: undamped critical-speed map",
-            one.stiffness_map.stiffnesses,
-            one.stiffness_map.speeds,
-            bearings=one.bearings,
+            solved.stiffness_map.stiffnesses,
+            solved.stiffness_map.speeds,
+            bearings=solved.bearings,
             operating_speed=operation,
-            whirl="forward" if one.stiffness_map.direction > 0 else "backward",
+            whirl="forward" if solved.stiffness_map.direction > 0 else "backward",
         )
         figures.append(("critical-map", sheet))
-    if one.torsion is not None and one.torsion.response.frequencies.size > 1:
+    if solved.torsion is not None and solved.torsion.response.frequencies.size > 1:
         read = [
-            TorsionalReading(each.probe.name, np.abs(each.angle), np.abs(each.torque)) for each in one.torsion.readings
+            TorsionalReading(reading.probe.name, np.abs(reading.angle), np.abs(reading.torque))
+            for reading in solved.torsion.readings
         ]
         swing = draw_torsional_response(
             f"{name}: torsional response",
-            one.torsion.response.frequencies,
+            solved.torsion.response.frequencies,
             read,
-            natural_frequencies=one.torsional.frequencies[one.torsional.frequencies > 0.0],
+            natural_frequencies=solved.torsional.frequencies[solved.torsional.frequencies > 0.0],
         )
         figures.append(("torsional-response", swing))
-    if one.response is not None and one.response.response.speeds.size > 1:
-        readings = [ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in one.response.readings]
+    if solved.response is not None and solved.response.response.speeds.size > 1:
+        readings = [
+            ProbeResponse(read.probe.name, read.amplitude, read.major_axis) for read in solved.response.readings
+        ]
         running = None if operation is None else (abs(operation), abs(operation))
         response = draw_unbalance_response(
-            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(one.rotor.name).bow else ""),
-            np.abs(one.response.response.speeds),
+            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(solved.rotor.name).bow else ""),
+            np.abs(solved.response.response.speeds),
             readings,
             critical_speeds=critical[directions > _CIRCULAR_BACKWARD],
             operating_range=running,
         )
         figures.append(("unbalance", response))
-    if not isinstance(one.weight, str):
-        # What the bearings carry presses on them; the arrows show what holds the rotor.
-        holding = -one.weight.deflection.bearing_loads[:, :2]
-        sheet = draw_static_deflection(assembly, one.weight.places, one.weight.displacement.T, holding)
+    if not isinstance(solved.weight, str):
+        # The loads act on the bearings; the arrows show the reactions on the rotor.
+        holding = -solved.weight.deflection.bearing_loads[:, :2]
+        sheet = draw_static_deflection(assembly, solved.weight.places, solved.weight.displacement.T, holding)
         figures.append(("static", sheet))
     return figures
 
 
 def _with_other_orders(
-    one: SolvedRotor, critical: FloatArray, directions: FloatArray
+    solved: SolvedRotor, critical: FloatArray, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Critical speeds of once a revolution, their senses and orders, followed by those of the other orders."""
-    assert one.campbell is not None
-    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
-    more = [each for found in one.orders.values() if not isinstance(found, str) for each in found]
+    """Return critical speeds of order 1, then of the other orders, with their senses and orders."""
+    assert solved.campbell is not None
+    sense = -1.0 if solved.campbell.speeds.min() < 0.0 else 1.0
+    more = [
+        crossing for crossings in solved.orders.values() if not isinstance(crossings, str) for crossing in crossings
+    ]
     return (
-        np.array([*critical, *(abs(each.speed) for each in more)]),
-        np.array([*directions, *(sense * each.direction for each in more)]),
-        np.array([1.0] * critical.size + [each.order for each in more]),
+        np.array([*critical, *(abs(crossing.speed) for crossing in more)]),
+        np.array([*directions, *(sense * crossing.direction for crossing in more)]),
+        np.array([1.0] * critical.size + [crossing.order for crossing in more]),
     )
 
 
-def _critical_speeds(one: SolvedRotor) -> tuple[FloatArray, FloatArray]:
-    """Critical speeds and their directions: damped, where the Campbell diagram meets 1×, or else undamped."""
-    if one.campbell is None or isinstance(one.crossings, str):
-        return one.critical.speeds, one.critical.direction
-    sense = -1.0 if one.campbell.speeds.min() < 0.0 else 1.0
-    speeds = np.array([abs(crossing.speed) for crossing in one.crossings])
-    return speeds, sense * np.array([crossing.direction for crossing in one.crossings])
+def _critical_speeds(solved: SolvedRotor) -> tuple[FloatArray, FloatArray]:
+    """Return critical speeds and their directions: damped, where the Campbell diagram meets 1×, or else undamped."""
+    if solved.campbell is None or isinstance(solved.crossings, str):
+        return solved.critical.speeds, solved.critical.direction
+    sense = -1.0 if solved.campbell.speeds.min() < 0.0 else 1.0
+    speeds = np.array([abs(crossing.speed) for crossing in solved.crossings])
+    return speeds, sense * np.array([crossing.direction for crossing in solved.crossings])

@@ -12,9 +12,9 @@ _THINNEST = 1e-6
 
 @dataclass(frozen=True)
 class DrawnGear:
-    """A gear's outline, m: where its middle is, its face width, its diameters; and what it is called.
+    """Outline of a gear: its name, the place of its middle, its face width and its diameters [m].
 
-    ``disc`` is the one of the rotor's discs that carries its inertia, which is then not drawn beside it.
+    ``disc`` is the disc of the rotor that carries its inertia, which is then not drawn beside it.
     """
 
     name: str
@@ -29,7 +29,7 @@ class DrawnGear:
 
 @dataclass(frozen=True)
 class DrawnUnbalance:
-    """An unbalance: its place (m), mass times eccentricity (kg·m) and angle from x (rad)."""
+    """An unbalance: its place [m], mass times eccentricity [kg·m] and angle from x [rad]."""
 
     at: float
     moment: float
@@ -38,7 +38,7 @@ class DrawnUnbalance:
 
 @dataclass(frozen=True)
 class DrawnProbe:
-    """A displacement probe: its name, its place (m) and the angle from x (rad) that it looks along."""
+    """A displacement probe: its name, its place [m] and its angle from x [rad]."""
 
     name: str
     at: float
@@ -51,17 +51,16 @@ class RotorAssembly:
 
     Parameters
     ----------
-    rotor
-        Segments and shaft couplings to scale; its discs as the rings that have their inertias.
-    bearings
-        Bearings.
-    gears, unbalances, probes
-        Gears, unbalances and probes on it.
-    rolling
+    rotor : Rotor
+        Segments and shaft couplings are drawn to scale, its discs as the rings that have their inertias.
+    bearings : sequence of Bearing
+    gears, unbalances, probes : sequence
+        Gears, unbalances and probes on the rotor.
+    rolling : collection of str
         Names of the bearings drawn with the sign of a rolling bearing; the others are springs.
-    seats
-        Seat of each bearing, by the bearing's name; the others stand on the ground or on their pedestal.
-    materials
+    seats : mapping of str to str
+        Seat of each bearing by the bearing's name; the others stand on the ground or on their pedestal.
+    materials : mapping of ElasticMaterial to str
         Names of the segments' materials; a material without a name is shown by modulus and density.
     """
 
@@ -81,15 +80,15 @@ class RotorAssembly:
 
     @property
     def discs(self) -> list[Disc]:
-        """The rotor's discs that are drawn as such: those that no gear stands for."""
-        left = list(self.rotor.discs)
+        """Discs of the rotor that are drawn as discs: those that no gear stands for."""
+        remaining = list(self.rotor.discs)
         for gear in self.gears:
-            if gear.disc in left:
-                left.remove(gear.disc)
-        return left
+            if gear.disc in remaining:
+                remaining.remove(gear.disc)
+        return remaining
 
     def shaft_radius(self, at: float) -> float:
-        """Outer radius of the shaft at a place (m); of two that meet there, the larger one."""
+        """Return the outer radius of the shaft at a place [m]; where two meet, the larger one."""
         slack = 1e-9 * self.rotor.length
         radii = [
             _radius_in(part, (at - left) / part.length)
@@ -100,20 +99,20 @@ class RotorAssembly:
 
     @property
     def largest_shaft_radius(self) -> float:
-        """Outer radius where the shaft is thickest, m; of a row of couplings alone, half the mean length of one."""
+        """Largest outer radius of the shaft [m]; of a row of couplings alone, half the mean length of one."""
         ends = [outer for part in self.parts if isinstance(part, Segment) for outer, _ in part.end_diameters]
         return 0.5 * max(ends) if ends else 0.5 * self.rotor.length / len(self.parts)
 
     @property
     def largest_radius(self) -> float:
-        """Largest radius of anything on the rotor, m."""
+        """Largest radius of anything on the rotor [m]."""
         rings = [ring for disc in self.discs if (ring := self.ring(disc)) is not None]
         return max(
             [self.largest_shaft_radius, *(radius for radius, _ in rings), *(0.5 * g.tip_diameter for g in self.gears)]
         )
 
     def outer_radius(self, at: float) -> float:
-        """Radius of the largest thing on the rotor that covers a place (m)."""
+        """Return the radius of the largest part on the rotor that covers a place [m]."""
         radii = [self.shaft_radius(at)]
         for disc in self.discs:
             ring = self.ring(disc)
@@ -124,7 +123,7 @@ class RotorAssembly:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Where the drawing begins and ends along the axis, m: the shaft, and discs and gears that stand out."""
+        """Ends of the drawing along the axis [m]: of the shaft, and of discs and gears beyond it."""
         widths = [(disc.at, ring[1]) for disc in self.discs if (ring := self.ring(disc)) is not None]
         widths += [(gear.at, gear.face_width) for gear in self.gears]
         return (
@@ -133,7 +132,7 @@ class RotorAssembly:
         )
 
     def ring(self, disc: Disc) -> tuple[float, float] | None:
-        """Outer radius and width (m) of the uniform ring round the shaft that has a disc's mass and inertias.
+        """Return outer radius and width [m] of the uniform ring round the shaft that has a disc's mass and inertias.
 
         A ring of bore radius r has I_p = m (R² + r²) / 2 and I_d = I_p / 2 + m h² / 12, so that
         R² = 2 I_p / m − r² and h² = 12 (I_d − I_p / 2) / m. A disc that is thinner than any, or given without

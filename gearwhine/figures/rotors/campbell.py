@@ -40,12 +40,12 @@ from rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
 
 FloatArray = npt.NDArray[np.float64]
 
-# Below this part of a circular whirl the sense is no longer that of the mode as a whole.
+# Below this part of a circular whirl a mode as a whole has no sense.
 PLANAR = 0.05
-_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # of both panels and the room between them [mm of paper]
-_BRANCHES = 6  # lowest branches that are shown at least
-_ABOVE = 1.6  # the highest order's frequency at top speed takes this part of the axis
-_ALMOST_ALL = 0.9  # of the decrements are on their axis
+_HEIGHT, _DAMPING_HEIGHT, _BETWEEN = 78.0, 32.0, 4.0  # heights of both panels and gap between them [mm of paper]
+_BRANCHES = 6  # least number of lowest branches that are shown
+_ABOVE = 1.6  # top of the frequency axis over the highest order's frequency at top speed
+_ALMOST_ALL = 0.9  # part of the decrements that their axis shows
 
 
 @dataclass(frozen=True)
@@ -79,10 +79,10 @@ def sense_of(direction: float, axial_share: float = 0.0) -> Sense:
 
 
 def with_rotation(directions: npt.ArrayLike, speeds: npt.ArrayLike) -> FloatArray:
-    """Directions about +z, (s, ...), as directions in the sense of rotation at speeds (s,); at rest as they are."""
+    """Return directions about +z, (s, ...), in the sense of rotation at speeds (s,); at rest as they are."""
     values, turning = np.asarray(directions, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
     sign = np.where(turning < 0.0, -1.0, 1.0)
-    # A run-up against +z begins at rest, and the sense of its rest is that of its run.
+    # A run-up against +z begins at rest, where it has the sense of the run.
     if bool((turning <= 0.0).all()) and bool((turning < 0.0).any()):
         sign = -np.ones_like(turning)
     return np.asarray(values * sign.reshape(-1, *(1,) * (values.ndim - 1)))
@@ -112,21 +112,20 @@ def draw_campbell(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    diagram
-        Of :func:`rotors.campbell`, at two or more speeds of one sign, ascending or descending.
-    critical_speeds, critical_directions
-        (c,): rad/s, and 1 forward to −1 backward in the sense of rotation.
-    critical_orders
-        (c,), or one of all: the multiple of the speed on whose line they are marked.
-    orders
+    title : str
+        Title of the sheet.
+    diagram : Campbell
+        Diagram of :func:`rotors.campbell`, at two or more speeds of one sign, ascending or descending.
+    critical_speeds, critical_directions : array_like, shape (c,)
+        Critical speeds [rad/s], and their directions, 1 forward to −1 backward in the sense of rotation.
+    critical_orders : array_like, shape (c,) or ()
+        Multiples of the speed on whose lines they are marked.
+    orders : sequence of float
         Multiples of the speed of rotation that are drawn as lines.
-    operating_speed
-        rad/s, drawn as a line.
-    frequency_limit
-        Top of the frequency axis, rad/s; where not given, it shows the lowest six branches and all that the
-        orders cross.
+    operating_speed : float, optional
+        Speed of operation, drawn as a line [rad/s].
+    frequency_limit : float, optional
+        Top of the frequency axis [rad/s]; by default it shows the lowest six branches and all that the orders cross.
 
     Raises
     ------
@@ -140,13 +139,13 @@ def draw_campbell(
     ratios, axial = diagram.damping_ratios[order], diagram.axial_share[order]
     senses = with_rotation(diagram.direction, diagram.speeds)[order]
     if turning[0] == 0.0:
-        # At rest a whirl has no sense of its own; the shapes of double roots are then any.
+        # At rest a whirl has no sense, and the shapes of double roots are arbitrary.
         senses[0] = senses[1]
     top = frequency_limit or _top(turning, values, orders)
     low, high = float(turning[0]), float(turning[-1])
     # A branch that never comes below the top of the axis has no place in the damping either.
-    shown = np.flatnonzero((np.nan_to_num(values, nan=np.inf) < top).any(axis=0))
-    values, ratios, senses, axial = values[:, shown], ratios[:, shown], senses[:, shown], axial[:, shown]
+    branches = np.flatnonzero((np.nan_to_num(values, nan=np.inf) < top).any(axis=0))
+    values, ratios, senses, axial = values[:, branches], ratios[:, branches], senses[:, branches], axial[:, branches]
 
     multiples = np.broadcast_to(critical_orders, np.shape(np.atleast_1d(critical_speeds)))
     criticals = _criticals(critical_speeds, critical_directions, multiples, low, high, top)
@@ -188,31 +187,31 @@ def draw_campbell(
         axes.tick_params(labelbottom=False)
     lowest.set_xlabel("speed of rotation [rpm]")
     handles = legend_lines(met)
-    for each in {axes, lowest}:
+    for any_axes in {axes, lowest}:
         if operating_speed is not None:
-            handles = [*legend_lines(met), mark_operation(each, operating_speed, ":")]
+            handles = [*legend_lines(met), mark_operation(any_axes, operating_speed, ":")]
         if onset is not None:
-            each.axvspan(RPM * onset[0], RPM * high, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="unstable")
+            any_axes.axvspan(RPM * onset[0], RPM * high, color=GREY, alpha=0.14, lw=0.0, zorder=0.2, label="unstable")
     legend(figure, handles)
     return figure
 
 
 def _top(speeds: FloatArray, frequencies: FloatArray, orders: Sequence[float]) -> float:
-    """Top of the frequency axis: the lowest branches whole, and all that the orders cross; rad/s."""
+    """Return the top of the frequency axis, above the lowest branches and all crossings of the orders [rad/s]."""
     highest = np.sort(np.where(np.isnan(frequencies), -np.inf, frequencies).max(axis=0))
     highest = highest[highest > 0.0]
     if not highest.size:
         return max(orders, default=1.0) * float(speeds[-1]) or 1.0
-    wanted = max(
+    top = max(
         _ABOVE * max(orders, default=0.0) * float(speeds[-1]), 1.05 * float(highest[min(_BRANCHES, highest.size) - 1])
     )
-    return min(wanted, 1.05 * float(highest[-1]))
+    return min(top, 1.05 * float(highest[-1]))
 
 
 def _criticals(
     speeds: npt.ArrayLike, directions: npt.ArrayLike, orders: npt.ArrayLike, low: float, high: float, top: float
 ) -> list[tuple[float, Sense, float]]:
-    """Critical speeds within the diagram, each with its sense and the order that it is of."""
+    """Return the critical speeds within the diagram, each with its sense and its order."""
     rows = zip(*(np.atleast_1d(values).tolist() for values in (speeds, directions, orders)), strict=True)
     return [
         (speed, sense_of(direction), order)
@@ -226,7 +225,7 @@ def _draw_branches(
 ) -> list[Sense]:
     """Draw each branch, (s, w), in the colours and lines of its senses; returns the senses."""
     met = []
-    middles = [0.5 * (each[1:] + each[:-1]).T for each in (directions, axial)]
+    middles = [0.5 * (table[1:] + table[:-1]).T for table in (directions, axial)]
     for values_of, *ways in zip(values.T, *middles, strict=True):
         for run, sense in stretches([sense_of(*way) for way in zip(*(way.tolist() for way in ways), strict=True)]):
             axes.plot(
@@ -261,7 +260,7 @@ def _draw_decrement(
     decrement = 2.0 * np.pi * ratios / np.sqrt(np.maximum(1.0 - ratios**2, 1e-12))
     _draw_branches(axes, speeds, decrement, directions, axial)
     axes.axhline(0.0, color=INK, lw=0.7, zorder=1)
-    # A heavily damped branch would press all others, and the question of stability, onto the line.
+    # A heavily damped branch would compress all others, and their stability, into the line of zero.
     finite = decrement[np.isfinite(decrement)]
     least, most = min(float(finite.min()), 0.0), float(np.quantile(finite, _ALMOST_ALL))
     axes.set_ylim(1.15 * least - 0.03 * max(most, 0.0), max(1.15 * most, -0.1 * least, 1e-3))

@@ -32,22 +32,22 @@ from rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-_HEIGHT = 92.0  # of the panel [mm of paper]
-_SAMPLES = 80  # of a bearing's table over speed
-_VALUE = np.array([9.0, 2.8])  # what a value takes [mm of paper]
+_HEIGHT = 92.0  # height of the panel [mm of paper]
+_SAMPLES = 80  # samples of a bearing's table over speed
+_VALUE = np.array([9.0, 2.8])  # width and height of a value [mm of paper]
 _POINTS_PER_MM = 72.0 / MM_PER_INCH
 _LINES = (("k_xx", "-"), ("k_yy", (0, (5, 2))))
 
 
 @dataclass(frozen=True)
 class _Curve:
-    """A bearing's own stiffness (n,), N/m, at speeds (n,), rad/s, and how it is drawn."""
+    """A bearing's own stiffness [N/m] at speeds [rad/s], shapes (n,), with the name, colour and style of its line."""
 
     name: str
     color: str
     line: Any
     turning: FloatArray
-    own: FloatArray
+    stiffness: FloatArray
 
 
 def draw_critical_map(
@@ -61,23 +61,23 @@ def draw_critical_map(
 ) -> Figure:
     """Draw critical speeds over bearing stiffness on logarithmic axes.
 
-    Where a bearing's own line meets a critical speed, that is marked with its value; and so is the stiffness at which
-    operation would be critical.
+    Marks with values show where a bearing's own line meets a critical speed, and at which stiffness operation would be
+    critical.
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    stiffnesses
-        (k,): of every bearing in every direction, N/m, ascending and positive.
-    critical_speeds
-        (k, c): rad/s, each branch down a column; zero (a rigid motion) and NaN are not drawn.
-    bearings
+    title : str
+        Title of the sheet.
+    stiffnesses : array_like, shape (k,)
+        Stiffness of every bearing in every direction, ascending and positive [N/m].
+    critical_speeds : array_like, shape (k, c)
+        Critical speeds, each branch down a column [rad/s]; zero (a rigid motion) and NaN are not drawn.
+    bearings : sequence of Bearing
         Bearings whose k_xx and k_yy, over speed where they have tables, are drawn over the map.
-    operating_speed
-        rad/s, drawn as a line.
-    whirl
-        Which the critical speeds are of, "forward" or "backward".
+    operating_speed : float, optional
+        Speed of operation, drawn as a line [rad/s].
+    whirl : {"forward", "backward"}
+        Sense of whirl of the critical speeds.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def draw_critical_map(
     speeds = np.where(speeds > 0.0, speeds, np.nan)
     low, high = _limits(speeds, operating_speed)
     curves = _curves(bearings, low, high)
-    labels = [Label(one.name, float(one.own[-1]), RPM * float(one.turning[-1])) for one in curves]
+    labels = [Label(curve.name, float(curve.stiffness[-1]), RPM * float(curve.turning[-1])) for curve in curves]
     inside = [label for label in labels if springs[0] <= label.x <= springs[-1]]
     span = np.log(springs[-1] / springs[0])
     row = arrange(inside, [PANEL_WIDTH * np.log(label.x / springs[0]) / span for label in inside], PANEL_WIDTH)
@@ -114,8 +114,10 @@ def draw_critical_map(
         _number(axes, springs, branch, number)
     marked = []
     for curve in curves:
-        axes.plot(curve.own, RPM * curve.turning, color=curve.color, ls=curve.line, lw=1.0, zorder=2, label=curve.name)
-        for stiffness, speed in map_intersections(springs, speeds, curve.turning, curve.own):
+        axes.plot(
+            curve.stiffness, RPM * curve.turning, color=curve.color, ls=curve.line, lw=1.0, zorder=2, label=curve.name
+        )
+        for stiffness, speed in map_intersections(springs, speeds, curve.turning, curve.stiffness):
             axes.plot(
                 stiffness, RPM * speed, marker="o", ms=4.0, color=curve.color, mfc="white", zorder=4, label="meeting"
             )
@@ -132,32 +134,32 @@ def draw_critical_map(
 
 
 def map_intersections(
-    stiffnesses: FloatArray, critical_speeds: FloatArray, turning: FloatArray, own: FloatArray
+    stiffnesses: FloatArray, critical_speeds: FloatArray, turning: FloatArray, stiffness: FloatArray
 ) -> list[tuple[float, float]]:
-    """Intersections of a bearing's stiffness with the critical speeds: stiffness (N/m) and speed (rad/s) of each.
+    """Return stiffness [N/m] and speed [rad/s] of the intersections of a bearing's stiffness with critical speeds.
 
     Both are straight between their points on logarithmic axes.
 
     Parameters
     ----------
-    stiffnesses, critical_speeds
-        (k,) and (k, c), as in :func:`draw_critical_map`.
-    turning, own
-        (n,): ascending speeds (rad/s) and the bearing's stiffness (N/m) at them.
+    stiffnesses, critical_speeds : ndarray, shapes (k,) and (k, c)
+        As in :func:`draw_critical_map`.
+    turning, stiffness : ndarray, shape (n,)
+        Ascending speeds [rad/s], and the bearing's stiffness at them [N/m].
     """
     met = []
     ends = np.log(turning[[0, -1]])
     for branch in critical_speeds.T:
-        known = np.flatnonzero(branch > 0.0)
-        x, y = np.log(stiffnesses[known]), np.log(branch[known])
-        # A table may end between two points of the branch, and beyond it nothing is known.
-        rising = known.size > 0 and bool((np.diff(y) >= 0.0).all())
+        moving = np.flatnonzero(branch > 0.0)
+        x, y = np.log(stiffnesses[moving]), np.log(branch[moving])
+        # A table may end between two points of the branch; beyond it the stiffness is unknown.
+        rising = moving.size > 0 and bool((np.diff(y) >= 0.0).all())
         inside = ends[(ends > y[0]) & (ends < y[-1])] if rising else np.empty(0)
         x, y = np.append(x, np.interp(inside, y, x)) if inside.size else x, np.append(y, inside)
         order = np.argsort(x, kind="stable")
         x, y = x[order], y[order]
-        # How much stiffer the bearing is, at a critical speed, than that speed supposes.
-        excess = np.interp(y, np.log(turning), np.log(own), left=np.nan, right=np.nan) - x
+        # Logarithm of the bearing's stiffness at a critical speed over the stiffness that belongs to that speed.
+        excess = np.interp(y, np.log(turning), np.log(stiffness), left=np.nan, right=np.nan) - x
         for index in np.flatnonzero((excess[1:] <= 0.0) & (excess[:-1] > 0.0)):
             part = excess[index] / (excess[index] - excess[index + 1])
             met.append(tuple(np.exp(line[index] + part * (line[index + 1] - line[index])).item() for line in (x, y)))
@@ -165,13 +167,13 @@ def map_intersections(
 
 
 def _reached(stiffnesses: FloatArray, critical_speeds: FloatArray, speed: float) -> list[float]:
-    """Stiffnesses (N/m) at which a critical speed is the one given, rad/s; lines are straight on logarithmic axes."""
+    """Return stiffnesses [N/m] at which a given speed [rad/s] is critical; lines are straight on logarithmic axes."""
     reached = []
     for branch in critical_speeds.T:
-        known = np.flatnonzero(branch > 0.0)
+        moving = np.flatnonzero(branch > 0.0)
         x, gap = (
-            np.log(stiffnesses[known]),
-            np.log(branch[known]) - np.log(speed) if speed > 0.0 else np.ones(known.size),
+            np.log(stiffnesses[moving]),
+            np.log(branch[moving]) - np.log(speed) if speed > 0.0 else np.ones(moving.size),
         )
         for index in np.flatnonzero((gap[1:] > 0.0) != (gap[:-1] > 0.0)):
             part = gap[index] / (gap[index] - gap[index + 1])
@@ -181,21 +183,21 @@ def _reached(stiffnesses: FloatArray, critical_speeds: FloatArray, speed: float)
 
 def _number(axes: Axes, stiffnesses: FloatArray, branch: FloatArray, number: int) -> None:
     """Write the number of a branch's critical speed where the branch begins."""
-    known = np.flatnonzero(branch > 0.0)
-    if known.size:
-        place = (float(stiffnesses[known[0]]), RPM * float(branch[known[0]]))
+    moving = np.flatnonzero(branch > 0.0)
+    if moving.size:
+        place = (float(stiffnesses[moving[0]]), RPM * float(branch[moving[0]]))
         axes.annotate(f"{number}", place, (2.0, 2.0), textcoords="offset points", fontsize=NOTE, color=BLUE)
 
 
 def _write_beside(axes: Axes, marked: Sequence[Label]) -> None:
-    """Write values below their marks to the right, else above to the left; where both would touch others, nowhere."""
+    """Write values below their marks to the right, else above to the left, unless both would touch other values."""
     per_mm = axes.figure.dpi / MM_PER_INCH
     places = [axes.transData.transform((label.x, label.y)) / per_mm for label in marked]
-    taken: list[FloatArray] = []
+    used: list[FloatArray] = []
     for label, place in sorted(zip(marked, places, strict=True), key=lambda pair: tuple(pair[1])):
         for (right, up), side in (((1.2, -3.2), "left"), ((-1.2, 0.8), "right")):
             middle = place + (right + (0.5 if side == "left" else -0.5) * _VALUE[0], up + 0.5 * _VALUE[1])
-            if all(bool((np.abs(middle - other) > _VALUE).any()) for other in taken):
+            if all(bool((np.abs(middle - used_place) > _VALUE).any()) for used_place in used):
                 offset = (right * _POINTS_PER_MM, up * _POINTS_PER_MM)
                 point = (label.x, label.y)
                 axes.annotate(
@@ -208,18 +210,18 @@ def _write_beside(axes: Axes, marked: Sequence[Label]) -> None:
                     ha=side,
                     bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.3},
                 )
-                taken.append(middle)
+                used.append(middle)
                 break
 
 
 def _limits(speeds: FloatArray, operating: float | None) -> tuple[float, float]:
-    """Return the ends of the axis of speeds, rad/s."""
+    """Return the ends of the axis of speeds [rad/s]."""
     values = speeds[np.isfinite(speeds)].tolist() + ([abs(operating)] if operating else [])
     return (0.8 * min(values), 1.25 * max(values)) if values else (1.0, 10.0)
 
 
 def _curves(bearings: Sequence[Bearing], low: float, high: float) -> list[_Curve]:
-    """Bearing stiffness in x and y between two speeds (rad/s); equal curves are one."""
+    """Return the bearings' stiffness in x and y between two speeds [rad/s]; equal curves are one."""
     named: dict[tuple[bytes, bytes], tuple[list[str], FloatArray, FloatArray]] = {}
     for bearing in bearings:
         turning = np.geomspace(low, high, _SAMPLES)

@@ -40,56 +40,58 @@ from rotors.whirl.whirl_modes import MOSTLY_AXIAL
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_PLACES = 201  # along a shaft, besides what it carries
-_HIGHEST, _LOWEST = 20.0, 7.0  # a mode's share of the height, where modes are few and where they are many [mm]
-_TOGETHER = 150.0  # height of all modes, as long as none gets lower than that [mm]
-_SWING = 0.42  # of a shape to either side, in shares of its mode
-_MODE_HEIGHT = 23.0  # of a mode [mm of paper]
-_REACH = 8.5  # of its largest displacement [mm of paper]
-_ORBITS, _ALONG = 17, 121  # orbits drawn, and places of the shaft's own line
+_PLACES = 201  # even places along a shaft, besides those of its parts
+_HIGHEST, _LOWEST = 20.0, 7.0  # largest and least height of a mode [mm]
+_TOGETHER = 150.0  # height of all modes, unless they would be lower than the least [mm]
+_SWING = 0.42  # largest displacement of a shape to either side, over the height of its mode
+_MODE_HEIGHT = 23.0  # height of a mode [mm of paper]
+_REACH = 8.5  # length of its largest displacement [mm of paper]
+_ORBITS, _ALONG = 17, 121  # number of orbits, and of places of the centre line
 # Cabinet projection: y is up, x goes back to the right at this length and angle.
 _BACK = 0.6 * np.exp(1j * np.radians(35.0))
 # An orbit ends short of its start, so that its sense is seen without colours too.
 _TURN = np.linspace(0.0, 0.86 * 2.0 * np.pi, 60)
-_EDGEWISE = 0.5  # of the largest displacement seen up: less of it is seen from the other side
-_ARROWS, _SHORTEST = 13, 0.5  # of a motion along the axis, and the shortest one [mm of paper]
-_TIGHT = {"shrinkA": 0, "shrinkB": 0}  # of arrows that begin and end at their points
-_HEIGHT = 60.0  # of the panel [mm of paper]
-_ARROW = 0.26  # of the panel's height, for the largest load
-_WORD, _EDGE = 0.08, 0.03  # ... for what a load is called, and beside all [of the height]
-_NEGLIGIBLE = 1e-6  # of the deflection in y: less in x is not drawn
+_EDGEWISE = 0.5  # part of the largest displacement seen upwards below which a mode is seen from the other side
+_ARROWS, _SHORTEST = 13, 0.5  # number of arrows of an axial motion, and the shortest length [mm of paper]
+_TIGHT = {"shrinkA": 0, "shrinkB": 0}  # arrows begin and end at their points
+_HEIGHT = 60.0  # height of the panel [mm of paper]
+_ARROW = 0.26  # arrow of the largest load, over the panel's height
+_WORD, _EDGE = 0.08, 0.03  # height of a load's label, and margin, over the panel's height
+_NEGLIGIBLE = 1e-6  # part of the deflection in y below which that in x is not drawn
 
 
 def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: int | None = None) -> Figure:
-    """Planar bending modes, lowest on top, with the places of bearings (as Figs. 9 and 12 of TM-101442).
+    """Draw planar bending modes, lowest on top, with the places of bearings (as Figs. 9 and 12 of TM-101442).
 
     Parameters
     ----------
-    assembly
+    assembly : RotorAssembly
         The rotor, drawn above its modes on the same axis.
-    modes
-        Its modes in one plane.
-    most
-        Largest number of modes drawn; all where not given.
+    modes : LateralModes
+        Modes in one plane.
+    most : int, optional
+        Largest number of modes drawn; by default all.
     """
-    z, held, loaded = _places(assembly)
-    shown = modes.frequencies[:most]
-    note = _note(shown.size, modes.count, "each shape over its largest displacement", held, loaded)
+    z, at_bearings, loaded = _places(assembly)
+    frequencies = modes.frequencies[:most]
+    note = _note(frequencies.size, modes.count, "each shape over its largest displacement", at_bearings, loaded)
     # Bearings hold no torsion, so they are marked on these lines alone.
     bearings = [bearing.at for bearing in assembly.bearings]
-    return _stacked(assembly, "lateral modes", note, shown, z, modes.evaluate(z)[0], held, loaded, bearings)
+    return _stacked(
+        assembly, "lateral modes", note, frequencies, z, modes.evaluate(z)[0], at_bearings, loaded, bearings
+    )
 
 
 def draw_torsional_modes(assembly: RotorAssembly, modes: TorsionalModes, *, most: int | None = None) -> Figure:
-    """Free torsional modes, the rigid rotation first; see :func:`draw_lateral_modes`."""
+    """Draw free torsional modes, the rigid rotation first; see :func:`draw_lateral_modes`."""
     z, _, loaded = _places(assembly)
-    shown = modes.frequencies[:most]
-    note = _note(shown.size, modes.count, "each shape over its largest rotation", np.empty(0), loaded)
-    return _stacked(assembly, "torsional modes", note, shown, z, modes.evaluate(z), np.empty(0), loaded, ())
+    frequencies = modes.frequencies[:most]
+    note = _note(frequencies.size, modes.count, "each shape over its largest rotation", np.empty(0), loaded)
+    return _stacked(assembly, "torsional modes", note, frequencies, z, modes.evaluate(z), np.empty(0), loaded, ())
 
 
 def draw_along(axes: Axes, assembly: RotorAssembly, view: ShaftView, bearings: Sequence[float]) -> None:
-    """Give a panel under a shaft its axis, and lines where bearings are (m)."""
+    """Give a panel under a shaft its axis, and lines at the places of bearings [m]."""
     axes.set_xlim(view.low, view.high)
     view.show_length(axes, assembly.rotor.length)
     axes.grid(visible=False)
@@ -99,18 +101,18 @@ def draw_along(axes: Axes, assembly: RotorAssembly, view: ShaftView, bearings: S
 
 
 def _places(assembly: RotorAssembly) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Places (m) along the shaft, ascending, and among them those of bearings and of discs and gears."""
+    """Return places along the shaft, ascending, and among them those of bearings and of discs and gears [m]."""
     length = assembly.rotor.length
-    held = np.clip([bearing.at for bearing in assembly.bearings], 0.0, length)
+    at_bearings = np.clip([bearing.at for bearing in assembly.bearings], 0.0, length)
     loaded = np.clip([*(d.at for d in assembly.discs), *(g.at for g in assembly.gears)], 0.0, length)
     along = np.linspace(0.0, length, _PLACES)
-    return np.unique(np.concatenate([along, held, loaded])), np.unique(held), np.unique(loaded)
+    return np.unique(np.concatenate([along, at_bearings, loaded])), np.unique(at_bearings), np.unique(loaded)
 
 
-def _note(shown: int, count: int, scale: str, held: FloatArray, loaded: FloatArray) -> str:
-    parts = [f"the lowest {shown} of {count}"] if shown < count else []
+def _note(n_shown: int, count: int, scale: str, at_bearings: FloatArray, loaded: FloatArray) -> str:
+    parts = [f"the lowest {n_shown} of {count}"] if n_shown < count else []
     parts.append(scale)
-    parts += ["○ bearings"] * bool(held.size) + ["■ discs and gears"] * bool(loaded.size)
+    parts += ["○ bearings"] * bool(at_bearings.size) + ["■ discs and gears"] * bool(loaded.size)
     return "; ".join(parts)
 
 
@@ -121,11 +123,11 @@ def _stacked(
     frequencies: FloatArray,
     z: FloatArray,
     shapes: FloatArray,
-    held: FloatArray,
+    at_bearings: FloatArray,
     loaded: FloatArray,
     bearings: Sequence[float],
 ) -> Figure:
-    """Shapes (at least m, len(z)), one below the other, under the shaft."""
+    """Draw shapes (at least m, len(z)), one below the other, under the shaft."""
     outline = lay_out(assembly, labelled=False)
     count = frequencies.size
     share = float(np.clip(_TOGETHER / max(count, 1), _LOWEST, _HIGHEST))
@@ -144,7 +146,7 @@ def _stacked(
     for number, (level, shape) in enumerate(zip(levels, shapes, strict=False), start=1):
         line = level + _SWING * shape / np.abs(shape).max()
         axes.plot(MM * z, line, color=BLUE, lw=1.2, zorder=2, label=f"mode {number}")
-        for places, marker, face in ((held, "o", "white"), (loaded, "s", BLUE)):
+        for places, marker, face in ((at_bearings, "o", "white"), (loaded, "s", BLUE)):
             at = np.searchsorted(z, places)
             axes.plot(
                 MM * places, line[at], ls="", marker=marker, color=BLUE, markerfacecolor=face, ms=3.2, mew=0.8, zorder=3
@@ -172,15 +174,14 @@ def draw_static_deflection(
 
     Parameters
     ----------
-    assembly
-        The rotor.
-    z
-        (n,): ascending places, m from the left end.
-    deflection
-        (n, 2): in x and y there, m; y is up.
-    bearing_loads
-        (b, 2): force of each bearing on the rotor in x and y, N, in the order of the assembly's bearings. The
-        arrows show y; the labels give the magnitude where x bears a part.
+    assembly : RotorAssembly
+    z : array_like, shape (n,)
+        Ascending places from the left end [m].
+    deflection : array_like, shape (n, 2)
+        Deflection along x and y there [m]; y is up.
+    bearing_loads : array_like, shape (b, 2)
+        Force of each bearing on the rotor along x and y, in the order of the assembly's bearings [N]. The arrows show
+        y; the labels give the magnitude where x has a part in it.
 
     Raises
     ------
@@ -213,7 +214,7 @@ def draw_static_deflection(
             curves += axes.plot(MM * places, MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
     low, high = min(0.0, MICRO * float(moved.min())), max(0.0, MICRO * float(moved.max()))
     span = (high - low) or 1.0
-    # Room for the longest arrow and what it is called, below the line and, where a bearing pulls down, above it.
+    # Room for the longest arrow and its label, below the line and, where a bearing pulls down, above it.
     upward, downward = bool((loads[:, 1] >= 0.0).any()), bool((loads[:, 1] < 0.0).any())
     height = span / (1.0 - (_ARROW + _WORD) * (upward + downward) - 2.0 * _EDGE)
     below, above = (_EDGE + (_ARROW + _WORD) * present for present in (upward, downward))
@@ -241,21 +242,20 @@ def draw_static_deflection(
 
 
 def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | None = None) -> Figure:
-    """Whirl modes at one speed, lowest on top: the orbits of places along the shaft, and the shaft at one instant.
+    """Draw whirl modes at one speed, lowest on top: orbits of places along the shaft, and the shaft at one instant.
 
-    Each orbit begins at a dot, where the shaft is at that instant, and ends short of it. Its colour tells its own
+    Each orbit begins at a dot, where the shaft is at that instant, and ends short of it. Its colour is that of its own
     sense, which may change along a shaft whose bearings differ in x and y. Decay and growth are left out. A mode that
-    is for the most part along the axis is drawn by arrows along it, from where places are at rest. A mode in a plane
-    that is seen edgewise is drawn with x to the lower right, as the axes beside it show.
+    is mostly along the axis is drawn by arrows along it, from the places at rest. A mode in a plane that is seen
+    edgewise is drawn with x to the lower right, as the axes beside it show.
 
     Parameters
     ----------
-    assembly
+    assembly : RotorAssembly
         The rotor, drawn above on the same axis.
-    whirl
-        Its modes.
-    most
-        Largest number of modes drawn; all where not given.
+    whirl : WhirlModes
+    most : int, optional
+        Largest number of modes drawn; by default all.
     """
     outline = lay_out(assembly, labelled=False)
     view = outline.view
@@ -263,11 +263,11 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
     count = min(whole, most if most is not None else whole)
     height = _MODE_HEIGHT * max(count, 1)
     along = [number for number in range(count) if whirl.axial_share[number] > MOSTLY_AXIAL]
-    told = [f"the lowest {count} of {whole}"] if count < whole else []
-    told += ["orbits begin at the dot"] * (len(along) < count) + ["arrows: motion along the axis"] * bool(along)
-    told += ["each mode over its largest displacement", *outline.remarks]
+    remarks = [f"the lowest {count} of {whole}"] if count < whole else []
+    remarks += ["orbits begin at the dot"] * (len(along) < count) + ["arrows: motion along the axis"] * bool(along)
+    remarks += ["each mode over its largest displacement", *outline.remarks]
     title = f"Rotor {shortened(assembly.rotor.name, 20)}: whirl at {abs(whirl.speed) * RPM:.5g} rpm"
-    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join(told))
+    figure = sheet(HEAD + outline.height + height + FOOT, title, "; ".join(remarks))
     upper = outline.draw(figure, FOOT + height)
     upper.spines["bottom"].set_visible(False)
     upper.tick_params(bottom=False, labelbottom=False)
@@ -299,7 +299,7 @@ def draw_whirl_modes(assembly: RotorAssembly, whirl: WhirlModes, *, most: int | 
 
 
 def _view_of(x: ComplexArray, y: ComplexArray) -> complex:
-    """Return where x goes back to in the projection: to the lower right where a mode would else be seen edgewise."""
+    """Return the direction of x in the projection: to the lower right where a mode would else be seen edgewise."""
 
     def seen(back: complex) -> float:
         up = y + back.imag * x
@@ -310,7 +310,7 @@ def _view_of(x: ComplexArray, y: ComplexArray) -> complex:
 
 
 def _draw_axial_mode(axes: Axes, view: ShaftView, z: FloatArray, motion: ComplexArray, level: float) -> None:
-    """Draw a motion along the axis at the instant at which its largest is at its end: arrows from places at rest."""
+    """Draw a motion along the axis at the instant of its largest displacement: arrows from places at rest."""
     top = int(np.abs(motion).argmax())
     moved = (motion * np.exp(-1j * np.angle(motion[top]))).real / (np.abs(motion[top]) or 1.0)
     axes.plot(MM * z[[0, -1]], (level, level), color=GREY, lw=0.5, zorder=1)
@@ -331,7 +331,7 @@ def local_direction(x: ComplexArray, y: ComplexArray) -> FloatArray:
 
 def _scaled(x: ComplexArray, y: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Scale a mode to a largest semi-axis of one, and turn it to begin where that orbit is farthest out."""
-    # A place moves by |x + iy|/2 one way round and |x − iy|/2 the other; the semi-axes are their sum and difference.
+    # The forward circle has radius |x + iy|/2, the backward one |x − iy|/2; the semi-axes are their sum and difference.
     major = 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
     top = int(major.argmax())
     squares = x[top] ** 2 + y[top] ** 2
@@ -361,7 +361,7 @@ def _draw_mode(
         sense = sense_of(float(directions[index]))
         axes.plot(across, up, color=sense.color, lw=0.8, zorder=2, label="orbit")
         axes.plot(across[:1], up[:1], ls="", marker="o", markersize=2.2, color=sense.color, zorder=4)
-        if size[index] > 0.02:  # the sense of next to nothing is no sense
+        if size[index] > 0.02:  # smaller orbits have no clear sense
             senses.append(sense)
     across, up = _project(view, MM * z, x.real, y.real, level, back)
     axes.plot(across, up, color=INK, lw=1.1, zorder=3, label="shaft")
@@ -371,7 +371,7 @@ def _draw_mode(
 def _project(
     view: ShaftView, z: FloatArray | float, x: FloatArray, y: FloatArray, level: float, back: complex
 ) -> tuple[FloatArray, FloatArray]:
-    """Panel coordinates of displacements (one is the largest) at places z (mm): mm along the shaft, mm of paper up."""
+    """Return panel coordinates [mm along the shaft, mm of paper up] of displacements, 1 the largest, at z [mm]."""
     behind = back * x
     return np.asarray(z + view.length(_REACH) * behind.real), np.asarray(level + _REACH * (y + behind.imag))
 

@@ -35,9 +35,9 @@ from gearwhine.figures.style import (
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the room between them [mm of paper]
-_PEAK_TO_PEAK = 2e6  # µm of a displacement amplitude of one metre
-_DECADES = 5.0  # of a logarithmic amplitude, below its highest
+_AMPLITUDE, _PHASE, _BETWEEN = 70.0, 40.0, 4.0  # heights of the panels and the gap between them [mm of paper]
+_PEAK_TO_PEAK = 2e6  # peak-to-peak µm of an amplitude of one metre
+_DECADES = 5.0  # decades of a logarithmic amplitude below its highest
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,12 @@ class ProbeResponse:
 
     Parameters
     ----------
-    name
-        Of the probe.
-    amplitude
-        (s,) complex, m: the displacement along the probe is Re(amplitude e^{iΩt}), with the unbalance's angle at
-        Ωt from x.
-    major_axis
-        (s,): semi-major axis of the orbit there, m, where known.
+    name : str
+        Name of the probe.
+    amplitude : ndarray of complex, shape (s,)
+        The displacement along the probe is Re(amplitude e^{iΩt}), with the unbalance's angle at Ωt from x [m].
+    major_axis : ndarray, shape (s,), optional
+        Semi-major axis of the orbit there, where known [m].
     """
 
     name: str
@@ -73,17 +72,16 @@ def draw_unbalance_response(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    speeds
-        (s,): two or more, ascending, rad/s.
-    probes
-        Readings, each (s,).
-    critical_speeds
-        (c,): rad/s, marked where they are in the range.
-    operating_range
-        Lowest and highest speed of operation, rad/s, shaded; a single speed given twice is a line.
-    logarithmic
+    title : str
+        Title of the sheet.
+    speeds : array_like, shape (s,)
+        Two or more ascending speeds [rad/s].
+    probes : sequence of ProbeResponse
+    critical_speeds : array_like, shape (c,)
+        Critical speeds [rad/s], marked where they are in the range.
+    operating_range : tuple of float, optional
+        Lowest and highest speed of operation, shaded [rad/s]; a single speed given twice is a line.
+    logarithmic : bool
         Whether the amplitude has a logarithmic axis.
 
     Raises
@@ -99,7 +97,7 @@ def draw_unbalance_response(
     marked = [speed for speed in np.atleast_1d(critical_speeds).tolist() if low <= speed <= high]
 
     moving = max((_largest(probe) for probe in probes), default=0.0)
-    # A logarithmic axis has no place for what does not move at all.
+    # A logarithmic axis has no place for zero.
     logarithmic, top = logarithmic and moving > 0.0, moving or 1.0
     ceiling = 2.0 * top if logarithmic else 1.08 * top
     labels = [Label(f"{RPM * speed:.4g}", RPM * speed, ceiling) for speed in marked]
@@ -146,9 +144,9 @@ def draw_unbalance_response(
 
 
 def phase_lag(amplitude: ComplexArray) -> FloatArray:
-    """Lag of a response behind the unbalance, degrees, without jumps over speed and from −90 to 270 at its first.
+    """Return the lag of a response behind the unbalance [°], without jumps over speed, first between −90 and 270.
 
-    Where there is no motion there is no phase: NaN.
+    Without motion the phase is NaN.
     """
     moving = np.abs(amplitude) > 0.0
     lag = np.full(np.shape(amplitude), np.nan)
@@ -168,8 +166,8 @@ def _least(probe: ProbeResponse) -> float:
     return float(size[size > 0.0].min(initial=np.inf))
 
 
-_RESPONSE_HEIGHT, _RESPONSE_GAP = 56.0, 4.0  # of each panel and the room between them [mm of paper]
-_AMPLITUDE_DECADES = 6.0  # shown below the highest
+_RESPONSE_HEIGHT, _RESPONSE_GAP = 56.0, 4.0  # height of each panel and gap between them [mm of paper]
+_AMPLITUDE_DECADES = 6.0  # decades shown below the highest amplitude
 
 
 @dataclass(frozen=True)
@@ -178,10 +176,10 @@ class TorsionalReading:
 
     Parameters
     ----------
-    name
-        Of the place.
-    angle, torque
-        (b,): zero to peak, rad and N·m.
+    name : str
+        Name of the place.
+    angle, torque : ndarray, shape (b,)
+        Angle [rad] and torque [N m], zero to peak.
     """
 
     name: str
@@ -200,14 +198,14 @@ def draw_torsional_response(
 
     Parameters
     ----------
-    title
-        Of the sheet.
-    frequencies
-        (b,): two or more, ascending, rad/s.
-    readings
-        At each place, each (b,).
-    natural_frequencies
-        rad/s, marked where they are in the range.
+    title : str
+        Title of the sheet.
+    frequencies : array_like, shape (b,)
+        Two or more ascending frequencies [rad/s].
+    readings : sequence of TorsionalReading
+        Readings at each place.
+    natural_frequencies : array_like
+        Natural frequencies [rad/s], marked where they are in the range.
 
     Raises
     ------
@@ -215,12 +213,17 @@ def draw_torsional_response(
         Fewer than two frequencies, or readings of another length.
     """
     omega = np.asarray(frequencies, dtype=np.float64)
-    wrong = [one.name for one in readings if not np.shape(one.angle) == np.shape(one.torque) == omega.shape]
+    wrong = [
+        reading.name for reading in readings if not np.shape(reading.angle) == np.shape(reading.torque) == omega.shape
+    ]
     if omega.ndim != 1 or omega.size < 2 or not bool((np.diff(omega) > 0.0).all()) or wrong:
         raise ValueError(f"frequencies {omega.shape} are not two or more ascending ones, or do not fit {wrong}")
     low, high = float(omega[0]), float(omega[-1])
     marked = [value for value in np.atleast_1d(natural_frequencies).tolist() if low <= value <= high]
-    tops = [max((float(np.max(getattr(one, what))) for one in readings), default=0.0) for what in ("angle", "torque")]
+    tops = [
+        max((float(np.max(getattr(reading, quantity))) for reading in readings), default=0.0)
+        for quantity in ("angle", "torque")
+    ]
 
     labels = [Label(f"{value / HERTZ:.4g}", value / HERTZ, 2.0 * (tops[0] or 1.0)) for value in marked]
     row = arrange(labels, [(value - low) / (high - low) * PANEL_WIDTH for value in marked], PANEL_WIDTH)
@@ -232,7 +235,7 @@ def draw_torsional_response(
         panel(figure, FOOT, _RESPONSE_HEIGHT),
     )
     handles: list[Line2D] = []
-    for axes, what, top, name in (
+    for axes, quantity, top, name in (
         (upper, "angle", tops[0], "angle [rad]"),
         (lower, "torque", tops[1], "torque [N·m]"),
     ):
@@ -240,10 +243,10 @@ def draw_torsional_response(
         for value in marked:
             axes.axvline(value / HERTZ, color=GREY, lw=0.7, zorder=1, label="natural frequency")
         lines = []
-        for number, one in enumerate(readings):
-            values = getattr(one, what)
+        for number, reading in enumerate(readings):
+            values = getattr(reading, quantity)
             if values.max(initial=0.0) > 0.0:
-                label = name_in_legend(one.name)
+                label = name_in_legend(reading.name)
                 color = SERIES[number % len(SERIES)]
                 lines += axes.plot(omega / HERTZ, values, color=color, lw=1.2, zorder=3, label=label)
         if top > 0.0:

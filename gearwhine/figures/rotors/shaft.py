@@ -39,11 +39,11 @@ from rotors import Bearing, Coupling, Disc, ElasticMaterial, Segment
 
 FloatArray = npt.NDArray[np.float64]
 
-MM = 1e3  # of a metre: shafts are drawn in millimetres
+MM = 1e3  # millimetres of a metre: shafts are drawn in millimetres
 
-_MARGIN = 5.0  # beside the outermost of what is drawn [mm of paper]
-_LEAST, _MOST = 14.0, 66.0  # height of a rotor between its largest diameters [mm of paper]
-_TICKS_APART = 12.0  # at least [mm of paper]
+_MARGIN = 5.0  # margin beside the outermost parts [mm of paper]
+_LEAST, _MOST = 14.0, 66.0  # least and largest height of a rotor between its largest diameters [mm of paper]
+_TICKS_APART = 12.0  # least distance of ticks [mm of paper]
 _STRETCHES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 
 
@@ -53,14 +53,14 @@ class ShaftView:
 
     Attributes
     ----------
-    low, high
-        Ends of the axis along the shaft, mm from its left end.
-    per_paper
-        Millimetres of the shaft on one of the paper; both directions have it.
-    stretch
+    low, high : float
+        Ends of the axis along the shaft, from its left end [mm].
+    per_paper : float
+        Millimetres of the shaft on one of the paper, in both directions.
+    stretch : int
         Exaggeration of the diameters, 1 where the picture is true to scale.
-    half_height
-        From the centre line to the largest radius, mm of paper.
+    half_height : float
+        Distance from the centre line to the largest radius [mm of paper].
     """
 
     low: float
@@ -70,15 +70,15 @@ class ShaftView:
     half_height: float
 
     def paper(self, z: float) -> float:
-        """Position on paper of a station (m), mm from the left of the panel."""
+        """Return the position on paper of a station [m], from the left of the panel [mm]."""
         return (MM * z - self.low) / self.per_paper
 
     def length(self, paper: float) -> float:
-        """Return a length on paper (mm) in the picture's coordinates."""
+        """Return a length on paper [mm] in the picture's coordinates."""
         return paper * self.per_paper
 
     def across(self, radius: float) -> float:
-        """Return a radius (m) in the picture's coordinates."""
+        """Return a radius [m] in the picture's coordinates."""
         return MM * radius * self.stretch
 
     def apply(self, axes: Axes, below: float) -> None:
@@ -87,14 +87,14 @@ class ShaftView:
         axes.set(xlim=(self.low, self.high), ylim=(bottom, bottom + self.length(panel_size(axes)[1])))
 
     def show_length(self, axes: Axes, length: float) -> None:
-        """Give a panel an axis along the shaft, whose length is in m."""
+        """Give a panel an axis along the shaft, ``length`` [m]."""
         axes.set_xticks(_ticks(MM * length, MM * length / self.per_paper))
         axes.spines["bottom"].set_bounds(0.0, MM * length)
 
     def show_axes(self, axes: Axes, length: float, largest: float) -> None:
-        """Give a panel axes along the shaft (its length in m) and of diameters up to the largest radius (m)."""
+        """Give a panel axes along the shaft, ``length`` [m], and of diameters up to the largest radius [m]."""
         self.show_length(axes, length)
-        # Zero is the centre line, not a diameter worth a tick.
+        # Zero is the centre line and has no tick.
         half = 0.5 * self.stretch * _ticks(2.0 * MM * largest, 2.0 * self.half_height)[1:]
         axes.set_yticks([*(-half[::-1]), *half])
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{2.0 * abs(value) / self.stretch:g}"))
@@ -106,7 +106,7 @@ class ShaftView:
 
 
 def _ticks(largest: float, paper: float) -> FloatArray:
-    """Round numbers from zero to the largest value, not closer than can be read where it has so much paper (mm)."""
+    """Return round numbers from zero to the largest value, legibly apart on an axis of ``paper`` millimetres."""
     locator = MaxNLocator(nbins=max(int(paper / _TICKS_APART), 1), steps=[1, 2, 5, 10])
     ticks = np.asarray(locator.tick_values(0.0, largest))
     inside = ticks[(ticks >= 0.0) & (ticks <= largest * (1.0 + 1e-9))]
@@ -126,10 +126,10 @@ def fitted(assembly: RotorAssembly) -> ShaftView:
 TINTS = ("#c9d5e0", "#e6d6b8", "#cfdfc9", "#dccbd9", "#d9d9d2")
 
 _BORE, _DISC, _GEAR, _TEETH = "#f6f8f9", "#a9b8c6", "#c3b48f", "#e2d9c0"
-_EDGE = 0.6  # of outlines [points]
-_HUB = 1.5  # hubs of a coupling over the shafts beside it
+_EDGE = 0.6  # width of outlines [points]
+_HUB = 1.5  # radius of a coupling's hubs over that of the shafts beside it
 _POINT = 1.1  # radius of a point mass [mm of paper]
-_BEYOND = 2.5  # centre and pitch lines reach so far beyond what they belong to [mm of paper]
+_BEYOND = 2.5  # overhang of centre and pitch lines [mm of paper]
 _CHAIN = (0, (8, 2, 1.5, 2))
 
 
@@ -139,7 +139,7 @@ def materials(assembly: RotorAssembly) -> list[ElasticMaterial]:
 
 
 def draw_outline(axes: Axes, assembly: RotorAssembly, view: ShaftView) -> None:
-    """Draw a rotor without what holds it."""
+    """Draw a rotor without its supports."""
     kinds = materials(assembly)
     for part, left, right in zip(assembly.parts, assembly.rotor.joints, assembly.rotor.joints[1:], strict=False):
         if isinstance(part, Segment):
@@ -168,7 +168,7 @@ def _segment(axes: Axes, view: ShaftView, part: Segment, left: float, right: flo
 
 
 def _coupling(axes: Axes, assembly: RotorAssembly, view: ShaftView, part: Coupling, left: float, right: float) -> None:
-    """Two hubs and bellows between them."""
+    """Draw two hubs and bellows between them."""
     radius = view.across(_HUB * min(assembly.shaft_radius(left), assembly.shaft_radius(right)))
     low, high = MM * left, MM * right
     hub = 0.2 * (high - low)
@@ -198,7 +198,7 @@ def _disc(axes: Axes, assembly: RotorAssembly, view: ShaftView, disc: Disc) -> N
 
 
 def _gear(axes: Axes, view: ShaftView, gear: DrawnGear) -> None:
-    """Body, teeth, and the pitch line in chain dots, as drawing practice has it (ISO 2203)."""
+    """Draw body, teeth, and the pitch line in chain dots (ISO 2203)."""
     left, width = MM * (gear.at - 0.5 * gear.face_width), MM * gear.face_width
     tip, root = (0.5 * view.across(size) for size in (gear.tip_diameter, gear.root_diameter))
     for radius, color, order, name in ((tip, _TEETH, 1.9, "gear"), (root, _GEAR, 1.95, "")):
@@ -218,7 +218,7 @@ _LINE = 0.7  # [points]
 
 
 def depth(assembly: RotorAssembly, bearing: Bearing) -> float:
-    """Depth of a bearing's symbol below the shaft's surface, mm of paper."""
+    """Return the depth of a bearing's symbol below the shaft's surface [mm of paper]."""
     if bearing.name in assembly.seats:
         return _SIGN + _SEAT
     return _SIGN + _GROUND + (_MASS + _SPRING if bearing.pedestal is not None else 0.0)
@@ -282,13 +282,13 @@ def _draw_ground(axes: Axes, view: ShaftView, place: float, top: float, wide: fl
     axes.plot(across, down, color=INK, lw=0.7 * _LINE, zorder=3)
 
 
-_CLEAR = 1.5  # between what is drawn and leaders that slant, and round the panel [mm of paper]
+_CLEAR = 1.5  # gap between the drawing and slanting leaders, and round the panel [mm of paper]
 _SPOT, _PROBE = 0.8, 2.4  # radius of an unbalance's dot, height of a probe [mm of paper]
 
 
 @dataclass(frozen=True)
 class OutlinePanel:
-    """A panel with a shaft in it, laid out before the sheet is made: sizes in mm of paper."""
+    """A panel with a shaft in it, laid out before the sheet is made; sizes in mm of paper."""
 
     assembly: RotorAssembly
     view: ShaftView
@@ -333,15 +333,14 @@ class OutlinePanel:
 
 
 def draw_shaft(assembly: RotorAssembly) -> Figure:
-    """Draw a rotor in section through its axis, to scale, with its bearings and what else belongs to it.
+    """Draw a rotor in section through its axis, to scale, with its bearings and other parts.
 
-    Lengths and diameters have one scale, unless the shaft is so slender that its diameters could not be seen: the
-    note in the head then says by how much they are stretched.
+    Lengths and diameters have one scale, unless the shaft is too slender: then the note in the head gives the stretch
+    of the diameters.
 
     Parameters
     ----------
-    assembly
-        The rotor and what goes with it.
+    assembly : RotorAssembly
     """
     outline = lay_out(assembly, labelled=True)
     rotor = assembly.rotor
@@ -425,7 +424,7 @@ def _labels_below(assembly: RotorAssembly, view: ShaftView) -> list[Label]:
 
 
 def _draw_marks(axes: Axes, assembly: RotorAssembly, view: ShaftView) -> None:
-    """Unbalances as dots on the surface, probes as points towards it."""
+    """Draw unbalances as dots on the surface, probes as points towards it."""
     for unbalance in assembly.unbalances:
         middle = view.across(assembly.outer_radius(unbalance.at)) + view.length(_SPOT)
         dot = Circle((MM * unbalance.at, middle), view.length(_SPOT), color=RED, lw=0.0, zorder=5, label="unbalance")

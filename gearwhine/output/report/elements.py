@@ -11,8 +11,8 @@ from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, arrowed, is_number
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
-_LONGEST = 60  # of an identifier [characters]
-_MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # of findings
+_LONGEST = 60  # length of the longest identifier [characters]
+_MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # classes and marks of findings
 _WRAPPED = 20  # characters of a cell from which on its column may wrap
 _UNIT = re.compile(r" (?=[→%])|(?<=\d) (?=(?:Hz|kHz|rpm|mm|µm|N|kg)\b)")
 _NUMBERED = re.compile(r"(?<=[^\W\d_]) (?=\d+\b(?![.,]\d))")  # before the number of a wheel, mode or bearing
@@ -25,8 +25,8 @@ def worded(text: str) -> str:
 
 def in_cell(text: str) -> str:
     """Return the text of a cell as HTML: no line ends within a name such as ``wheel 1``, before an arrow or a unit."""
-    kept = _UNIT.sub(NO_BREAK, arrowed(text))
-    return escape(_NUMBERED.sub(NO_BREAK, kept))
+    text_with_units = _UNIT.sub(NO_BREAK, arrowed(text))
+    return escape(_NUMBERED.sub(NO_BREAK, text_with_units))
 
 
 class Places:
@@ -37,7 +37,7 @@ class Places:
 
     def __init__(self) -> None:
         self._identifiers: dict[tuple[str, str], str] = {}
-        self._taken: set[str] = set()
+        self._used: set[str] = set()
 
     def add(self, result: str, name: str) -> None:
         """Give a name of a result an identifier, once."""
@@ -45,10 +45,10 @@ class Places:
             return
         stem = re.sub(r"[^a-z0-9]+", "-", f"{result} {name}".lower()).strip("-")[:_LONGEST].strip("-") or "place"
         identifier, number = stem, 1
-        while identifier in self._taken:
+        while identifier in self._used:
             number += 1
             identifier = f"{stem}-{number}"
-        self._taken.add(identifier)
+        self._used.add(identifier)
         self._identifiers[result, name] = identifier
 
     def add_sections(self, result: str, sections: Iterable[Section], pictures: Mapping[int, Sequence[Shown]]) -> None:
@@ -59,8 +59,8 @@ class Places:
                 for row in table.rows if table.anchor is not None else ():
                     assert table.anchor is not None
                     self.add(result, table.anchor(row))
-            for shown in pictures.get(id(section), ()):
-                self.add(result, shown.place)
+            for picture in pictures.get(id(section), ()):
+                self.add(result, picture.place)
             self.add_sections(result, section.inner, pictures)
 
     def identifier(self, result: str, name: str) -> str:
@@ -68,13 +68,13 @@ class Places:
         return self._identifiers[result, name]
 
     def find(self, result: str, names: Sequence[str]) -> str | None:
-        """Return the identifier of the first name that there is, in this result or any; pictures by their beginning."""
+        """Return the identifier of the first name that exists, first in this result; pictures by their beginning."""
         for name in names:
-            found = [key for key in self._identifiers if key[1] == name]
+            keys = [key for key in self._identifiers if key[1] == name]
             if name.startswith("picture "):
-                found = [key for key in self._identifiers if key[1].startswith(name)]
-            if found:
-                return self._identifiers[min(found, key=lambda key: key[0] != result)]
+                keys = [key for key in self._identifiers if key[1].startswith(name)]
+            if keys:
+                return self._identifiers[min(keys, key=lambda key: key[0] != result)]
         return None
 
 
@@ -86,9 +86,9 @@ class Writer:
     result : str
         Name of the result that the sections belong to.
     places : Places
-        Of the whole report.
+        Places of the whole report.
     pictures : mapping of int to sequence of Shown
-        By the identity of the section.
+        Pictures by the identity of their section.
     live : mapping of int to str
         HTML that the interactive form puts at the end of a section, by its identity.
     """
@@ -105,10 +105,13 @@ class Writer:
         self._placed: set[str] = set()
 
     def chapter(self, section: Section, level: int = 3, *, folded: bool = False) -> str:
-        """Return a section that folds, with all that is in it."""
+        """Return a foldable section with its content and the sections in it."""
         heading = f"<h{level}>{worded(section.title)}{self._note(section)}</h{level}>"
         identifier = self._places.identifier(self._result, section.place)
-        inner = "".join(self.chapter(one, level + 1) if one.title else self.content(one) for one in section.inner)
+        inner = "".join(
+            self.chapter(inner_section, level + 1) if inner_section.title else self.content(inner_section)
+            for inner_section in section.inner
+        )
         return (
             f'<details{"" if folded else " open"} class="level{level}" id="{identifier}"><summary>{heading}</summary>\n'
             f"{self.content(section)}{inner}</details>\n"
@@ -117,22 +120,22 @@ class Writer:
     def content(self, section: Section) -> str:
         """Return the sentences, tables and pictures of a section."""
         parts = []
-        for one in section.content:
-            if isinstance(one, Table):
-                parts.append(self._table(one))
-            elif isinstance(one, Finding):
-                parts.append(self._finding(one))
+        for item in section.content:
+            if isinstance(item, Table):
+                parts.append(self._table(item))
+            elif isinstance(item, Finding):
+                parts.append(self._finding(item))
             else:
-                parts.append(f"<p>{worded(one.strip())}</p>\n")
-        shown = self._pictures.get(id(section), ())
+                parts.append(f"<p>{worded(item.strip())}</p>\n")
+        pictures = self._pictures.get(id(section), ())
         for small, row in ((False, "figures"), (True, "figures small")):
-            if some := [self._figure(one) for one in shown if one.small is small]:
-                parts.append(f'<div class="{row}">\n{"".join(some)}</div>\n')
+            if figures := [self._figure(item) for item in pictures if item.small is small]:
+                parts.append(f'<div class="{row}">\n{"".join(figures)}</div>\n')
         parts.append(self._live.get(id(section), ""))
         return "".join(parts)
 
-    def _figure(self, shown: Shown) -> str:
-        return figure(shown, self._places.identifier(self._result, shown.place))
+    def _figure(self, picture: Shown) -> str:
+        return figure(picture, self._places.identifier(self._result, picture.place))
 
     def _note(self, section: Section) -> str:
         note = section.note.strip()
@@ -145,8 +148,8 @@ class Writer:
             if target := self._places.find(self._result, [name]):
                 more = f' <a href="#{target}">{worded(name.partition(" ")[2])}</a>'
                 break
-        told = f'<span class="mark">{mark}</span> <span>{worded(finding.text)}{more}</span>'
-        return f'<p class="finding {kind}">{told}</p>\n'
+        content = f'<span class="mark">{mark}</span> <span>{worded(finding.text)}{more}</span>'
+        return f'<p class="finding {kind}">{content}</p>\n'
 
     def _table(self, table: Table) -> str:
         columns, texts = table.filled()
@@ -182,9 +185,9 @@ class Writer:
     def _cells(self, columns: Sequence[Column], row: Row, texts: Sequence[str], classes: Sequence[str]) -> str:
         parts = []
         for column, text, kind in zip(columns, texts, classes, strict=True):
-            told = in_cell(text) if text != NOTHING else "–"
+            content = in_cell(text) if text != NOTHING else "–"
             target = self._places.find(self._result, column.link(row)) if column.link and text != NOTHING else None
-            parts.append(f"<td{kind}>" + (f'<a href="#{target}">{told}</a>' if target else told) + "</td>")
+            parts.append(f"<td{kind}>" + (f'<a href="#{target}">{content}</a>' if target else content) + "</td>")
         return "".join(parts)
 
 
@@ -193,7 +196,7 @@ def fragment(sections: Sequence[Section]) -> str:
     places = Places()
     places.add_sections("", sections, {})
     writer = Writer("", places, {}, {})
-    body = "".join(writer.chapter(one) if one.title else writer.content(one) for one in sections)
+    body = "".join(writer.chapter(section) if section.title else writer.content(section) for section in sections)
     return f'<div class="gearwhine"><style>{_FRAGMENT_STYLE}</style>\n{body}</div>'
 
 

@@ -8,12 +8,12 @@ from typing import Any
 
 from gearwhine.output.files import file_contents
 
-_DIFFERENCES = 6  # keys of the case that are named
-_REMARKS = "provenance."  # says where a value is from, and changes none
+_DIFFERENCES = 6  # largest number of keys of the case that are named
+_REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
 
 
 def moment(text: object) -> str:
-    """Return an ISO time in words; a text that is none as it stands."""
+    """Return an ISO time in words; any other text unchanged."""
     try:
         return datetime.fromisoformat(str(text)).strftime("on %Y-%m-%d at %H:%M:%S %Z").strip()
     except ValueError:
@@ -33,12 +33,13 @@ def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, A
     return [*_differences(stored_case(place), present), *_changed_files(document.get("input_files"))]
 
 
-def _differences(made: Mapping[str, Any] | None, present: Mapping[str, Any] | None) -> list[str]:
+def _differences(stored: Mapping[str, Any] | None, present: Mapping[str, Any] | None) -> list[str]:
     """Keys in which the case of a result differs from the present one, in one sentence."""
-    if made is None or present is None:
+    if stored is None or present is None:
         return []
     before, now = (
-        {key: value for key, value in _entries(one) if not key.startswith(_REMARKS)} for one in (made, present)
+        {key: value for key, value in _entries(document) if not key.startswith(_REMARKS)}
+        for document in (stored, present)
     )
     keys = [key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key)]
     if not keys:
@@ -51,28 +52,28 @@ def _differences(made: Mapping[str, Any] | None, present: Mapping[str, Any] | No
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Each number or text of a case with its path of keys; entries of lists by their names."""
+    """Yield each number or text of a case with its path of keys; entries of lists by their names."""
     if isinstance(value, Mapping):
         for name, inner in value.items():
             yield from _entries(inner, f"{key}.{name}" if key else name)
-    elif isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
-        for place, one in enumerate(value):
-            yield from _entries(one, f"{key}.{one.get('name', place)}")
+    elif isinstance(value, list) and value and all(isinstance(entry, Mapping) for entry in value):
+        for place, entry in enumerate(value):
+            yield from _entries(entry, f"{key}.{entry.get('name', place)}")
     else:
         yield key, value
 
 
 def _changed_files(files: object) -> list[str]:
-    """Input files whose content is another now, or that are gone."""
+    """Return remarks on input files whose content has changed, or that are gone."""
     if not isinstance(files, Mapping):
         return []
-    found = []
+    remarks = []
     for name, content in files.items():
         try:
             changed = file_contents([Path(name)])[str(Path(name))] != content
         except OSError:
-            found.append(f"{name} cannot be read")
+            remarks.append(f"{name} cannot be read")
         else:
             if changed:
-                found.append(f"{name} has changed")
-    return found
+                remarks.append(f"{name} has changed")
+    return remarks

@@ -26,8 +26,8 @@ from gearwhine.output.report.elements import NO_BREAK, in_cell
 from gearwhine.output.sections import Curves, Section, arrowed
 
 _RESULTS = "results.nc"
-_POINTS = 4000  # of a curve; of more, the largest of each stretch is shown
-_CELLS = 240, 600  # of colours over two axes
+_POINTS = 4000  # largest number of points of a curve; longer ones show the largest of each stretch
+_CELLS = 240, 600  # largest numbers of cells of colours over two axes
 _DIGITS = 4
 _LIBRARIES = {"model-viewer": "model-viewer.min.js", "plotly": "plotly-cartesian.min.js"}
 _EXPONENT, _RAISED = re.compile(r"(?<=[A-Za-z])-?\d"), str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -41,10 +41,10 @@ class MovingShape:
     Attributes
     ----------
     name : str
-        Of the picture of the same shape, without ending.
+        Name of the picture of the same shape, without ending.
     title, note : str
     model : bytes
-        GLB.
+        Content of the GLB file.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Scripts:
     def curves(self, dataset: Any, section: Section) -> str:
         """Return frames for the curves that a section declares and a results file holds; keep their data."""
         try:
-            drawings = [one for declared in section.curves for one in _drawings(dataset, declared)]
+            drawings = [drawing for declared in section.curves for drawing in _drawings(dataset, declared)]
         except (OSError, ValueError):
             return ""
         frames = []
@@ -155,11 +155,11 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
     array = dataset[declared.variable].load()
     if (limit := array.attrs.get(_LIMIT)) is not None:
         array = array.isel({declared.along[0]: dataset[declared.along[0]].values <= limit})
-    others = [str(name) for name in array.dims if name not in declared.along]
-    stacked = array.stack(signal=others).transpose("signal", *declared.along[::-1])
-    told = [place for place, name in enumerate(others) if array.sizes[name] > 1]
+    other_axes = [str(name) for name in array.dims if name not in declared.along]
+    stacked = array.stack(signal=other_axes).transpose("signal", *declared.along[::-1])
+    varying = [place for place, name in enumerate(other_axes) if array.sizes[name] > 1]
     labels = [label if isinstance(label, tuple) else (label,) for label in stacked["signal"].values]
-    names = [", ".join(str(label[place]) for place in told or range(len(label))) for label in labels]
+    names = [", ".join(str(label[place]) for place in varying or range(len(label))) for label in labels]
     values = np.asarray(stacked.values, dtype=np.float64)
     live = np.nanmax(np.abs(values), axis=tuple(range(1, values.ndim)), initial=0.0) > 0.0
     names, values = [name for name, moves in zip(names, live, strict=True) if moves], values[live]
@@ -176,12 +176,12 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
         x, curves = _coarse_curves(axes[0], values)
         lines = [{"name": arrowed(name), "y": _listed(curve)} for name, curve in zip(names, curves, strict=True)]
         return [common | {"x": _listed(x), "curves": lines}]
-    found = []
+    drawings = []
     for name, table in zip(names, values, strict=True):
         x, y, z = _coarse_table(axes[0], axes[1], table)
         colours = {"x": _listed(x), "y": _listed(y), "z": [_listed(row) for row in z]}
-        found.append(common | colours | {"caption": f"{declared.caption.rstrip('.')}: {name}."})
-    return found
+        drawings.append(common | colours | {"caption": f"{declared.caption.rstrip('.')}: {name}."})
+    return drawings
 
 
 def _named(array: Any, otherwise: str) -> str:
@@ -192,7 +192,7 @@ def _named(array: Any, otherwise: str) -> str:
 
 def _read(unit: str) -> str:
     """Return a unit as it is read, on one line: ``m s-2`` has a raised exponent."""
-    raised = _EXPONENT.sub(lambda found: found[0].translate(_RAISED), unit)
+    raised = _EXPONENT.sub(lambda match: match[0].translate(_RAISED), unit)
     return raised.replace(" ", NO_BREAK)
 
 
@@ -204,7 +204,7 @@ def _listed(values: npt.NDArray[np.float64]) -> list[float | None]:
 def _coarse_curves(
     x: npt.NDArray[np.float64], curves: npt.NDArray[np.float64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return at most so many points of each curve: of each stretch the largest, at one abscissa."""
+    """Return at most `_POINTS` points of each curve: of each stretch the largest, at one abscissa."""
     step = -(-len(x) // _POINTS)
     if step <= 1:
         return x, curves
@@ -215,7 +215,7 @@ def _coarse_curves(
 def _coarse_table(
     x: npt.NDArray[np.float64], y: npt.NDArray[np.float64], z: npt.NDArray[np.float64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return at most so many columns and rows: of each cell the largest value."""
+    """Return at most `_CELLS` columns and rows: of each cell the largest value."""
     rows, columns = (
         np.arange(0, len(axis), max(-(-len(axis) // most), 1)) for axis, most in zip((y, x), _CELLS, strict=True)
     )
@@ -230,7 +230,7 @@ def live_parts(scripts: Scripts | None, place: Path, sections: Sequence[Section]
     import xarray as xr
 
     try:
-        # Once for all sections: to open a file of a hundred arrays takes longer than to read what one section shows.
+        # Opened once for all sections: opening a file of a hundred arrays takes longer than reading those of a section.
         with xr.open_dataset(place / _RESULTS, engine="h5netcdf") as dataset:
             return {id(section): scripts.curves(dataset, section) for section in declaring}
     except (OSError, ValueError):

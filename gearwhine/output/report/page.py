@@ -36,7 +36,7 @@ class Contents:
         Returns the chapters of a command's document.
     first_page : callable, optional
         Returns the sections of the first page from the case, all documents, and sentences on results that do not fit
-        the case any more. Of the pictures that the sections declare, the first that there is is shown.
+        the case any more. The first existing picture of those that the sections declare is shown.
     """
 
     chapters: Callable[[Document], Iterable[Section]]
@@ -45,7 +45,7 @@ class Contents:
 
 @dataclass(frozen=True, eq=False)
 class _Result:
-    """Results of one command: their folder, document, chapters, and what does not fit the case any more.
+    """Results of one command: their folder, document, chapters, and remarks on what no longer fits the case.
 
     ``repeated`` are the titles of chapters that another result shows as well.
     """
@@ -83,23 +83,23 @@ def report_page(
 
     Parameters
     ----------
-    folder
-        The output folder of one command or several.
-    contents
-        Makes the first page, and the chapters of a command's document.
-    case
-        Against which the case of each result is held; without it the newest result's.
-    shapes
-        Of the interactive form, which also draws curves and sorts tables; None makes the static one.
+    folder : path
+        Output folder of one command or several.
+    contents : Contents
+        Makers of the first page, and of the chapters of a command's document.
+    case : Case, optional
+        Case with which the case of each result is compared; by default that of the newest result.
+    shapes : sequence of MovingShape, optional
+        Shapes of the interactive form, which also draws curves and sorts tables; None makes the static one.
 
     Raises
     ------
     CaseError
         Where the folder holds no results, or a summary cannot be read.
     """
-    found = _stored(folder)
-    present = stored_case(folder / found[0][0]) if case is None else tomllib.loads(dump_case(case))
-    results = [_result(folder / own, document, present, contents) for own, document in found]
+    stored = _stored(folder)
+    present = stored_case(folder / stored[0][0]) if case is None else tomllib.loads(dump_case(case))
+    results = [_result(folder / place, document, present, contents) for place, document in stored]
     title = str(results[0].document.get("title") or (present or {}).get("title") or folder.name)
     places = Places()
     first = () if contents.first_page is None else contents.first_page(case, _documents(results), _stale(results))
@@ -141,12 +141,12 @@ def _style() -> str:
 
 def _stored(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     expected = f"a results folder with {SUMMARY}, as `gearwhine run CASE -o {folder}` leaves it"
-    found = stored_results(folder)
-    if (folder / SUMMARY).exists() and not any(own == Path() for own, _ in found):
+    results = stored_results(folder)
+    if (folder / SUMMARY).exists() and not any(place == Path() for place, _ in results):
         raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")])
-    if not found:
+    if not results:
         raise CaseError([Problem("report", str(folder), expected)])
-    return found
+    return results
 
 
 def _result(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None, contents: Contents) -> _Result:
@@ -198,11 +198,13 @@ def _documents(results: Sequence[_Result]) -> list[Mapping[str, Any]]:
 
 
 def _stale(results: Sequence[_Result]) -> list[str]:
-    return [f"{result.heading} does not fit the case any more: {one}." for result in results for one in result.stale]
+    return [
+        f"{result.heading} does not fit the case any more: {remark}." for result in results for remark in result.stale
+    ]
 
 
 def _first_page(first: Sequence[Section], results: Sequence[_Result], places: Places) -> str:
-    """Return the sections of the first page one below the other, and the picture that says most."""
+    """Return the sections of the first page one below the other, and the first picture that exists."""
     if not first:
         return ""
     writer = Writer(_SUMMARY, places, {}, {})
@@ -236,29 +238,29 @@ def _moving(scripts: Scripts, places: Places) -> str:
 
 def _chapters(result: _Result, places: Places, scripts: Scripts | None) -> str:
     """Return one command's results."""
-    given, others = result.pictures
-    writer = Writer(result.name, places, given, live_parts(scripts, result.place, result.chapters))
+    by_section, undeclared = result.pictures
+    writer = Writer(result.name, places, by_section, live_parts(scripts, result.place, result.chapters))
     parts = [
         writer.chapter(section, folded=section.title in result.repeated) if section.title else writer.content(section)
         for section in result.chapters
     ]
-    if others:
-        shown = [Shown(path, "") for path in others]
-        further = "".join(figure(one, places.identifier(result.name, one.place)) for one in shown)
+    if undeclared:
+        pictures = [Shown(path, "") for path in undeclared]
+        further = "".join(figure(picture, places.identifier(result.name, picture.place)) for picture in pictures)
         parts.append(
             '<details open class="level3"><summary><h3>Further pictures</h3></summary>\n'
             f'<div class="figures">{further}</div></details>\n'
         )
     identifier = places.identifier(result.name, result.heading)
-    made = result.document.get("made_at")
-    told = f'<p class="note">Made {escape(moment(made))}.</p>\n' if made else ""
-    told += "".join(
+    made_at = result.document.get("made_at")
+    notes = f'<p class="note">Made {escape(moment(made_at))}.</p>\n' if made_at else ""
+    notes += "".join(
         f'<p class="finding failed"><span class="mark">✗</span> '
-        f"<span>Does not fit the case any more: {worded(one)}.</span></p>\n"
-        for one in result.stale
+        f"<span>Does not fit the case any more: {worded(remark)}.</span></p>\n"
+        for remark in result.stale
     )
     return (
-        f'<section class="result"><h2 id="{identifier}">{escape(result.heading)}</h2>\n{told}{"".join(parts)}'
+        f'<section class="result"><h2 id="{identifier}">{escape(result.heading)}</h2>\n{notes}{"".join(parts)}'
         f"{_case(result.place)}</section>\n"
     )
 

@@ -14,11 +14,11 @@ from PIL import Image
 
 from gearwhine.output.sections import Picture, Section, arrowed
 
-_LARGEST = 8 << 20  # bytes: a larger file is no picture of ours
-_LIGHT = 512  # bytes: not worth packing
+_LARGEST = 8 << 20  # size of a file up to which it is taken as a picture [bytes]
+_LIGHT = 512  # size of a file up to which it is not packed [bytes]
 _TALL = 1.2  # height over width of a picture that fills a printed page
-_COLOURS, _QUALITY = 256, 85  # of a palette, and of WebP
-_SMALL, _WIDE = 720, 1400  # pixels across, of a small picture and of any
+_COLOURS, _QUALITY = 256, 85  # colours of a palette, and quality of WebP
+_SMALL, _WIDE = 720, 1400  # largest width of a small picture, and of any [pixels]
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Shown:
 
 def pictures_in(place: Path) -> list[Path]:
     """Return the picture files of a folder by name; no links, and none that is too large to be a figure."""
-    found = sorted(place.glob("*.png"))
-    return [path for path in found if path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST]
+    paths = sorted(place.glob("*.png"))
+    return [path for path in paths if path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST]
 
 
 def distribute(sections: Sequence[Section], files: Sequence[Path]) -> tuple[dict[int, list[Shown]], list[Path]]:
@@ -51,36 +51,38 @@ def distribute(sections: Sequence[Section], files: Sequence[Path]) -> tuple[dict
     list of Path
         Files that no section declares.
     """
-    given: dict[int, list[Shown]] = {}
-    left = list(files)
+    by_section: dict[int, list[Shown]] = {}
+    undeclared = list(files)
 
     def give(section: Section) -> None:
         for inner in section.inner:
             give(inner)
         for declared in section.pictures:
-            mine = [path for path in left if path.stem.startswith(declared.begins)]
+            mine = [path for path in undeclared if path.stem.startswith(declared.begins)]
             for path in mine:
-                left.remove(path)
+                undeclared.remove(path)
             if not _repeated(declared, files):
-                given.setdefault(id(section), []).extend(Shown(path, declared.caption, declared.small) for path in mine)
+                by_section.setdefault(id(section), []).extend(
+                    Shown(path, declared.caption, declared.small) for path in mine
+                )
 
     for section in sections:
         give(section)
-    return given, left
+    return by_section, undeclared
 
 
 def _repeated(declared: Picture, files: Sequence[Path]) -> bool:
-    """Whether a sheet shows only what other pictures show by themselves."""
+    """Whether a sheet only repeats pictures that exist by themselves."""
     return bool(declared.sheet_of) and any(path.stem.startswith(declared.sheet_of) for path in files)
 
 
-def figure(shown: Shown, identifier: str) -> str:
+def figure(picture: Shown, identifier: str) -> str:
     """Return a picture with its caption as HTML."""
-    caption = escape(arrowed(shown.caption) or f"File {shown.path.name}.")
-    packed = _packed(shown.path, _SMALL if shown.small else _WIDE)
+    caption = escape(arrowed(picture.caption) or f"File {picture.path.name}.")
+    packed = _packed(picture.path, _SMALL if picture.small else _WIDE)
     if packed is None:
         return f'<figure id="{identifier}"><figcaption>{caption} The file cannot be read.</figcaption></figure>\n'
-    name = escape(shown.path.stem)
+    name = escape(picture.path.stem)
     kind, data, (width, height) = packed
     encoded = base64.b64encode(data).decode("ascii")
     image = f'<img alt="{caption}" width="{width}" height="{height}" src="data:{kind};base64,{encoded}">'

@@ -47,9 +47,9 @@ def housing_fields(
         housing.mesh,
         element_constants(parted, material, materials),
         housing.modes.displacement(point.housing, every),
-        np.array([housing.modes.displacement(one.housing, every) for one in adjoints]),
-        {one.name: one.force for one in point.bearings},
-        {bearing.name: np.array([one.force(bearing.name) for one in adjoints]) for bearing in point.bearings},
+        np.array([housing.modes.displacement(adjoint.housing, every) for adjoint in adjoints]),
+        {bearing.name: bearing.force for bearing in point.bearings},
+        {bearing.name: np.array([adjoint.force(bearing.name) for adjoint in adjoints]) for bearing in point.bearings},
         np.zeros(3) if gravity is None else np.array(gravity),
     )
 
@@ -61,14 +61,14 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     if case.housing is None or case.housing.box is None:
         return ()
     box = case.housing.box
-    made = []
+    parameters = []
     for face in FACES:
         thickness = getattr(box.walls, face)
         is_cover = box.cover is not None and box.cover.face == face and box.cover.thickness is not None
         key = "housing.box.cover.thickness" if is_cover else f"housing.box.wall.{face}"
         span = (f"{0.5 * thickness:.9g} m", f"{2.0 * thickness:.9g} m")
-        made.append(UpdateParameter(name=f"{face} wall", keys=(key,), range=span))
-    return tuple(made)
+        parameters.append(UpdateParameter(name=f"{face} wall", keys=(key,), range=span))
+    return tuple(parameters)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ def slopes_of(changes: Sequence[HousingChange]) -> FloatArray:
 
 def by_changes(fields: StaticSensitivity, changes: Sequence[HousingChange]) -> FloatArray:
     """Differentiate each outcome by the parameters of changes [outcome/SI], shape (n_adjoints, n_parameters)."""
-    by_coordinates = fields.by_parameters([one.rate for one in changes], [one.bearings for one in changes])
+    by_coordinates = fields.by_parameters([change.rate for change in changes], [change.bearings for change in changes])
     return np.asarray(by_coordinates / slopes_of(changes))
 
 
@@ -160,10 +160,10 @@ def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) 
     """
     fitted = fitted_case(case, parameters=parameters)
     meshed = MeshedParameters(fitted, fitted.start, case, mesh)
-    found = []
+    changes = []
     for number, (rate, entry, z) in enumerate(zip(meshed.rates(), fitted.numbers, fitted.start.tolist(), strict=True)):
         bearings, sensors = _port_rates(meshed, number, rate)
-        found.append(
+        changes.append(
             HousingChange(
                 entry.parameter.name,
                 "housing",
@@ -175,17 +175,17 @@ def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) 
                 thickness=entry.start if _is_thickness(entry.given) else None,
             )
         )
-    return tuple(found)
+    return tuple(changes)
 
 
-def _is_length(given: UpdateParameter) -> bool:
-    return not given.factor and kind_of(given.range[0]) == kind_of("1 m")
+def _is_length(parameter: UpdateParameter) -> bool:
+    return not parameter.factor and kind_of(parameter.range[0]) == kind_of("1 m")
 
 
-def _is_thickness(given: UpdateParameter) -> bool:
+def _is_thickness(parameter: UpdateParameter) -> bool:
     """Whether a parameter is the thickness of a wall, or of several, and no factor on them."""
-    steps = [parse_key_path(key) or () for key in given.keys]
-    return _is_length(given) and all({"wall", "thickness"} & set(path[-2:]) for path in steps)
+    steps = [parse_key_path(key) or () for key in parameter.keys]
+    return _is_length(parameter) and all({"wall", "thickness"} & set(path[-2:]) for path in steps)
 
 
 def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -> tuple[PortRates, PortRates]:
@@ -218,7 +218,7 @@ def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[st
     places = bearing_places(case)
     return (
         {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {one.name: sensor_port(mesh, one.build()).matrix for one in case.housing.sensor},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in case.housing.sensor},
     )
 
 
@@ -230,20 +230,22 @@ def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
     """
     assert case.housing is not None
     seats = [mesh.surface(seat.name) for seat in case.housing.seat]
-    held = np.unique(np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)]))
+    held_nodes = np.unique(
+        np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)])
+    )
     faces = flat_faces(mesh)
     whole = sum(face.area for face in faces)
-    found = []
+    changes = []
     for face in faces:
         if face.area < _LEAST_FACE * whole:
             continue
         velocity = np.zeros_like(mesh.points)
         velocity[np.unique(np.concatenate([block.corners.ravel() for block in face.facets]))] = face.normal
-        velocity[held] = 0.0
+        velocity[held_nodes] = 0.0
         axis = int(np.abs(face.normal).argmax())
         direction = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
         x, y, z = (1e3 * face.center).round().astype(int).tolist()
         name = f"{direction} at {x}, {y}, {z} mm"
         rate = ModelSensitivity(with_middles(mesh, velocity))
-        found.append(HousingChange(name, "face", rate, {}, {}, slope=1.0, reference=None, thickness=math.inf))
-    return tuple(found)
+        changes.append(HousingChange(name, "face", rate, {}, {}, slope=1.0, reference=None, thickness=math.inf))
+    return tuple(changes)

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_LEAST_RATIO = 1e-3  # of a line after a step to the line before it
-_LARGE_ERROR = 1.0  # of a level to first order [dB]
-_LARGE_ERROR_OF_SIGN = 0.3  # the same where the first order has the wrong sign [dB]
+_LEAST_RATIO = 1e-3  # least ratio of a line after a step to the line before it
+_LARGE_ERROR = 1.0  # large error of a level to first order [dB]
+_LARGE_ERROR_OF_SIGN = 0.3  # large error where the first order has the wrong sign [dB]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +42,8 @@ class Influence:
     lines : ndarray, shape (n_lines,)
         Changes of the lines by the step to first order: amplitudes of sensors [m/s²], then powers of the sound [W].
     stepped, reversed : ndarray, shape (n_lines,)
-        The same with the response solved again at the step, and at the reverse step; NaN where the reverse step would
-        take away a whole wall.
+        Changes of the lines with the response solved again at the step, and at the reverse step; NaN where the reverse
+        step would remove a whole wall.
     is_thickness : bool
         Whether the parameter adds and takes away material along the normal of a wall or a face.
     """
@@ -94,7 +94,7 @@ class LineChange:
     change, reverse : float
         Change of the value by the step and by the reverse step, the response solved again; NaN where there is none.
     line : Line or None
-        None of a sum.
+        Line; None of a sum.
     """
 
     value: float
@@ -116,7 +116,7 @@ class LineChange:
 
     @property
     def reverse_level(self) -> float | None:
-        """The same by the reverse step [dB]; None where there is none."""
+        """Change of its level by the reverse step, the response solved again [dB]; None without such a step."""
         return None if math.isnan(self.reverse) else self._level(self.reverse)
 
     @property
@@ -145,7 +145,7 @@ class LoadSensitivity:
     influences : tuple of Influence
         The largest change of a misalignment over the face first.
     density : ndarray, shape (n_pairs, n_nodes), or None
-        Misalignment by material added on the housing's surface, by its thickness and area [rad/m³].
+        Derivative of the misalignment by material added on the housing's surface, by thickness and area [rad/m³].
     note : str or None
         Why flat faces stand in place of walls.
     lines : SolvedLines or None
@@ -153,11 +153,11 @@ class LoadSensitivity:
     line : int
         Number of the sensor's line that is ranked and drawn.
     line_density : ndarray, shape (n_nodes,), or None
-        Of that line, its amplitude by material added on the surface [(m/s²)/m³].
+        Derivative of that line's amplitude by material added on the surface [(m/s²)/m³].
     sound_line : int or None
         Number of the sound's line that is ranked and drawn; None for the A-weighted sum of several.
     sound_density : ndarray, shape (n_nodes,), or None
-        Of that line or sum, its power by material added on the surface [W/m³].
+        Derivative of the power of that line or sum by material added on the surface [W/m³].
     """
 
     influences: tuple[Influence, ...]
@@ -187,7 +187,7 @@ class LoadSensitivity:
     @property
     def sound_power(self) -> float:
         """Power that is ranked: of one line, or A-weighted of all [W]."""
-        return float(self.sound_weights @ [one.line.value for one in self.loudest_lines])
+        return float(self.sound_weights @ [loud_line.line.value for loud_line in self.loudest_lines])
 
     def sensor_changes(self, influence: Influence) -> list[LineChange]:
         """Pair the sensors' lines with their changes by the step of a parameter."""
@@ -201,7 +201,7 @@ class LoadSensitivity:
         """Change of the A-weighted power of the sound's lines together by the step of a parameter."""
         weights, changes = sound_weights(self.loudest_lines, None), self.sound_changes(influence)
         value, first_order, change, reverse = (
-            float(weights @ [getattr(one, attribute) for one in changes])
+            float(weights @ [getattr(change, attribute) for change in changes])
             for attribute in ("value", "first_order", "change", "reverse")
         )
         return LineChange(value, changes[0].decibels, first_order, change, reverse)
@@ -217,4 +217,4 @@ class LoadSensitivity:
 
 def sound_weights(lines: "Sequence[HarmonicSound]", chosen: int | None) -> FloatArray:
     """Weights of the sound's lines: one for a chosen line, else those of the frequency weighting A."""
-    return np.array([one.weighting if chosen is None else float(n == chosen) for n, one in enumerate(lines)])
+    return np.array([line.weighting if chosen is None else float(n == chosen) for n, line in enumerate(lines)])

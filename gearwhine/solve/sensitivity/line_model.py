@@ -41,7 +41,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 LINES = 3
-"""Lines of each sensor, the highest."""
+"""Number of lines of each sensor, the highest ones."""
 
 _TWO_PI = 2.0 * np.pi
 
@@ -54,11 +54,11 @@ class SolvedLines:
     ----------
     model : LineModel
     of_sensors : tuple of Line
-        The highest first.
+        Lines of the sensors, the highest first.
     sound : tuple of HarmonicSound
-        The loudest by their A-weighted power first.
+        Lines of the sound, the loudest by their A-weighted power first.
     housing : SolvedHousing
-        With residual modes of the sensors, and the harmonic responses at the lines.
+        Housing with residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
@@ -69,7 +69,7 @@ class SolvedLines:
     @property
     def lines(self) -> tuple[Line, ...]:
         """Lines of the sensors, and then of the sound."""
-        return (*self.of_sensors, *(one.line for one in self.sound))
+        return (*self.of_sensors, *(sound.line for sound in self.sound))
 
     def cause(self, line: Line) -> str:
         """Return the mesh harmonics that drive a line, in words."""
@@ -79,9 +79,15 @@ class SolvedLines:
     @property
     def held(self) -> str | None:
         """Parts that the case fixes, so that they do not follow the operating point, in words."""
-        pairs = [one.geometry.label for one, found in zip(self.model.pairs, self.model.found, strict=True) if not found]
+        pairs = [
+            pair.geometry.label
+            for pair, is_found in zip(self.model.pairs, self.model.found, strict=True)
+            if not is_found
+        ]
         bearings = [
-            one.name for one in self.model.point.bearings if one.rolling is not None and not one.mounted.needs_load
+            bearing.name
+            for bearing in self.model.point.bearings
+            if bearing.rolling is not None and not bearing.mounted.needs_load
         ]
         parts = [f"the flanks of {', '.join(pairs)} (misalignment)"] if pairs else []
         parts += [f"the stiffness of bearings {', '.join(bearings)}"] if bearings else []
@@ -91,10 +97,10 @@ class SolvedLines:
         """Displacement of the housing's nodes by the coordinates of the machine, shape (n_nodes, 3)."""
         assert self.model.machine.housing is not None
         name = self.model.machine.housing.name
-        own = self.model.machine.rows(name, np.eye(self.model.machine.housing.size)) @ coordinates
+        housing_motion = self.model.machine.rows(name, np.eye(self.model.machine.housing.size)) @ coordinates
         every = np.arange(len(self.housing.mesh.points))
         displacement = self.housing.modes.displacement
-        return np.asarray(displacement(own.real, every) + 1j * displacement(own.imag, every))
+        return np.asarray(displacement(housing_motion.real, every) + 1j * displacement(housing_motion.imag, every))
 
     def rates(self, fields: StaticSensitivity, changes: Sequence[HousingChange]) -> HousingRates:
         """Project derivatives of the housing by the coordinates of parameters on its modes and residual modes.
@@ -102,7 +108,7 @@ class SolvedLines:
         Parameters
         ----------
         fields : StaticSensitivity
-            With the housing's material and its displacement at the operating point.
+            Fields with the housing's material and its displacement at the operating point.
         changes : sequence of HousingChange
         """
         modes, ratios = self.housing.modes, self.housing.damping_ratios
@@ -114,14 +120,14 @@ class SolvedLines:
         omega = np.concatenate([omega, modes.residual_modes.frequencies])
         ratios = np.concatenate([ratios, np.full(extra, ratios.max(initial=0.0))])
         rates = [change.rate for change in changes]
-        found = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates)
-        motions = [self.field(one.line.motion) for one in self.sound]
+        sensitivities = modal_sensitivities(self.housing.mesh, fields.constants, shapes, rates)
+        motions = [self.field(harmonic.line.motion) for harmonic in self.sound]
         powers = [
             {}
             if rate.velocity is None
             else {
-                one.line.frequency: one.by_sliding(motion, rate.velocity)
-                for one, motion in zip(self.sound, motions, strict=True)
+                harmonic.line.frequency: harmonic.by_sliding(motion, rate.velocity)
+                for harmonic, motion in zip(self.sound, motions, strict=True)
             }
             for rate in rates
         ]
@@ -129,8 +135,8 @@ class SolvedLines:
         return HousingRates(
             omega,
             ratios,
-            found.stiffness,
-            found.mass,
+            sensitivities.stiffness,
+            sensitivities.mass,
             [{name: np.asarray(rows @ flat) for name, rows in change.bearings.items()} for change in changes],
             [{name: np.asarray(rows @ flat)[0] for name, rows in change.sensors.items()} for change in changes],
             [{name: np.asarray(rows @ displacement) for name, rows in change.bearings.items()} for change in changes],
@@ -153,14 +159,14 @@ def solve_lines(
     ----------
     case : Case
     machine : Machine
-        Of the case.
+        Machine of the case.
     point : OperatingPoint
-        Of the machine.
+        Operating point of the machine.
     housing : SolvedHousing or None
-        That the machine stands in.
+        Housing that the machine stands in.
     progress : callable
     count : int
-        Lines of each sensor.
+        Number of lines of each sensor.
 
     Raises
     ------
@@ -178,20 +184,20 @@ def solve_lines(
     extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
-        ports = [one.matrix for one in housing.sensors.values()]
+        ports = [sensor.matrix for sensor in housing.sensors.values()]
         modes = extension.with_ports(modes, ports, orders=RESPONSE_ORDERS)
     about = machine.at_operating_point(point)
-    pairs = solve_gears(case, progress, {one.names: one.station_gap for one in point.pairs})
+    pairs = solve_gears(case, progress, {pair.names: pair.station_gap for pair in point.pairs})
     components = about.rotor_components(progress=progress)
     excitation = driving(case, components)
-    found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
+    misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
     radiation = _radiation(case, replace(housing, modes=modes), progress)
 
     def solved(modes: ModeSet, heard: Sequence[float] | None = None) -> SolvedLines:
         damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
         extended = replace(housing, modes=modes, damping_matrix=damping)
         stands = replace(about, housing=full_housing_component(case, extended, progress))
-        model = LineModel(stands.assemble(pairs, components, excitation), point, pairs, found)
+        model = LineModel(stands.assemble(pairs, components, excitation), point, pairs, misalignment_is_found)
         lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
         return SolvedLines(model, lines, _sound(case, extended, model, radiation, heard, progress), extended)
 
@@ -201,7 +207,7 @@ def solve_lines(
         return None
     progress("responses of the housing at the lines")
     exact = extension.with_harmonic_responses(modes, _housing_loads(first))
-    return solved(exact, [one.line.frequency for one in first.sound])
+    return solved(exact, [sound.line.frequency for sound in first.sound])
 
 
 def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "HousingRadiation | None":
@@ -243,22 +249,26 @@ def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
     list of (float, ndarray of shape (3 n_nodes, m))
         Frequencies [rad/s], and real and imaginary parts of the loads.
     """
-    found: dict[float, list[ComplexArray]] = {}
+    loads_by_frequency: dict[float, list[ComplexArray]] = {}
     limit = solved.housing.modes.certificate.limit
-    loads = [_sensor_load(solved, line) for line in solved.of_sensors] + [one.nodal_load() for one in solved.sound]
-    for line, own in zip(solved.lines, loads, strict=True):
+    loads = [_sensor_load(solved, line) for line in solved.of_sensors]
+    loads += [harmonic.nodal_load() for harmonic in solved.sound]
+    for line, adjoint_load in zip(solved.lines, loads, strict=True):
         # At the limit itself residual modes have the responses.
         if line.frequency >= limit:
             continue
         motion = np.zeros(3 * len(solved.housing.mesh.points), dtype=np.complex128)
-        against = own
+        against = adjoint_load
         for name, port in solved.housing.loaded.items():
             load, adjoint = solved.model.bearing_loads(line, name)
             motion += np.asarray(port.T @ load)
             against = against + np.asarray(port.T @ adjoint)
         # The motion is the same for every output.
-        found.setdefault(line.frequency, [motion]).append(against)
-    return [(w, np.concatenate([np.array(one).real, np.array(one).imag]).T) for w, one in found.items()]
+        loads_by_frequency.setdefault(line.frequency, [motion]).append(against)
+    return [
+        (w, np.concatenate([np.array(columns).real, np.array(columns).imag]).T)
+        for w, columns in loads_by_frequency.items()
+    ]
 
 
 def _sensor_load(solved: SolvedLines, line: Line) -> ComplexArray:

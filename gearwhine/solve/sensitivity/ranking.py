@@ -47,7 +47,7 @@ class _Step:
     reference : float or None
         Value of the parameter that the step is relative to [SI]; None of a length.
     thickness : float or None
-        Of a parameter that is a thickness [m].
+        Thickness, of a parameter that is one [m].
     """
 
     reference: float | None
@@ -151,7 +151,7 @@ class Ranking:
         by_response = np.zeros((len(self.lines), len(changes)))
         if rates is not None:
             by_response = np.array([self.model.by_housing(line, rates) for line in self.lines]) / slopes
-        found = []
+        influences = []
         for number, change in enumerate(changes):
             step = _Step(change.reference, change.thickness)
             # Derivatives of the housing are by the parameter's coordinate.
@@ -160,7 +160,7 @@ class Ranking:
                 [] if rates is None else [self.model.stepped_housing(line, rates, number, size) for line in self.lines]
                 for size in (in_coordinate, -in_coordinate)
             )
-            found.append(
+            influences.append(
                 self._influence(
                     change.parameter,
                     change.kind,
@@ -171,7 +171,7 @@ class Ranking:
                     reverse,
                 )
             )
-        return found
+        return influences
 
     def _influence(
         self,
@@ -221,7 +221,7 @@ class Ranking:
         Parameters
         ----------
         fields : StaticSensitivity
-            As for :meth:`by_housing`.
+            Displacements as for :meth:`by_housing`.
         sensor_line : int
             Number of the sensor's line.
         sound_line : int or None
@@ -230,11 +230,11 @@ class Ranking:
         Returns
         -------
         misalignments : ndarray, shape (n_pairs, n_nodes)
-            [rad/m³].
+            Changes of the misalignments [rad/m³].
         amplitude : ndarray, shape (n_nodes,), or None
-            Of the sensor's line [(m/s²)/m³].
+            Change of the amplitude of the sensor's line [(m/s²)/m³].
         power : ndarray, shape (n_nodes,), or None
-            Of the sound [W/m³].
+            Change of the power of the sound [W/m³].
         """
         by_equilibrium = fields.surface_density()
         misalignments = by_equilibrium[[n for n, (_, outcome) in enumerate(self.outcomes) if outcome == 0]]
@@ -275,14 +275,14 @@ def solve_load_sensitivity(
     ----------
     case : Case
     machine : Machine
-        Of the case.
+        Machine of the case.
     point : OperatingPoint
-        Of the machine.
+        Operating point of the machine.
     housing : SolvedHousing or None
-        That the machine stands in.
+        Housing that the machine stands in.
     progress : callable
     line : str, optional
-        The line that is ranked and drawn, such as ``roof``, ``roof@1377`` or ``sound@1377``; by default the highest of
+        Line that is ranked and drawn, such as ``roof``, ``roof@1377`` or ``sound@1377``; by default the highest of
         a sensor, and the A-weighted power of the sound.
 
     Raises
@@ -307,7 +307,7 @@ def solve_load_sensitivity(
         changes, note = housing_changes(case, fields.mesh)
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
-    influences.sort(key=lambda one: -float(np.abs(widths * one.changes[:, 0]).max(initial=0.0)))
+    influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
     )
@@ -326,10 +326,10 @@ def _chosen(text: str | None, solved: SolvedLines | None) -> tuple[int, int | No
         assert isinstance(line.output, SensorAmplitude)
         names.setdefault(line.output.sensor, (n, together))
         names.setdefault(f"{line.output.sensor}@{line.frequency / _TWO_PI:.0f}", (n, together))
-    for n, one in enumerate(() if solved is None else solved.sound):
+    for n, harmonic in enumerate(() if solved is None else solved.sound):
         names.setdefault(_SOUND, (0, together))
-        names.setdefault(f"{_SOUND}@{one.line.frequency / _TWO_PI:.0f}", (0, n))
+        names.setdefault(f"{_SOUND}@{harmonic.line.frequency / _TWO_PI:.0f}", (0, n))
     if text not in names:
-        known = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor or a sound"
-        raise CaseError([Problem("--line", text, f"one of the highest lines: {known}")])
+        listed = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor or a sound"
+        raise CaseError([Problem("--line", text, f"one of the highest lines: {listed}")])
     return names[text]

@@ -29,10 +29,10 @@ from meshes.elements import pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 
-_HOLES = 1.1  # of the widest seat, that are closed by default
-_COARSE = 20.0  # triangles along the housing where nothing says how large they are
-_DEEP = 20.0  # sizes of the housing from which a floor below it is doubtful
-_FAR = 200.0  # the same of the distance of a microphone
+_HOLES = 1.1  # diameter of holes that are closed by default, over that of the widest seat
+_COARSE = 20.0  # triangles along the housing where the case gives neither their size nor a frequency
+_DEEP = 20.0  # depth of a floor below the housing above which it is doubtful, in sizes of the housing
+_FAR = 200.0  # distance of a microphone above which it is doubtful, in sizes of the housing
 _IN_METRES = "a number without a unit is in m"
 
 
@@ -49,31 +49,33 @@ def wrap_settings(case: Case, limit_hz: float) -> tuple[float, float, HardPlane 
     Parameters
     ----------
     case : Case
-        With `[acoustics]`.
+        Case with `[acoustics]`.
     limit_hz : float
         Highest frequency of the sound [Hz].
     """
-    given = case.acoustics
-    assert given is not None
-    edge = given.mesh_size or given.speed_of_sound / (6.0 * limit_hz)
+    acoustics = case.acoustics
+    assert acoustics is not None
+    edge = acoustics.mesh_size or acoustics.speed_of_sound / (6.0 * limit_hz)
     seats = [seat.diameter for seat in case.housing.seat if seat.diameter] if case.housing is not None else []
-    holes = given.close_holes or _HOLES * max(seats, default=edge)
-    floor = None if given.floor is None else HardPlane(np.array([0.0, given.floor, 0.0]), np.array([0.0, 1.0, 0.0]))
+    holes = acoustics.close_holes or _HOLES * max(seats, default=edge)
+    floor = (
+        None if acoustics.floor is None else HardPlane(np.array([0.0, acoustics.floor, 0.0]), np.array([0.0, 1.0, 0.0]))
+    )
     return edge, holes, floor
 
 
 def surface_names(case: Case, mesh: Mesh) -> list[Problem]:
     """Return the names of surfaces in `[acoustics]` that the housing does not have."""
-    known = tuple(mesh.surfaces)
+    surfaces = tuple(mesh.surfaces)
     return [
         Problem(
             f"acoustics.{key}[{place}]",
             name,
-            f"a surface of the housing ({', '.join(known)}){did_you_mean(name, known)}",
+            f"a surface of the housing ({', '.join(surfaces)}){did_you_mean(name, surfaces)}",
         )
         for key in ("still", "faces")
         for place, name in enumerate(getattr(case.acoustics, key))
-        if name not in known
+        if name not in surfaces
     ]
 
 
@@ -86,12 +88,12 @@ def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
         Where it is not flat.
     """
     surface = mesh.surfaces[name]
-    wanted = {tuple(sorted(nodes)) for block in surface for nodes in block.nodes.tolist()}
+    wanted_facets = {tuple(sorted(nodes)) for block in surface for nodes in block.nodes.tolist()}
     for face in flat_faces(mesh):
-        own = [tuple(sorted(nodes)) for block in face.facets for nodes in block.nodes.tolist()]
-        if wanted & set(own):
-            chosen = np.array([nodes in wanted for nodes in own])
-            if len(wanted) > chosen.sum():
+        face_facets = [tuple(sorted(nodes)) for block in face.facets for nodes in block.nodes.tolist()]
+        if wanted_facets & set(face_facets):
+            chosen = np.array([nodes in wanted_facets for nodes in face_facets])
+            if len(wanted_facets) > chosen.sum():
                 break
             return type(face)(pick_facets(face.facets, chosen), face.area, face.center, face.normal)
     raise CaseError([Problem(f"acoustics.faces[{place}]", name, "a flat surface, for Rayleigh's integral")])
@@ -100,14 +102,14 @@ def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
 def microphones_of(case: Case, mesh: Mesh) -> tuple[dict[str, FloatArray], float | None]:
     """Positions of a case's microphones [m], and the area of the box that the last nine stand on [m²]."""
     assert case.acoustics is not None
-    found = {one.name: np.array(one.position) for one in case.acoustics.microphone}
+    microphones = {microphone.name: np.array(microphone.position) for microphone in case.acoustics.microphone}
     if case.acoustics.microphone_box is None:
-        return found, None
+        return microphones, None
     assert case.acoustics.floor is not None
     low, high = (np.array(corner) for corner in mesh.bounds)
     low[1] = case.acoustics.floor
     positions, area = measurement_box(low, high, case.acoustics.microphone_box)
-    return found | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
+    return microphones | {f"box {number}": place for number, place in enumerate(positions, start=1)}, area
 
 
 def microphone_problems(
@@ -119,23 +121,23 @@ def microphone_problems(
     ----------
     case : Case
     positions : mapping of str to ndarray, shape (3,)
-        Of :func:`microphones_of` [m].
+        Positions of :func:`microphones_of` [m].
     require_in_air : callable
         Raises `HousingError` where points, shape (n, 3), are not in the air.
     """
     assert case.acoustics is not None
-    own = len(case.acoustics.microphone)
+    in_case = len(case.acoustics.microphone)
     for number, (name, place) in enumerate(positions.items()):
         try:
             require_in_air(place[None])
         except HousingError as error:
-            if number < own:
+            if number < in_case:
                 key = f'acoustics.microphone[{number}].position (microphone "{name}")'
                 value = ", ".join(map(millimetres, place.tolist()))
                 yield Problem(key, value, f"a point in the air; {error}")
             else:
-                told = f"a distance at which microphone {name!r} is in the air; {error}"
-                yield Problem("acoustics.microphone_box", millimetres(case.acoustics.microphone_box or 0.0), told)
+                expected = f"a distance at which microphone {name!r} is in the air; {error}"
+                yield Problem("acoustics.microphone_box", millimetres(case.acoustics.microphone_box or 0.0), expected)
 
 
 def require_acoustics(case: Case, mesh: Mesh) -> None:
@@ -144,9 +146,9 @@ def require_acoustics(case: Case, mesh: Mesh) -> None:
     Parameters
     ----------
     case : Case
-        Where it has no `[acoustics]` there is nothing to refuse.
+        Case; without `[acoustics]` there is nothing to refuse.
     mesh : Mesh
-        Of its housing; straight elements do.
+        Mesh of its housing; straight elements suffice.
 
     Raises
     ------
@@ -165,53 +167,53 @@ def require_acoustics(case: Case, mesh: Mesh) -> None:
 
 
 def acoustics_warnings(case: Case, bounds: FloatArray, limit_hz: float | None) -> list[dict[str, Any]]:
-    """Return what is allowed in `[acoustics]` but likely not meant.
+    """Return warnings about values of `[acoustics]` that are allowed but implausible.
 
     Parameters
     ----------
     case : Case
-        Where it has no `[acoustics]` there is no warning.
+        Case; without `[acoustics]` there is no warning.
     bounds : ndarray, shape (2, 3)
         Lowest and highest corner of the housing [m].
     limit_hz : float or None
         Frequency up to which its modes are complete, where that is known [Hz].
     """
-    given = case.acoustics
-    if given is None:
+    acoustics = case.acoustics
+    if acoustics is None:
         return []
-    found = []
+    warnings = []
     size = float(np.ptp(bounds, axis=0).max())
     large = f"the size of the housing, {millimetres(size)}"
-    if given.floor is not None and (depth := float(bounds[0, 1]) - given.floor) > _DEEP * size:
+    if acoustics.floor is not None and (depth := float(bounds[0, 1]) - acoustics.floor) > _DEEP * size:
         message = (
             f"acoustics.floor lies {depth:.3g} m below the housing, {depth / size:.0f} times {large}: there it hardly "
             f"counts; {_IN_METRES}, so that a floor under the soles is floor = '{1e3 * float(bounds[0, 1]):.4g} mm'"
         )
-        found.append(warning("acoustics floor", message, below_m=depth))
+        warnings.append(warning("acoustics floor", message, below_m=depth))
     middle = 0.5 * (bounds[0] + bounds[1])
-    for one in given.microphone:
-        distance = float(np.linalg.norm(np.array(one.position) - middle))
+    for microphone in acoustics.microphone:
+        distance = float(np.linalg.norm(np.array(microphone.position) - middle))
         if distance > _FAR * size:
             message = (
-                f'acoustics.microphone "{one.name}" is {distance:.3g} m from the housing, {distance / size:.0f} times '
-                f"{large}; {_IN_METRES}"
+                f'acoustics.microphone "{microphone.name}" is {distance:.3g} m from the housing, '
+                f"{distance / size:.0f} times {large}; {_IN_METRES}"
             )
-            found.append(warning("acoustics microphone", message, distance_m=distance))
-    if given.microphone_box is not None and given.microphone_box > _FAR * size:
+            warnings.append(warning("acoustics microphone", message, distance_m=distance))
+    if acoustics.microphone_box is not None and acoustics.microphone_box > _FAR * size:
         message = (
-            f"acoustics.microphone_box of {given.microphone_box:.3g} m is {given.microphone_box / size:.0f} times "
-            f"{large}; {_IN_METRES}"
+            f"acoustics.microphone_box of {acoustics.microphone_box:.3g} m is "
+            f"{acoustics.microphone_box / size:.0f} times {large}; {_IN_METRES}"
         )
-        found.append(warning("acoustics microphone", message, distance_m=given.microphone_box))
-    highest = given.highest_frequency
+        warnings.append(warning("acoustics microphone", message, distance_m=acoustics.microphone_box))
+    highest = acoustics.highest_frequency
     if highest is not None and limit_hz is not None and highest > limit_hz * (1.0 + 1e-9):
         message = (
             f"acoustics.highest_frequency of {highest:.5g} Hz is above {limit_hz:.5g} Hz, up to which the housing's "
             "modes are complete: between them the sound lacks modes and may be too low by any amount; raise "
             f"housing.frequency_limit to {highest:.5g} Hz or more, or leave the highest frequency out"
         )
-        found.append(warning("acoustics frequency", message, highest_hz=highest, complete_below_hz=limit_hz))
-    return found
+        warnings.append(warning("acoustics frequency", message, highest_hz=highest, complete_below_hz=limit_hz))
+    return warnings
 
 
 def _face_problems(case: Case, mesh: Mesh) -> list[Problem]:
@@ -231,25 +233,25 @@ def _face_problems(case: Case, mesh: Mesh) -> list[Problem]:
         try:
             _face_elements(case.acoustics, mesh, face).require_resolved(limit, elements=1.5 if straight else 3.0)
         except TriangleSizeError as error:
-            told = f"a face of smaller elements, whose sides are the triangles of 'rayleigh'; {error}"
-            problems.append(Problem(f"acoustics.faces[{place}]", case.acoustics.faces[place], told))
+            expected = f"a face of smaller elements, whose sides are the triangles of 'rayleigh'; {error}"
+            problems.append(Problem(f"acoustics.faces[{place}]", case.acoustics.faces[place], expected))
     positions, _ = microphones_of(case, mesh)
     if len(faces) == 1 and positions:
         problems += microphone_problems(case, positions, _face_elements(case.acoustics, mesh, faces[0]).require_in_air)
     return problems
 
 
-def _face_elements(given: Acoustics, mesh: Mesh, face: FlatFace) -> BoundaryElements:
+def _face_elements(acoustics: Acoustics, mesh: Mesh, face: FlatFace) -> BoundaryElements:
     surface, _ = face_surface(mesh, face.facets)
-    return BoundaryElements(surface, _medium(given), HardPlane(face.center, face.normal))
+    return BoundaryElements(surface, _medium(acoustics), HardPlane(face.center, face.normal))
 
 
-def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Problem]:
-    """Yield what is wrong with the wrap of boundary elements, the floor and the microphones."""
+def _surface_problems(case: Case, acoustics: Acoustics, mesh: Mesh) -> Iterator[Problem]:
+    """Yield the problems of the wrap of boundary elements, the floor and the microphones."""
     limit = highest_known_frequency(case)
     coarse = float(np.ptp(mesh.bounds, axis=0).max()) / _COARSE
-    known = given.mesh_size is not None or limit is not None
-    edge, holes, floor = wrap_settings(case, limit or given.speed_of_sound / (6.0 * coarse))
+    is_size_known = acoustics.mesh_size is not None or limit is not None
+    edge, holes, floor = wrap_settings(case, limit or acoustics.speed_of_sound / (6.0 * coarse))
     written = f"{1e3 * edge:.4g} mm"
     try:
         surface = wrapped(mesh, edge, holes)
@@ -257,19 +259,19 @@ def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Prob
         yield Problem("acoustics.mesh_size", written, f"another edge; {error}")
         return
     except HousingError as error:
-        yield Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")
+        yield Problem("acoustics", acoustics.method, f"a housing that can be wrapped; {error}")
         return
-    elements = _elements_on(surface, given, edge, floor)
+    elements = _elements_on(surface, acoustics, edge, floor)
     positions, _ = microphones_of(case, mesh)
     if elements is None:
         lowest = millimetres(float(mesh.bounds[0, 1]))
         yield Problem(
-            "acoustics.floor", millimetres(given.floor or 0.0), f"a height at or below the soles, y = {lowest}"
+            "acoustics.floor", millimetres(acoustics.floor or 0.0), f"a height at or below the soles, y = {lowest}"
         )
-        elements = BoundaryElements(surface, _medium(given))
+        elements = BoundaryElements(surface, _medium(acoustics))
         # The box stands on the floor, so that its microphones cannot be checked.
-        positions = {one.name: positions[one.name] for one in given.microphone}
-    if known:
+        positions = {microphone.name: positions[microphone.name] for microphone in acoustics.microphone}
+    if is_size_known:
         try:
             elements.require_few()
             if limit is not None:
@@ -280,15 +282,15 @@ def _surface_problems(case: Case, given: Acoustics, mesh: Mesh) -> Iterator[Prob
 
 
 def _elements_on(
-    surface: RadiatingSurface, given: Acoustics, edge: float, floor: HardPlane | None
+    surface: RadiatingSurface, acoustics: Acoustics, edge: float, floor: HardPlane | None
 ) -> BoundaryElements | None:
     """Return the boundary elements of a wrap on or above its floor, if any; None where it cannot stand there."""
     try:
         standing = surface if floor is None else set_down(surface, floor, edge)
-        return BoundaryElements(standing, _medium(given), floor)
+        return BoundaryElements(standing, _medium(acoustics), floor)
     except HousingError:
         return None
 
 
-def _medium(given: Acoustics) -> Medium:
-    return Medium(given.density, given.speed_of_sound)
+def _medium(acoustics: Acoustics) -> Medium:
+    return Medium(acoustics.density, acoustics.speed_of_sound)

@@ -25,7 +25,7 @@ _CODE = (
     "gearwhine.solve.sound.solution",
     "gearwhine.solve.sound.kept_radiation",
 )
-_WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}  # the places of microphones count as they are
+_WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}  # places of microphones count by their coordinates
 
 
 def kept_radiation(
@@ -41,12 +41,12 @@ def kept_radiation(
     Parameters
     ----------
     case : Case
-        With `[acoustics]`.
+        Case with `[acoustics]`.
     housing : SolvedHousing
     radiation : HousingRadiation
-        Of the case and the housing.
+        Radiation of the case's housing.
     places : ndarray, shape (m, 3)
-        Of microphones [m].
+        Places of the microphones [m].
     between : tuple of float
         Lowest and highest frequency [Hz].
     progress : callable
@@ -55,18 +55,18 @@ def kept_radiation(
     -------
     ModalRadiation
     SolvedHousing
-        Whose record holds it.
+        The housing, whose record holds it.
     """
     key = _key(case, places, between)
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
-    found = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
-    # All of an earlier table go: its microphones must not stay where there are none now.
-    others = {name: array for name, array in record.extras.items() if name not in ARRAYS}
-    extras = others | found.arrays()
-    kept = replace(record, extras=extras, notes={**record.notes, _NOTE: key})
-    return found, replace(housing, record=kept, source_holds=False)
+    solved = ModalRadiation.solve(radiation, places, *between, points=POINTS, each=partial(_each, progress=progress))
+    # All arrays of an earlier table are removed: its microphones must not stay where there are none now.
+    other_extras = {name: array for name, array in record.extras.items() if name not in ARRAYS}
+    extras = other_extras | solved.arrays()
+    updated = replace(record, extras=extras, notes={**record.notes, _NOTE: key})
+    return solved, replace(housing, record=updated, source_holds=False)
 
 
 def _each(solve: Any, frequencies: Sequence[float], progress: Progress) -> tuple[Any, ...]:

@@ -23,9 +23,9 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 LINES = 3
-"""Lines of the sound, the loudest."""
+"""Number of lines of the sound, the loudest ones."""
 
-_CANDIDATES = 6  # lines that are solved to find these
+_CANDIDATES = 6  # lines that are solved to find the loudest
 _TWO_PI = 2.0 * np.pi
 
 
@@ -36,9 +36,9 @@ class HarmonicSound:
     Attributes
     ----------
     line : Line
-        With a :class:`coupling.linear.line_outputs.SoundPower`.
+        Line whose output is a :class:`coupling.linear.line_outputs.SoundPower`.
     power : PowerGradient
-        At its frequency.
+        Gradient of the power at its frequency.
     """
 
     line: Line
@@ -51,14 +51,14 @@ class HarmonicSound:
 
     @property
     def rates(self) -> ComplexArray:
-        """q̇ of the housing's coordinates."""
+        """Rates q̇ of the housing's coordinates."""
         output = self.line.output
         assert isinstance(output, SoundPower)
         return np.asarray(1j * self.line.frequency * self.line.motion[output.housing])
 
     @property
     def sound(self) -> RadiatedSound:
-        """What it radiates, superposed of the modes."""
+        """Sound of the line, superposed of the modes."""
         return self.power.sound(self.rates)
 
     def nodal_load(self) -> ComplexArray:
@@ -79,7 +79,7 @@ def loudest_lines(
     ----------
     model : LineModel
     radiation : HousingRadiation
-        With the modes and residual modes of its housing.
+        Radiation with the modes and residual modes of its housing.
     limit : float
         Highest frequency [rad/s].
     chosen : sequence of float, optional
@@ -90,29 +90,29 @@ def loudest_lines(
     housing.HousingError
         Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
-    responses = [one for one in model.responses(limit) if one.frequency >= _TWO_PI * AUDIBLE]
+    responses = [response for response in model.responses(limit) if response.frequency >= _TWO_PI * AUDIBLE]
     if chosen is None:
         responses = _candidates(model, radiation, responses)
     else:
-        responses = [one for one in responses if one.frequency in chosen]
-    found = []
-    for one in responses:
-        power = PowerGradient.at(radiation, one.frequency / _TWO_PI)
-        output = SoundPower(one.frequency, power.resistance, model.housing)
-        if output.value(one.frequency, one.motion) > 0.0:
-            found.append(HarmonicSound(model.line(output, one), power))
-    found.sort(key=lambda one: -one.weighting * one.line.value)
-    for loud in found[:LINES]:
+        responses = [response for response in responses if response.frequency in chosen]
+    sounds = []
+    for response in responses:
+        power = PowerGradient.at(radiation, response.frequency / _TWO_PI)
+        output = SoundPower(response.frequency, power.resistance, model.housing)
+        if output.value(response.frequency, response.motion) > 0.0:
+            sounds.append(HarmonicSound(model.line(output, response), power))
+    sounds.sort(key=lambda sound: -sound.weighting * sound.line.value)
+    for loud in sounds[:LINES]:
         loud.sound.require_proofs()
-    return tuple(found[:LINES])
+    return tuple(sounds[:LINES])
 
 
 def _candidates(model: LineModel, radiation: HousingRadiation, responses: Sequence[Response]) -> list[Response]:
     """Return the responses of the most A-weighted power by an estimate."""
     if not responses:
         return []
-    hertz = np.array([one.frequency for one in responses]) / _TWO_PI
-    rates = np.array([1j * one.frequency * one.motion[model.housing] for one in responses]).T
+    hertz = np.array([response.frequency for response in responses]) / _TWO_PI
+    rates = np.array([1j * response.frequency * response.motion[model.housing] for response in responses]).T
     efficiency = pulsating_efficiency(hertz, radiation.area, radiation.medium.speed_of_sound)
     estimate = radiation.equivalent_power(rates) * efficiency * 10.0 ** (0.1 * a_weighting(hertz))
     order = np.argsort(-estimate, kind="stable")[:_CANDIDATES]

@@ -31,8 +31,8 @@ _BLOCK = 2048  # lines at once
 FADE = 0.02
 """Time over which a record that does not repeat fades in and out [s]."""
 
-_LONGEST_FADE = 0.25  # of the record
-_DECAY = 1.0  # [s] of silence behind a record that does not repeat: a mode of 100 Hz and 1 % decays to a part in 500
+_LONGEST_FADE = 0.25  # longest fade as a part of the record
+_DECAY = 1.0  # silence behind a record that does not repeat [s]: a mode of 100 Hz and 1 % decays to a part in 500
 
 
 @dataclass(frozen=True)
@@ -42,16 +42,17 @@ class MicrophoneHistories:
     Attributes
     ----------
     times : ndarray, shape (s,)
-        [s].
+        Times [s].
     pressure : ndarray, shape (n_microphones, s)
-        [Pa].
+        Sound pressure [Pa].
     error : float
-        Of the transfer's interpolation, see :attr:`housing.acoustics.modal_radiation.ModalRadiation.pressure_error`.
+        Error of the transfer's interpolation, see
+        :attr:`housing.acoustics.modal_radiation.ModalRadiation.pressure_error`.
     source_errors : ndarray, shape (n_microphones,)
         Largest error of known sources over the transfer's frequencies, see
         :attr:`housing.acoustics.modal_radiation.ModalRadiation.point_source_error`.
     source_frequency_hz : float
-        Of the largest of them all.
+        Frequency of the largest of these errors [Hz].
     """
 
     times: FloatArray
@@ -74,13 +75,13 @@ def microphone_histories(
     Parameters
     ----------
     machine : CoupledMachine
-        With a housing.
+        Machine with a housing.
     transfer : ModalRadiation
-        With the microphones as its points.
+        Radiation with the microphones as its points.
     times : ndarray, shape (s,)
-        Evenly spaced [s].
+        Evenly spaced times [s].
     forces : mapping of str to ndarray, shape (s, d)
-        Of each bearing over time [N, N m].
+        Forces and moments of each bearing over time [N, N m].
     repeats : bool
         Whether the record holds whole periods; else it fades in and out, and silence is put behind it, so that its end
         does not sound at its beginning.
@@ -89,19 +90,19 @@ def microphone_histories(
     weights = np.ones(len(times)) if repeats else fading_weights(len(times), interval)
     length = len(times) if repeats else len(times) + int(np.ceil(_DECAY / interval))
     lines = np.asarray(np.fft.rfftfreq(length, interval), dtype=np.float64)
-    kept = np.flatnonzero((lines >= transfer.frequencies[0]) & (lines <= transfer.frequencies[-1]))
+    covered = np.flatnonzero((lines >= transfer.frequencies[0]) & (lines <= transfer.frequencies[-1]))
     degree = 0 if repeats else 1
     spectra = {
         name: np.fft.rfft(weights[:, None] * _less_its_trend(force, degree), length, axis=0)
         for name, force in forces.items()
     }
     sound = np.zeros((len(lines), len(transfer.delays)), dtype=np.complex128)
-    for start in range(0, len(kept), _BLOCK):
-        some = kept[start : start + _BLOCK]
-        omega = np.asarray(_TWO_PI * lines[some], dtype=np.float64)
-        paths = housing_paths(machine, omega, {name: values[some] for name, values in spectra.items()})
+    for start in range(0, len(covered), _BLOCK):
+        block = covered[start : start + _BLOCK]
+        omega = np.asarray(_TWO_PI * lines[block], dtype=np.float64)
+        paths = housing_paths(machine, omega, {name: values[block] for name, values in spectra.items()})
         rates = paths.acceleration.sum(axis=1) / (1j * omega[:, None])
-        sound[some] = (transfer.pressure_at(lines[some]) @ rates[..., None])[..., 0]
+        sound[block] = (transfer.pressure_at(lines[block]) @ rates[..., None])[..., 0]
     pressure = np.fft.irfft(sound, length, axis=0)[: len(times)] * weights[:, None]
     return MicrophoneHistories(
         np.asarray(times),
@@ -119,7 +120,7 @@ def fading_weights(count: int, interval: float) -> FloatArray:
     ----------
     count : int
     interval : float
-        Between samples [s].
+        Time between samples [s].
     """
     length = max(min(round(FADE / interval), int(_LONGEST_FADE * count)), 1)
     rising = np.sin(0.5 * np.pi * np.arange(length) / length) ** 2

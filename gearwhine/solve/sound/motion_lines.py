@@ -1,8 +1,8 @@
 """Lines of a motion that drive the housing: the bearings' forces at each frequency, and the housing's motion by them.
 
-Of a steady state they are the harmonics of its period; where motions are superposed, lines that meet at one frequency
-are added as the complex amplitudes that they are. Of a record of whole periods they are its spectral lines; of another
-record they are its tones, see :mod:`coupling.signals.tones`.
+The lines of a steady state are the harmonics of its period; where motions are superposed, the complex amplitudes of
+lines at one frequency are added. The lines of a record of whole periods are its spectral lines; those of another record
+are its tones, see :mod:`coupling.signals.tones`.
 """
 
 from collections.abc import Mapping
@@ -27,14 +27,14 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_SAME_LINE = 1e-6  # of the spacing of lines: distance of two that are one, by rounding
-_EXACT = 0.02  # of the spacing of exact lines: distance of a line from the frequency of its cause
-_FOUND = 0.5  # the same of tones that are found between the lines
-_FORCES = 3  # of a bearing's axes x, y, z and the rotations about x and y
+_SAME_LINE = 1e-6  # distance up to which two lines are one, over the spacing of lines
+_EXACT = 0.02  # distance of an exact line from the frequency of its cause, over the spacing of lines
+_FOUND = 0.5  # distance of a tone between the lines from the frequency of its cause, over their spacing
+_FORCES = 3  # number of forces: a bearing's axes are x, y, z and the rotations about x and y
 _FAINT = 1e-6  # part of the largest line's estimated power below which a line is left out
-_NAMED = 12  # lines that are left out
-_WORTH_NAMING = 1e-3  # part of the estimated power of one that is
-_HARMONICS = (1, 2, 3)  # of each mesh that are named where they are too high
+_NAMED = 12  # largest number of lines that are named as left out
+_WORTH_NAMING = 1e-3  # part of the estimated power from which a line is named as left out
+_HARMONICS = (1, 2, 3)  # harmonics of each mesh that are named where they are above the limit
 
 AUDIBLE = 20.0
 """Lowest frequency of a sound [Hz]."""
@@ -47,9 +47,9 @@ class MotionLines:
     Attributes
     ----------
     frequencies : ndarray, shape (l,)
-        [Hz], above 0, ascending, each once.
+        Frequencies above 0, ascending, each once [Hz].
     forces : mapping of str to ndarray of complex, shape (l, d)
-        Of each bearing on the housing [N, N m].
+        Forces and moments of each bearing on the housing [N, N m].
     tolerance : float
         Distance of a line from the frequency of its cause, for its name [Hz].
     """
@@ -60,9 +60,9 @@ class MotionLines:
 
     def between(self, low: float, high: float) -> "MotionLines":
         """Return the lines from one frequency to another [Hz]."""
-        kept = (self.frequencies >= low) & (self.frequencies <= high * (1.0 + 1e-9))
-        forces = {name: force[kept] for name, force in self.forces.items()}
-        return MotionLines(self.frequencies[kept], forces, self.tolerance)
+        inside = (self.frequencies >= low) & (self.frequencies <= high * (1.0 + 1e-9))
+        forces = {name: force[inside] for name, force in self.forces.items()}
+        return MotionLines(self.frequencies[inside], forces, self.tolerance)
 
     def paths(self, machine: CoupledMachine) -> HousingPaths:
         """Motion of the housing by each bearing's force, see :func:`coupling.signals.transfer_paths.housing_paths`."""
@@ -106,20 +106,20 @@ def left_out_warnings(case: Case) -> list[dict[str, Any]]:
     """Return the warning that the sound of a motion's lines is left out, and why; none where it is not."""
     why = without_lines(case)
     moves = case.operation is not None and case.operation.base is not None
-    what = "the sound of the motion" if moves else "the sound of lines"
-    return [warning("sound_left_out", f"{what} is left out: {why}")] if why else []
+    subject = "the sound of the motion" if moves else "the sound of lines"
+    return [warning("sound_left_out", f"{subject} is left out: {why}")] if why else []
 
 
 def lines_of_steady(solved: SolvedSteady, limit: float) -> MotionLines:
     """Lines of a periodic motion up to a limit [Hz], or of the sum of all motions that are superposed."""
-    found = []
+    lines = []
     for motion in solved.motions[: 1 if solved.superposed is None else None]:
         spectra = {
             name: amplitude_spectrum(np.ascontiguousarray(force.T), motion.response.period / len(force))
             for name, force in motion.histories.bearing_reaction.items()
         }
-        found.append(_lines_of(spectra, _EXACT / motion.response.period))
-    return superposed_lines(found).between(np.finfo(float).tiny, limit)
+        lines.append(_lines_of(spectra, _EXACT / motion.response.period))
+    return superposed_lines(lines).between(np.finfo(float).tiny, limit)
 
 
 def superposed_lines(motions: "list[MotionLines]") -> MotionLines:
@@ -128,7 +128,7 @@ def superposed_lines(motions: "list[MotionLines]") -> MotionLines:
     Parameters
     ----------
     motions : list of MotionLines
-        One or more, of the same bearings, with phases at the same time.
+        One or more motions of the same bearings, with phases at the same time.
     """
     if len(motions) == 1:
         return motions[0]
@@ -147,8 +147,8 @@ def superposed_lines(motions: "list[MotionLines]") -> MotionLines:
 def lines_of_run(solved: SolvedTransient, limit: float) -> MotionLines:
     """Lines of a transient's record at steady speed up to a limit [Hz]; none where no bearing stands in the housing.
 
-    Where the record does not hold whole periods they are tones between its spectral lines, whose frequencies are those
-    of the forces along x, y and z of all bearings together.
+    The lines of a record without whole periods are tones between its spectral lines; their frequencies are those of the
+    forces along x, y and z of all bearings together.
     """
     histories = solved.histories
     spectra = {
@@ -169,20 +169,20 @@ def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]
     Parameters
     ----------
     spectra : mapping of str to Spectrum
-        Of each bearing's forces and moments, shape (d, m).
+        Spectra of each bearing's forces and moments, shape (d, m).
     axes : mapping of str to tuple of int
         Axis of each of them: 0 to 2 for forces, 3 and 4 for moments.
     """
     first = next(iter(spectra.values()))
     together = Spectrum(
         first.frequencies,
-        np.concatenate([one.amplitude for one in spectra.values()]),
-        np.concatenate([one.phase for one in spectra.values()]),
+        np.concatenate([spectrum.amplitude for spectrum in spectra.values()]),
+        np.concatenate([spectrum.phase for spectrum in spectra.values()]),
         first.window,
     )
     weights = [float(axis < _FORCES) for name in spectra for axis in axes[name]]
     tones = hann_tones(together, weights)
-    ends = np.cumsum([len(one.amplitude) for one in spectra.values()])[:-1]
+    ends = np.cumsum([len(spectrum.amplitude) for spectrum in spectra.values()])[:-1]
     parts = np.split(tones.amplitudes, ends)
     forces = {name: np.asarray(part.T) for name, part in zip(spectra, parts, strict=True)}
     return MotionLines(tones.frequencies, forces, _FOUND * first.spacing)
@@ -202,9 +202,9 @@ def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, Fl
     Returns
     -------
     frequencies : ndarray, shape (l,)
-        [Hz]
+        Frequencies [Hz].
     rates : ndarray, shape (l, n, 2)
-        Real and imaginary part.
+        Real and imaginary parts.
     names : list of LineName
     """
     assert case.acoustics is not None
@@ -244,7 +244,7 @@ def left_out_lines(
     estimate: FloatArray,
     chosen: npt.NDArray[np.intp],
     limit: float,
-    known: float,
+    complete_below: float,
 ) -> tuple[LeftOut, ...]:
     """Return the strongest lines that are not solved, and the low harmonics of each mesh above the limit [Hz]."""
     shares = estimate / max(float(estimate.sum()), np.finfo(float).tiny)
@@ -252,15 +252,19 @@ def left_out_lines(
     rest = rest[np.argsort(-shares[rest], kind="stable")][:_NAMED]
     rest = rest[shares[rest] >= _WORTH_NAMING]
     names = line_names(machine, motion.frequencies[rest].tolist(), motion.tolerance, None)
-    found = [
+    left_out = [
         LeftOut(name.name, float(motion.frequencies[number]), float(shares[number]))
         for name, number in zip(names, rest.tolist(), strict=True)
     ]
     turning_hz = abs(machine.speeds[machine.leading_rotor]) / _TWO_PI
     for line in excitation_lines(machine, shaft_orders=(), mesh_harmonics=_HARMONICS):
         hertz = line.order * turning_hz
-        if hertz <= limit * (1.0 + 1e-9) or any(abs(one.frequency_hz - hertz) <= motion.tolerance for one in found):
+        if hertz <= limit * (1.0 + 1e-9) or any(
+            abs(line.frequency_hz - hertz) <= motion.tolerance for line in left_out
+        ):
             continue
-        here = np.abs(motion.frequencies - hertz) <= motion.tolerance
-        found.append(LeftOut(line.name, hertz, float(shares[here].sum()) if hertz <= known * (1.0 + 1e-9) else None))
-    return tuple(found)
+        at_line = np.abs(motion.frequencies - hertz) <= motion.tolerance
+        left_out.append(
+            LeftOut(line.name, hertz, float(shares[at_line].sum()) if hertz <= complete_below * (1.0 + 1e-9) else None)
+        )
+    return tuple(left_out)

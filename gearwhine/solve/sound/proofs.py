@@ -1,4 +1,4 @@
-"""Proofs of a sound as they are told: power by two ways, the pressure inside, and the error of known sources inside."""
+"""Proofs of a sound: power by two ways, the pressure inside, and the error of known sources inside."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -41,27 +41,27 @@ def known_source_at(sound: RadiatedSound, places: FloatArray) -> FloatArray | No
     ----------
     sound : RadiatedSound
     places : ndarray, shape (m, 3)
-        [m]
+        Places of the microphones [m].
     """
     return None if not len(places) or known_source(sound) is None else sound.source_error_at(places)
 
 
 def _is_closed(sound: RadiatedSound) -> bool:
-    return any(isinstance(one, SoundField) and not one.baffled for one in sound.fields)
+    return any(isinstance(field, SoundField) and not field.baffled for field in sound.fields)
 
 
-def doubts(sound: RadiatedSound, what: str) -> list[dict[str, Any]]:
+def doubts(sound: RadiatedSound, source: str) -> list[dict[str, Any]]:
     """Return warnings where the pressure inside or known sources do not prove the sound of a line or a mode."""
-    found = []
+    warnings = []
     error = known_source(sound)
     for name, doubt, figures in (
         ("interior_pressure", sound.doubt, {"relative": interior_pressure(sound)}),
         ("known_source", sound.source_doubt, {"relative": None if error is None else error.largest}),
     ):
         if doubt is not None:
-            message = f"the sound of {what} at {sound.frequency_hz:.1f} Hz is doubtful: {doubt}"
-            found.append(warning(name, message, frequency_hz=sound.frequency_hz, **figures))
-    return found
+            message = f"the sound of {source} at {sound.frequency_hz:.1f} Hz is doubtful: {doubt}"
+            warnings.append(warning(name, message, frequency_hz=sound.frequency_hz, **figures))
+    return warnings
 
 
 def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[dict[str, Any]]:
@@ -71,9 +71,9 @@ def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[
     ----------
     frequency_hz : float
     errors : mapping of str to float
-        Relative error of known sources at each microphone; of several the largest is told.
+        Relative error of known sources at each microphone; the largest is reported.
     """
-    name = max(errors, key=lambda one: errors[one], default=None)
+    name = max(errors, key=lambda source: errors[source], default=None)
     if name is None or not SOURCE_HEARD < errors[name] < np.inf:
         return []
     message = (
@@ -83,35 +83,37 @@ def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[
     return [warning("microphone_known_source", message, frequency_hz=frequency_hz, relative=errors[name])]
 
 
-def gathered(told: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Keep the worst of the warnings of known sources, with the number of the others: they belong to frequencies alone.
+def gathered(warnings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Merge the warnings of known sources into the worst one, with the number of the others.
 
     Parameters
     ----------
-    told : sequence of dict
-        Warnings of any kind, of which the others stay as they are.
+    warnings : sequence of dict
+        Warnings of any kind; those of other kinds stay as they are.
     """
-    found = [one for one in told if one["name"] not in _GATHERED]
+    merged = [entry for entry in warnings if entry["name"] not in _GATHERED]
     for name in _GATHERED:
-        alike = [one for one in told if one["name"] == name]
+        alike = [entry for entry in warnings if entry["name"] == name]
         if alike:
-            worst = max(alike, key=lambda one: np.inf if one["relative"] is None else float(one["relative"]))
+            worst_entry = max(
+                alike, key=lambda entry: np.inf if entry["relative"] is None else float(entry["relative"])
+            )
             others = len(alike) - 1
             more = f" ({others} more {'is' if others == 1 else 'are'} doubtful, too)" if others else ""
-            found.append(worst | {"message": worst["message"] + more, "count": len(alike)})
-    return found
+            merged.append(worst_entry | {"message": worst_entry["message"] + more, "count": len(alike)})
+    return merged
 
 
 def require_proofs(
-    sounds: Sequence[RadiatedSound], what: str = "a line", *, alone: bool = False
+    sounds: Sequence[RadiatedSound], source: str = "a line", *, alone: bool = False
 ) -> list[dict[str, Any]]:
-    """Hold sounds against their proofs, but for those too weak to count.
+    """Check sounds by their proofs, except those too weak to count.
 
     Parameters
     ----------
     sounds : sequence of RadiatedSound
-    what : str
-        Makes the sound, in words.
+    source : str
+        Source of the sound, in words.
     alone : bool
         As in :func:`housing.acoustics.radiation.require_proved`.
 
@@ -125,4 +127,4 @@ def require_proofs(
     housing.HousingError
         As :func:`housing.acoustics.radiation.require_proved`.
     """
-    return [told for sound in require_proved(sounds, alone=alone) for told in doubts(sound, what)]
+    return [entry for sound in require_proved(sounds, alone=alone) for entry in doubts(sound, source)]

@@ -77,7 +77,7 @@ class SoundLine:
     name : str
         Name of the line, such as ``2x mesh``.
     order : float
-        Over the speed of the first driver's rotor.
+        Frequency over the speed of the first driver's rotor.
     sound : RadiatedSound
     microphones : ndarray of complex, shape (n_microphones,)
         Sound pressure [Pa].
@@ -99,7 +99,7 @@ class SoundLine:
 
     @property
     def level_db_a(self) -> float:
-        """A-weighted [dB(A)]."""
+        """A-weighted sound power level [dB(A)]."""
         return self.level_db + float(a_weighting(self.frequency_hz))
 
     @cached_property
@@ -130,10 +130,10 @@ class ModeSound:
     Attributes
     ----------
     number : int
-        From 1.
+        Number of the mode, from 1.
     frequency_hz : float
     radiation_efficiency : float
-        σ.
+        Radiation efficiency σ.
     face_shares : dict of str to float
         Power through each face relative to the sound power, the largest first.
     power_balance_db, interior_pressure : float or None
@@ -164,19 +164,19 @@ class SolvedSound:
     mode_frequencies : ndarray, shape (n_modes,)
         Natural frequencies of the housing's modes [Hz].
     bearings : tuple of str
-        That the motions of each line's sound stand for.
+        Bearings, in the order of the motions of each line's sound.
     covered : float
         Part of all lines' power that these lines hold, by the equivalent power times a pulsating sphere's efficiency.
     left_out : tuple of LeftOut
-        The strongest of the others, and the low mesh harmonics above `limit_hz`.
+        Strongest lines that are not solved, and low mesh harmonics above `limit_hz`.
     microphones : dict of str to ndarray, shape (3,)
         Positions [m].
     box_area : float or None
-        Of the measurement surface of ISO 3744 that the last `BOX_MICROPHONES` stand on [m²].
+        Area of the measurement surface of ISO 3744 that the last `BOX_MICROPHONES` stand on [m²].
     limit_hz : float
-        Highest frequency of the sound.
+        Highest frequency of the sound [Hz].
     told : tuple of dict
-        Warnings of solutions that are doubtful.
+        Warnings of doubtful solutions.
     histories : MicrophoneHistories or None
         Sound pressure over time at the microphones.
     """
@@ -249,20 +249,20 @@ class SolvedSound:
     @property
     def power_balance_db(self) -> float | None:
         """Power balance of the line or mode where it is worst, of those that count [dB]; None of an estimate."""
-        found = [one.power_balance_db for one in self._counted if one.power_balance_db is not None]
-        return max(found, key=abs, default=None)
+        balances = [sound.power_balance_db for sound in self._counted if sound.power_balance_db is not None]
+        return max(balances, key=abs, default=None)
 
     @property
     def interior_pressure(self) -> float | None:
         """Pressure inside, of the line or mode where it is largest, of those that count; None without an inside."""
-        found = [one.interior_pressure for one in self._counted if one.interior_pressure is not None]
-        return max(found, default=None)
+        pressures = [sound.interior_pressure for sound in self._counted if sound.interior_pressure is not None]
+        return max(pressures, default=None)
 
     @property
     def known_source(self) -> SourceError | None:
         """Error of known sources, of the line or mode where it is largest, of those that count; None without one."""
-        found = [one.known_source for one in self._counted if one.known_source is not None]
-        return max(found, key=lambda error: error.largest, default=None)
+        errors = [sound.known_source for sound in self._counted if sound.known_source is not None]
+        return max(errors, key=lambda error: error.largest, default=None)
 
     @property
     def microphone_errors(self) -> dict[str, float]:
@@ -270,11 +270,13 @@ class SolvedSound:
 
         Empty where there is no such proof.
         """
-        found = [line.microphone_errors for line in self.lines if line.microphone_errors is not None]
+        errors = [line.microphone_errors for line in self.lines if line.microphone_errors is not None]
         if self.histories is not None and self.radiation.method == "boundary-elements":
-            found.append(self.histories.source_errors)
-        worst = np.max(found, axis=0).tolist() if found else []
-        return {name: error for name, error in zip(self.microphones, worst, strict=bool(found)) if np.isfinite(error)}
+            errors.append(self.histories.source_errors)
+        largest = np.max(errors, axis=0).tolist() if errors else []
+        return {
+            name: error for name, error in zip(self.microphones, largest, strict=bool(errors)) if np.isfinite(error)
+        }
 
     @property
     def _counted(self) -> "list[SoundLine | ModeSound]":
@@ -284,9 +286,9 @@ class SolvedSound:
 
     def warnings(self) -> list[dict[str, Any]]:
         """Warnings of solutions that are doubtful."""
-        found = list(self.told)
+        entries = list(self.told)
         if self.histories is not None and self.histories.error > _ROUGH:
-            found.append(
+            entries.append(
                 warning(
                     "microphone_interpolation",
                     f"sound pressure over time is doubtful: the transfer to the microphones is interpolated over "
@@ -294,20 +296,20 @@ class SolvedSound:
                     relative=self.histories.error,
                 )
             )
-        return gathered([*found, *self._microphone_doubts()])
+        return gathered([*entries, *self._microphone_doubts()])
 
     def _microphone_doubts(self) -> list[dict[str, Any]]:
         """Warnings of microphones at which known sources are off, of lines that count and of the sound over time."""
         counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
-        told: list[dict[str, Any]] = []
+        entries: list[dict[str, Any]] = []
         for line in self.lines:
             if line.microphone_errors is not None and id(line.sound) in counted:
                 errors = dict(zip(self.microphones, line.microphone_errors.tolist(), strict=True))
-                told += microphone_doubts(line.frequency_hz, errors)
+                entries += microphone_doubts(line.frequency_hz, errors)
         if self.histories is not None and self.radiation.method == "boundary-elements":
             errors = dict(zip(self.microphones, self.histories.source_errors.tolist(), strict=True))
-            told += microphone_doubts(self.histories.source_frequency_hz, errors)
-        return told
+            entries += microphone_doubts(self.histories.source_frequency_hz, errors)
+        return entries
 
 
 def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = silent) -> HousingRadiation:
@@ -320,16 +322,16 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
         there or not flat.
     """
     assert case.acoustics is not None
-    given = case.acoustics
+    acoustics = case.acoustics
     shapes = housing.modes.shapes
     if housing.modes.residual_modes is not None:
         shapes = np.concatenate([shapes, housing.modes.residual_modes.shapes])
-    medium = Medium(given.density, given.speed_of_sound)
+    medium = Medium(acoustics.density, acoustics.speed_of_sound)
     if problems := surface_names(case, housing.mesh):
         raise CaseError(problems)
-    if given.method == "rayleigh":
+    if acoustics.method == "rayleigh":
         progress("the flat faces that radiate")
-        faces = {name: flat_face(housing.mesh, name, place) for place, name in enumerate(given.faces)}
+        faces = {name: flat_face(housing.mesh, name, place) for place, name in enumerate(acoustics.faces)}
         return HousingRadiation.of_faces(housing.mesh, shapes, faces, medium=medium)
     limit = highest_frequency(case, housing)
     edge, holes, floor = wrap_settings(case, limit)
@@ -340,17 +342,17 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
             shapes,
             edge=edge,
             close_holes=holes,
-            method=given.method,
+            method=acoustics.method,
             medium=medium,
             floor=floor,
-            still=given.still,
+            still=acoustics.still,
             natural_modes=len(housing.modes.shapes),
             highest_frequency=limit,
         )
     except TriangleSizeError as error:
         raise CaseError([Problem("acoustics.mesh_size", f"{1e3 * edge:.4g} mm", f"another edge; {error}")]) from error
     except HousingError as error:
-        raise CaseError([Problem("acoustics", given.method, f"a housing that can be wrapped; {error}")]) from error
+        raise CaseError([Problem("acoustics", acoustics.method, f"a housing that can be wrapped; {error}")]) from error
 
 
 def highest_frequency(case: Case, housing: SolvedHousing) -> float:
@@ -371,12 +373,12 @@ def solve_sound(
     Parameters
     ----------
     case : Case
-        With `[acoustics]`.
+        Case with `[acoustics]`.
     housing : SolvedHousing
     motion : MotionLines, optional
-        Of the machine, up to :func:`highest_estimated` where they shall be told that are left out.
+        Lines of the machine's motion, up to :func:`highest_estimated` so that lines left out can be reported.
     machine : CoupledMachine, optional
-        That moves.
+        Machine that moves.
     progress : callable
 
     Raises
@@ -394,7 +396,7 @@ def solve_sound(
     # Before the work; all of them.
     if problems := list(microphone_problems(case, positions, radiation.require_in_air)):
         raise CaseError(problems)
-    told = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
+    warnings = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
 
     def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
         rates = np.zeros((radiation.modal[0].shape[1], 1))
@@ -410,12 +412,12 @@ def solve_sound(
     modes = []
     for mode, sound in in_order(of_mode, numbers, "sound of the housing's modes", progress):
         modes.append(mode)
-        told += require_proofs([sound], f"housing mode {mode.number}", alone=True)
-    found = SolvedSound(
-        radiation, tuple(modes), (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(told)
+        warnings += require_proofs([sound], f"housing mode {mode.number}", alone=True)
+    solved = SolvedSound(
+        radiation, tuple(modes), (), housing.modes.frequencies_hz, (), 0.0, positions, area, limit, told=tuple(warnings)
     )
     if motion is None or machine is None or not len((motion := motion.between(AUDIBLE, np.inf)).frequencies):
-        return found
+        return solved
 
     paths = motion.paths(machine)
     rates = motion.rates(paths)
@@ -432,15 +434,15 @@ def solve_sound(
         return SoundLine(hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, places))
 
     lines = in_order(of_line, range(len(chosen)), "sound of the lines", progress)
-    told += require_proofs([line.sound for line in lines])
+    warnings += require_proofs([line.sound for line in lines])
     total = float(estimate.sum())
     return replace(
-        found,
+        solved,
         lines=lines,
         bearings=paths.bearings,
         covered=float(estimate[chosen].sum()) / total if total > 0.0 else 0.0,
         left_out=left_out_lines(machine, motion, estimate, chosen, limit, highest_estimated(case, housing)),
-        told=tuple(told),
+        told=tuple(warnings),
     )
 
 
@@ -461,18 +463,18 @@ def with_histories(
     Parameters
     ----------
     case : Case
-        One whose base moves has none: the base drives the housing beside its bearings.
+        Case without a moving base, which would drive the housing beside its bearings.
     housing : SolvedHousing
     solved : SolvedSound
-        Without microphones it is returned as it is.
+        Solved sound; without microphones it is returned unchanged.
     transient : SolvedTransient
-        Of a long record the last stretch is taken.
+        Motion of the machine; the last stretch of a long record is taken.
 
     Returns
     -------
     SolvedSound
     SolvedHousing
-        Whose record holds the radiation over frequency.
+        The housing, whose record holds the radiation over frequency.
     """
     places = np.array(list(solved.microphones.values()))
     moves = case.operation is not None and case.operation.base is not None
