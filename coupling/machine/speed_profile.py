@@ -38,24 +38,24 @@ class SpeedProfile:
     ----------
     times : ndarray, shape (k,)
         Times [s], ascending.
-    rates : ndarray, shape (k,)
+    speed_ratios : ndarray, shape (k,)
         Relative speeds s', not negative: reversed rotation would load the other flanks.
     """
 
     times: FloatArray
-    rates: FloatArray
+    speed_ratios: FloatArray
 
     def __post_init__(self) -> None:
         """Require finite speeds of one sense, one for each time, and times that ascend."""
-        if self.times.ndim != 1 or self.times.shape != self.rates.shape or not self.times.size:
+        if self.times.ndim != 1 or self.times.shape != self.speed_ratios.shape or not self.times.size:
             raise CouplingError(
-                f"speeds of shape {self.rates.shape} at times of shape {self.times.shape}; expected as many"
+                f"speeds of shape {self.speed_ratios.shape} at times of shape {self.times.shape}; expected as many"
             )
-        if not (np.all(np.isfinite(self.times)) and np.all(np.isfinite(self.rates))):
+        if not (np.all(np.isfinite(self.times)) and np.all(np.isfinite(self.speed_ratios))):
             raise CouplingError("a speed over time that is not finite")
         if np.any(np.diff(self.times) <= 0.0):
             raise CouplingError("the times of a speed over time do not ascend")
-        if np.any(self.rates < 0.0):
+        if np.any(self.speed_ratios < 0.0):
             raise CouplingError("a speed over time changes its sign; expected one sense of rotation")
 
     @staticmethod
@@ -66,20 +66,20 @@ class SpeedProfile:
     @property
     def is_steady(self) -> bool:
         """Whether the speeds are the nominal ones at all times."""
-        return bool(np.all(self.rates == 1.0))
+        return bool(np.all(self.speed_ratios == 1.0))
 
     @cached_property
     def _pieces(self) -> FloatArray:
         """Rows t, s, s' and s'' at the start of each interval; the first interval begins in the infinite past."""
         gaps = np.diff(self.times)
-        slopes = np.concatenate([[0.0], np.diff(self.rates) / gaps, [0.0]])
-        nominal_time = np.concatenate([[0.0], np.cumsum(0.5 * (self.rates[1:] + self.rates[:-1]) * gaps)])
+        slopes = np.concatenate([[0.0], np.diff(self.speed_ratios) / gaps, [0.0]])
+        nominal_time = np.concatenate([[0.0], np.cumsum(0.5 * (self.speed_ratios[1:] + self.speed_ratios[:-1]) * gaps)])
         begins = np.concatenate([self.times[:1], self.times])
         pieces = np.column_stack(
             [
                 begins,
                 np.concatenate([nominal_time[:1], nominal_time]),
-                np.concatenate([self.rates[:1], self.rates]),
+                np.concatenate([self.speed_ratios[:1], self.speed_ratios]),
                 slopes,
             ]
         )

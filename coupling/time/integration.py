@@ -38,7 +38,7 @@ def coarsest_step(system: CoupledSystem, profile: SpeedProfile, largest: float) 
     """Coarsest step [s]: it resolves the highest natural frequency, and the largest step at the highest speed."""
     highest = system.highest_frequency
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
-    return float(min(largest / max(1.0, float(profile.rates.max())), resolving))
+    return float(min(largest / max(1.0, float(profile.speed_ratios.max())), resolving))
 
 
 def same_time(step: float) -> float:
@@ -92,7 +92,7 @@ def _known_times(system: CoupledSystem, profile: SpeedProfile) -> Iterator[Float
         yield profile.times
         # Connectors change their slope over speed where these speeds are passed.
         for rate in system.connector_speed_ratios if len(system.connector_speed_ratios) > 1 else ():
-            before, after = profile.rates[:-1] - rate, profile.rates[1:] - rate
+            before, after = profile.speed_ratios[:-1] - rate, profile.speed_ratios[1:] - rate
             crossing = before * after < 0.0
             part = before[crossing] / (before[crossing] - after[crossing])
             yield profile.times[:-1][crossing] + part * np.diff(profile.times)[crossing]
@@ -401,7 +401,7 @@ def timed_amplitude(system: CoupledSystem) -> FloatArray | float:
 
 def _resting(system: CoupledSystem, profile: SpeedProfile, applied: FloatArray, duration: float) -> FloatArray:
     """Coordinates under the loads' amplitudes at rest, shape (n,); F t²/2 where nothing resists."""
-    fastest = max(1.0, float(profile.rates.max())) ** 2
+    fastest = max(1.0, float(profile.speed_ratios.max())) ** 2
     loads = sum((fastest * np.abs(load.amplitude) for load in system.harmonic_loads), np.zeros(system.size)) + applied
     stiffness = np.abs(np.diag(system.mean_stiffness))
     compliance = np.full(system.size, 0.5 * duration**2)

@@ -110,7 +110,7 @@ class StepCache:
     _MOST_BYTES = 32 << 20
 
     def __init__(self, arrays: KernelArrays, profile: SpeedProfile) -> None:
-        self._arrays, self._steady, self._rate = arrays, profile.is_steady, float(profile.rates[0])
+        self._arrays, self._steady, self._rate = arrays, profile.is_steady, float(profile.speed_ratios[0])
         self._kinds: dict[float, int] = {}
         self.matrices = _room_for_steps(arrays, self._ROOM)
 

@@ -65,7 +65,7 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
         # The torque at the nominal speed is the mean load, about which meshes are linear and their load shuttles.
         mean = _torque(operation.load, nominal)
         torques += applied_torques(case, mean)
-        beyond = np.array([_torque(operation.load, rate * nominal) for rate in turning.rates]) - mean
+        beyond = np.array([_torque(operation.load, rate * nominal) for rate in turning.speed_ratios]) - mean
         torques += [_history(share, turning.times, beyond) for share in shares]
     else:
         torques += applied_torques(case)
@@ -74,7 +74,7 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
     torques += _variations(case, shares)
     drives = [Drive(shares[0].rotor, shares[0].at)] if shares else []
     # The nominal speed is among those at which the machine is assembled.
-    rates = np.array([1.0, *(() if turning is None else turning.rates)])
+    rates = np.array([1.0, *(() if turning is None else turning.speed_ratios)])
     return CaseDriving(
         torques,
         drives,

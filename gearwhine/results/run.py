@@ -192,8 +192,8 @@ SIGNATURE = (
 )
 
 RUN = (
-    Quantity("from_rpm", lambda solved: solved.speed * solved.turning.rates[0] * RPM),
-    Quantity("to_rpm", lambda solved: solved.speed * solved.turning.rates[-1] * RPM),
+    Quantity("from_rpm", lambda solved: solved.speed * solved.turning.speed_ratios[0] * RPM),
+    Quantity("to_rpm", lambda solved: solved.speed * solved.turning.speed_ratios[-1] * RPM),
     Quantity("seconds", lambda solved: solved.turning.times[-1]),
     Quantity("revolutions", lambda solved: solved.revolutions),
 )

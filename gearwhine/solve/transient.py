@@ -195,7 +195,7 @@ def solve_transient(
     assert case.transient is not None
     assert case.operation is not None
     turning = driving(case, machine.rotors).turning
-    fastest = 1.0 if turning is None else max(1.0, float(turning.rates.max()))
+    fastest = 1.0 if turning is None else max(1.0, float(turning.speed_ratios.max()))
     limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
     modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)

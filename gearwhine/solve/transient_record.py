@@ -257,7 +257,7 @@ def sampling(
     assert case.transient is not None
     transient = case.transient
     nominal = _TWO_PI / abs(case.operation.speed)
-    period = nominal / (1.0 if turning is None else float(turning.rates.max()))
+    period = nominal / (1.0 if turning is None else float(turning.speed_ratios.max()))
     per_revolution = _power_of_two(max(transient.points_per_revolution, _OVERSAMPLING * limit * period))
     settings = TransientSettings(
         duration=transient_duration(case),

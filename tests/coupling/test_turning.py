@@ -45,9 +45,11 @@ turnings = st.builds(
 @given(turnings, st.floats(-5.0, 20.0).filter(lambda time: abs(time) > 1e-3))
 def test_turned_time_is_the_integral_of_the_rate(turning: SpeedProfile, time: float) -> None:
     turned, rate, _ = (float(value[0]) for value in turning.at(time))
-    assert rate == pytest.approx(np.interp(time, turning.times, turning.rates), abs=1e-12)
+    assert rate == pytest.approx(np.interp(time, turning.times, turning.speed_ratios), abs=1e-12)
     kinks = [float(t) for t in turning.times if min(0.0, time) < t < max(0.0, time)]
-    integral = quad(lambda t: float(np.interp(t, turning.times, turning.rates)), 0.0, time, points=kinks or None)[0]
+    integral = quad(
+        lambda t: float(np.interp(t, turning.times, turning.speed_ratios)), 0.0, time, points=kinks or None
+    )[0]
     assert turned == pytest.approx(integral, abs=1e-9)
 
 
@@ -165,7 +167,7 @@ def reference(slope, breaks: FloatArray, times: FloatArray) -> FloatArray:  # ty
 
 
 def kinks() -> FloatArray:
-    speeds = [np.interp(0.0, RUN_UP.rates[:2] - rate, RUN_UP.times[:2]) for rate in (1.0,)]
+    speeds = [np.interp(0.0, RUN_UP.speed_ratios[:2] - rate, RUN_UP.times[:2]) for rate in (1.0,)]
     return np.unique(np.concatenate([[1.0, 4.0, 5.0, 6.0, 9.0], speeds]))
 
 

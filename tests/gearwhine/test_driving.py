@@ -174,7 +174,7 @@ def test_free_speed_approaches_its_end_exponentially() -> None:
     )
     end, constant = top * motor / (motor + load), inertia * top / (motor + load)
     expected = end * (1.0 - np.exp(-turning.times / constant))
-    np.testing.assert_allclose(200.0 * turning.rates, expected, atol=1e-7 * end)
+    np.testing.assert_allclose(200.0 * turning.speed_ratios, expected, atol=1e-7 * end)
 
 
 def test_machines_that_do_not_run_say_so() -> None:
@@ -199,7 +199,7 @@ def test_free_run_of_a_geared_machine() -> None:
     assert train_inertia(case, solved.machine.rotors) == pytest.approx(inertia, rel=1e-9)
     end, constant = top * 80.0 / 120.0, inertia * top / 120.0
     speed = end + (600.0 * RPM - end) * np.exp(-solved.turning.times / constant)
-    np.testing.assert_allclose(1500.0 * RPM * solved.turning.rates, speed, rtol=1e-6)
+    np.testing.assert_allclose(1500.0 * RPM * solved.turning.speed_ratios, speed, rtol=1e-6)
     # From rest relative to the nominal rotation the mean over the run: impulse over time.
     gained, mean_speed = speed[-1] - speed[0], np.trapezoid(speed, solved.turning.times) / 0.03
     far = 0.5 * inertia
