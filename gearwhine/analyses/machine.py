@@ -471,7 +471,8 @@ def sweep(
     """
     start = time.perf_counter()
     keys = swept_keys(case, over)
-    from gearwhine.sweep import collected_sweep, default_workers, missed_peaks, run_sweep, sweep_document, sweep_points
+    from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
+    from gearwhine.workers import default_workers
 
     points = sweep_points(*source, keys)
     count = workers or default_workers()

@@ -14,7 +14,6 @@ from gearwhine.sweep.points import Point, axis_name, sweep_points
 from gearwhine.sweep.resolution import missed_peaks
 from gearwhine.sweep.run import SweptPoint, run_sweep
 from gearwhine.sweep.solution import PointFailure, PointResult
-from gearwhine.workers import default_workers
 
 __all__ = [
     "Point",
@@ -23,7 +22,6 @@ __all__ = [
     "SweptPoint",
     "axis_name",
     "collected_sweep",
-    "default_workers",
     "missed_peaks",
     "run_sweep",
     "sweep_document",
