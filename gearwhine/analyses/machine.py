@@ -297,6 +297,8 @@ def steady(
     Parameters
     ----------
     case : Case
+        Its `[transient]` takes no part: of a run whose speed varies the motion is that at the speed and torque of
+        operation.
     curve : bool
         Whether to follow the motion over speed.
     down : bool
@@ -321,9 +323,10 @@ def steady(
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     load, warnings_of_load = find_load(case, housing, progress)
     point = None if load is None else load.point
-    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
+    at_speed = case.model_copy(update={"transient": None})
+    solved_housing, pairs, machine = solve_machine(at_speed, progress, housing=housing, point=point)
     solved = solve_steady(
-        case,
+        at_speed,
         machine,
         solved_housing,
         progress,
@@ -336,7 +339,7 @@ def steady(
     if load is not None:
         document["load"] = load_part(load)
     add_warnings(document, [*machine_warnings(machine), *warnings_of_load])
-    error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
+    error = basis_error(at_speed, machine, solved_housing, pairs, progress, point=point)
     add_uncertainty(document, error, document["trusted_below_hz"])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":

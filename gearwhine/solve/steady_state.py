@@ -242,7 +242,7 @@ def solve_steady(
     Raises
     ------
     CaseError
-        Where the speed is said to vary, the range holds one speed only, or a branch is asked for of motions that are
+        Where the range holds one speed only, or a branch is asked for of motions that are
         superposed.
     coupling.CouplingError
         Where the excitation does not repeat.

@@ -194,3 +194,15 @@ def test_decay_of_disturbances_by_the_floquet_multiplier() -> None:
     assert _decay(0.1, 0.02) == "the slowest disturbance falls to a tenth in 0.02 s"
     assert _decay(0.0, 0.02) == "disturbances fall at once"
     assert _decay(1.0, 0.02) == "the slowest disturbance stays"
+
+
+def test_a_motor_and_its_load_leave_the_steady_motion_as_it_is() -> None:
+    """A free run and a run-up have the steady motion of their speed and torque of operation."""
+    few = {"rotor.*.modes": 2}
+    line = {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["300 N*m", "150 N*m", "0 N*m"]}
+    at_speed = gw.load("helical-pair", few).steady().document["motions"]
+    free = {"transient.run": {"from": "2000 rpm", "time": "1 s"}, "operation.motor": line, "operation.load": line}
+    up = {"transient.run": {"from": "2000 rpm", "to": "4000 rpm", "time": "1 s"}}
+    for run in (free, up):
+        changes = {**few, "transient.revolutions": "", "transient.discard": "", **run}
+        assert gw.load("helical-pair", changes).steady().document["motions"] == at_speed
