@@ -2,9 +2,12 @@
 
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coupling import CoupledMachine
+from coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
@@ -200,6 +203,71 @@ def operating_point(
     return result
 
 
+@dataclass(frozen=True)
+class _LoadedMachine:
+    """Machine of a case, assembled about its operating point.
+
+    Attributes
+    ----------
+    case : Case
+        The case whose torques and speed over time the machine has.
+    machine : CoupledMachine
+    housing : SolvedHousing or None
+    load : SolvedLoad or None
+        Its operating point; None where nothing loads it.
+    pairs : tuple of LoadedGearPair
+    warnings : list of dict
+        Warnings of the operating point.
+    """
+
+    case: Case
+    machine: CoupledMachine
+    housing: SolvedHousing | None
+    load: SolvedLoad | None
+    pairs: tuple[LoadedGearPair, ...]
+    warnings: list[dict[str, Any]]
+
+    def add_to(self, document: dict[str, Any], progress: Progress) -> None:
+        """Add the operating point, its warnings and the errors of the modal basis to a document of the machine."""
+        if self.load is not None:
+            document["load"] = load_part(self.load)
+        add_warnings(document, self.warnings)
+        point = None if self.load is None else self.load.point
+        error = basis_error(self.case, self.machine, self.housing, self.pairs, progress, point=point)
+        add_uncertainty(document, error, document["trusted_below_hz"])
+
+    def figures(self) -> "Iterator[tuple[str, Figure]]":
+        """Draw the operating point."""
+        from gearwhine.figures import draw_load
+
+        if self.load is not None:
+            yield from draw_load(self.case, self.load)
+
+
+def _loaded_machine(
+    case: Case,
+    housing: SolvedHousing | None,
+    folder: Path | None,
+    progress: Progress,
+    *,
+    fresh: bool,
+    varies: bool = True,
+) -> _LoadedMachine:
+    """Solve the housing and the operating point of a case, and assemble its machine about that.
+
+    ``varies`` takes the speed and the torques over time of a `[transient]`; without, they are those of operation.
+    """
+    require_machine(case)
+    if housing is None and case.housing is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
+    load, warnings = find_load(case, housing, progress)
+    taken = case if varies else case.model_copy(update={"transient": None})
+    housing, pairs, machine = solve_machine(
+        taken, progress, housing=housing, point=None if load is None else load.point
+    )
+    return _LoadedMachine(taken, machine, housing, load, pairs, warnings)
+
+
 def system(
     case: Case,
     *,
@@ -237,17 +305,12 @@ def system(
         Where the modes fail their certificate.
     """
     require(case, "rotor", "operation", command="system")
-    require_machine(case)
-    if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    load, warnings_of_load = find_load(case, housing, progress)
-    point = None if load is None else load.point
-    solved_housing, pairs, machine = solve_machine(case, progress, housing=housing, point=point)
+    loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     solved = solve_system(
         case,
-        machine,
-        solved_housing,
+        loaded.machine,
+        loaded.housing,
         progress,
         mesh_phase=mesh_phase,
         over_speed=campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS,
@@ -255,27 +318,23 @@ def system(
         mesh_harmonics=mesh_harmonics,
     )
     document = system_document(solved)
-    if load is not None:
-        document["load"] = load_part(load)
-    add_warnings(document, [*unstable_modes_warnings(solved.stability), *warnings_of_load])
-    error = basis_error(case, machine, solved_housing, pairs, progress, point=point)
-    add_uncertainty(document, error, document["trusted_below_hz"])
+    add_warnings(document, unstable_modes_warnings(solved.stability))
+    loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_load, draw_system
+        from gearwhine.figures import draw_system
 
         yield from draw_system(case, solved)
-        if load is not None:
-            yield from draw_load(case, load)
+        yield from loaded.figures()
 
     return Result(
         "system",
         case,
         solved,
-        joined(document, origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (LOAD, load), (SYSTEM, solved)),
+        joined(document, origin_document(loaded.housing)),
+        _arrays=lambda: labelled(case, (HOUSING, loaded.housing), (LOAD, loaded.load), (SYSTEM, solved)),
         _figures=figures,
-        _housing=solved_housing,
+        _housing=loaded.housing,
         _options=(SYSTEM_OPTIONS, SYSTEM_SAME),
     )
 
@@ -318,17 +377,11 @@ def steady(
         Where no periodic motion is found.
     """
     require(case, "rotor", "operation", command="steady")
-    require_machine(case)
-    if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    load, warnings_of_load = find_load(case, housing, progress)
-    point = None if load is None else load.point
-    at_speed = case.model_copy(update={"transient": None})
-    solved_housing, pairs, machine = solve_machine(at_speed, progress, housing=housing, point=point)
+    loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh, varies=False)
     solved = solve_steady(
-        at_speed,
-        machine,
-        solved_housing,
+        loaded.case,
+        loaded.machine,
+        loaded.housing,
         progress,
         over_speed=curve or down,
         downwards=down,
@@ -336,27 +389,23 @@ def steady(
         exact=exact,
     )
     document = steady_document(case.title, solved)
-    if load is not None:
-        document["load"] = load_part(load)
-    add_warnings(document, [*machine_warnings(machine), *warnings_of_load])
-    error = basis_error(at_speed, machine, solved_housing, pairs, progress, point=point)
-    add_uncertainty(document, error, document["trusted_below_hz"])
+    add_warnings(document, machine_warnings(loaded.machine))
+    loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_load, draw_steady
+        from gearwhine.figures import draw_steady
 
         yield from draw_steady(case, solved)
-        if load is not None:
-            yield from draw_load(case, load)
+        yield from loaded.figures()
 
     return Result(
         "steady",
         case,
         solved,
-        joined(document, origin_document(solved_housing)),
-        _arrays=lambda: labelled(case, (HOUSING, solved_housing), (LOAD, load), (STEADY, solved)),
+        joined(document, origin_document(loaded.housing)),
+        _arrays=lambda: labelled(case, (HOUSING, loaded.housing), (LOAD, loaded.load), (STEADY, solved)),
         _figures=figures,
-        _housing=solved_housing,
+        _housing=loaded.housing,
         _options=(STEADY_OPTIONS, STEADY_SAME),
     )
 
@@ -402,11 +451,9 @@ def sound(
     further_warnings: list[dict[str, Any]] = []
     steady = case.model_copy(update={"transient": None})
     if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
-        require_machine(case)
-        load, further_warnings = find_load(case, housing, progress)
-        point = None if load is None else load.point
-        _, _, machine = solve_machine(case, progress, housing=housing, point=point)
-        steady_state = solve_steady(case, machine, housing, progress)
+        loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh, varies=False)
+        machine, further_warnings = loaded.machine, loaded.warnings
+        steady_state = solve_steady(loaded.case, machine, housing, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))
     solved = solve_sound(case, housing, motion, machine, progress)
     document = {"title": case.title} | sound_document(solved)
