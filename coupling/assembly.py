@@ -467,7 +467,9 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
     at = np.append(np.concatenate(cuts), knots[-1])
     bearings = [bearing.at_speed(float(ratio) * speed) for ratio in at]
     return SpeedTable(
-        at, np.array([one.spatial_stiffness for one in bearings]), np.array([one.spatial_damping for one in bearings])
+        at,
+        np.array([bearing.spatial_stiffness for bearing in bearings]),
+        np.array([bearing.spatial_damping for bearing in bearings]),
     )
 
 

@@ -133,7 +133,7 @@ class Machine:
         require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
-            places = [self.shaft(one.shaft).start + one.at for one in self._gears_of(pair)]
+            places = [self.shaft(gear.shaft).start + gear.at for gear in self._gears_of(pair)]
             require_one_plane(pair.label, places, geometry.face_width)
         self._require_power_flow()
         self._require_thrust_carried()
@@ -200,7 +200,9 @@ class Machine:
         """Axial location of each shaft by its bearings."""
         speeds = self.speeds
         return tuple(
-            AxialLocation(shaft.name, [axial_support(one, speeds[shaft.name]) for one in self._bearings_on(shaft.name)])
+            AxialLocation(
+                shaft.name, [axial_support(bearing, speeds[shaft.name]) for bearing in self._bearings_on(shaft.name)]
+            )
             for shaft in self.shafts
         )
 
@@ -349,7 +351,7 @@ class Machine:
         EquilibriumNotFoundError, rotors.EquilibriumError
             As :meth:`operating_point`.
         """
-        outputs = [one if one.torque is None else replace(one, torque=0.0) for one in self.outputs]
+        outputs = [output if output.torque is None else replace(output, torque=0.0) for output in self.outputs]
         return replace(self, torque=0.0, outputs=outputs, forces=()).operating_point()
 
     @property
@@ -387,7 +389,7 @@ class Machine:
             else pair
             for pair in self.gear_pairs
         ]
-        return replace(self, bearings=[one.linearised for one in point.bearings], gear_pairs=pairs)
+        return replace(self, bearings=[bearing.linearised for bearing in point.bearings], gear_pairs=pairs)
 
     @cached_property
     def _linearised(self) -> "Machine":
@@ -582,9 +584,9 @@ class Machine:
             limit = None if limit is None else limit_factor * limit
             count = None if count is None else round(limit_factor * count)
         gears = self._gears_on(shaft.name)
-        forces = [one for one in self.forces if one.rotor == shaft.name]
+        forces = [force for force in self.forces if force.rotor == shaft.name]
         moments_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
-        thrusts_at = [*moments_at, *(one.at for one in forces if one.force[2] != 0.0)]
+        thrusts_at = [*moments_at, *(force.at for force in forces if force.force[2] != 0.0)]
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         for mounted in bearings:
             if isinstance(mounted.law, RollingLaw):
@@ -597,7 +599,7 @@ class Machine:
             frequency_limit=limit,
             count=count,
             gears_at=[gear.at for gear in gears],
-            forces_at=[*(one.at for one in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
+            forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
         )
@@ -625,7 +627,7 @@ class Machine:
         """Shaft with nodes at bearings, loads and faces."""
         places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
-        places += [one.at for one in self.forces if one.rotor == shaft.name]
+        places += [force.at for force in self.forces if force.rotor == shaft.name]
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:

@@ -74,7 +74,7 @@ class Housing:
         for kind, names in (
             ("seat", [seat.name for seat in self.seats]),
             ("sensor", [sensor.name for sensor in self.sensors]),
-            ("fixture", [one.name for one in self.fixtures]),
+            ("fixture", [fixture.name for fixture in self.fixtures]),
         ):
             twice = sorted({name for name in names if names.count(name) > 1})
             if twice:
@@ -315,12 +315,12 @@ class Housing:
             # With one material the boundary's volume gives the mass, independent of the elements inside.
             volume, center = enclosed_volume(self.mesh)
             mass = self.material.density * volume
-        fastened = sum(one.mass for one in self.fixtures if isinstance(one, LumpedMass))
+        fastened = sum(fixture.mass for fixture in self.fixtures if isinstance(fixture, LumpedMass))
         return health_report(
             self.mesh,
             free,
             whole,
-            [one for one in self.fixtures if isinstance(one, Support | Mount)],
+            [fixture for fixture in self.fixtures if isinstance(fixture, Support | Mount)],
             modes,
             mass=mass + fastened,
             # The geometry does not know the centres of lumped masses.

@@ -167,7 +167,7 @@ def connection_defects(mesh: Mesh) -> Iterator[MeshDefect]:
     mismatches = [*_conformity(mesh, body)]
     yield from mismatches
     yield from _bodies(mesh, body)
-    if not any(one.name == "non-conforming" for one in mismatches):
+    if not any(mismatch.name == "non-conforming" for mismatch in mismatches):
         yield from _hinges(mesh, body)
 
 

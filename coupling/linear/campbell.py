@@ -311,14 +311,14 @@ def system_campbell(
         branches = extended_branches(branches, partner, described.modes.values.size)
         points.append(described)
         progress((number + 1) / stand_in.size)
-    sizes = np.abs(along_branches(branches, [one.modes.values for one in points], np.nan))
+    sizes = np.abs(along_branches(branches, [point.modes.values for point in points], np.nan))
     table = branches[:, np.any(sizes < frequency_limit, axis=0)]
-    eigenvalues = along_branches(table, [one.modes.values for one in points], complex(np.nan, np.nan))
+    eigenvalues = along_branches(table, [point.modes.values for point in points], complex(np.nan, np.nan))
     kinds, where = (
-        along_branches(table, [np.array(getattr(one, key)) for one in points], "") for key in ("kinds", "where")
+        along_branches(table, [np.array(getattr(point, key)) for point in points], "") for key in ("kinds", "where")
     )
-    whirl = along_branches(table, [one.whirl for one in points], np.nan)
-    teeth = along_branches(table, [one.teeth for one in points], np.nan)
+    whirl = along_branches(table, [point.whirl for point in points], np.nan)
+    teeth = along_branches(table, [point.teeth for point in points], np.nan)
     crossings, unsettled = [], []
     for line in chosen:
         for left, branch in order_intervals(eigenvalues.imag, line.order, stand_in):

@@ -130,7 +130,7 @@ def _groups(eigenvalues: ComplexArray) -> list[slice]:
 
 def _over_groups(values: ComplexArray, groups: list[slice]) -> ComplexArray:
     """Replace the values of each group by their mean."""
-    return np.concatenate([np.full(len(values[one]), values[one].mean()) for one in groups] or [values])
+    return np.concatenate([np.full(len(values[group]), values[group].mean()) for group in groups] or [values])
 
 
 def group_bases(eigenvalues: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, FloatArray]:

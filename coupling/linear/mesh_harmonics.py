@@ -147,7 +147,7 @@ class LineModel(MeshHarmonicModel):
         lines = []
         for name, row in self.machine.sensor_rows.items():
             output = SensorAmplitude(name, row, self.housing)
-            heard = [(output.value(one.frequency, one.motion), one) for one in responses]
+            heard = [(output.value(response.frequency, response.motion), response) for response in responses]
             heard.sort(key=lambda pair: -pair[0])
             lines += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
         return tuple(sorted(lines, key=lambda one: -one.value))
@@ -351,7 +351,9 @@ class LineModel(MeshHarmonicModel):
     def _tangent_rates(self) -> dict[str, FloatArray]:
         """Derivatives of the tangents that follow the equilibrium by the bearing's deflection, shape (5, 5, 5) each."""
         loads = self.point.bearings
-        return {one.name: _tangent_rate(one) for one in loads if one.mounted.needs_load and one.rolling is not None}
+        return {
+            load.name: _tangent_rate(load) for load in loads if load.mounted.needs_load and load.rolling is not None
+        }
 
     def _connector(self, bearing: str) -> LinearConnector:
         number = next(n for n, one in enumerate(self.machine.bearings) if one.bearing.name == bearing)
@@ -367,7 +369,7 @@ class LineModel(MeshHarmonicModel):
     def _bearing_slope(self, load: BearingLoad) -> FloatArray:
         """Slope along z of a bearing's deflection as it moves along its shaft, by the coordinates, shape (5, n)."""
         mounted = load.mounted
-        rotor = next(one for one in self.machine.rotors if one.name == mounted.rotor)
+        rotor = next(rotor for rotor in self.machine.rotors if rotor.name == mounted.rotor)
         length = self.point.shaft(mounted.rotor).part.shaft.length
         at, step = mounted.bearing.at, _SHAFT_STEP * length
         at_middle = rotor.motions(at)

@@ -100,7 +100,7 @@ class AxialLocation:
 
     def carrying(self, sense: int) -> tuple[str, ...]:
         """Names of the bearings that carry the shaft's thrust towards +z (1) or -z (-1), from left to right."""
-        return tuple(one.name for one in self.bearings if sense in one.senses)
+        return tuple(bearing.name for bearing in self.bearings if sense in bearing.senses)
 
     @property
     def is_located(self) -> bool:
@@ -110,10 +110,10 @@ class AxialLocation:
     @cached_property
     def arrangement(self) -> Literal["O", "X"] | None:
         """O (back to back) or X (face to face) of bearings that carry one sense each; None where some carry both."""
-        carried = [one for one in self.bearings if one.senses]
-        if not self.is_located or not all(one.is_single for one in carried):
+        carried = [bearing for bearing in self.bearings if bearing.senses]
+        if not self.is_located or not all(bearing.is_single for bearing in carried):
             return None
-        plus, minus = ([one.at for one in carried if sense in one.senses] for sense in (1, -1))
+        plus, minus = ([bearing.at for bearing in carried if sense in bearing.senses] for sense in (1, -1))
         if max(plus) < min(minus):
             return "O"
         return "X" if max(minus) < min(plus) else None
@@ -129,10 +129,10 @@ class AxialLocation:
 
     def _shared(self) -> tuple[str, ...]:
         """Ball bearings that locate the shaft both ways side by side, none of them offset or sprung at assembly."""
-        sharing = [one for one in self.bearings if one.senses == _BOTH and one.has_balls]
-        if len(sharing) < 2 or any(one.is_set for one in self.bearings):
+        sharing = [bearing for bearing in self.bearings if bearing.senses == _BOTH and bearing.has_balls]
+        if len(sharing) < 2 or any(bearing.is_set for bearing in self.bearings):
             return ()
-        names = _listed([one.name for one in sharing])
+        names = _listed([bearing.name for bearing in sharing])
         return (
             f"shaft {self.shaft!r} is located both ways by {names}: how they share its thrust is statically "
             "indeterminate, and depends on where their rings are at assembly; give all but one of them "

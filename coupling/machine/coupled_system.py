@@ -187,13 +187,14 @@ class CoupledSystem:
     def loaded_flank_stiffness(self) -> FloatArray:
         """Unloaded mean mesh stiffness of the flanks that carry, 0 of the others [N/m], shape (c,)."""
         return np.array(
-            [one.contact.unloaded_mean_mesh_stiffness * one.loaded for one in self.contacts], dtype=np.float64
+            [contact.contact.unloaded_mean_mesh_stiffness * contact.loaded for contact in self.contacts],
+            dtype=np.float64,
         )
 
     @cached_property
     def loaded_flank_damping(self) -> FloatArray:
         """Mesh damping of the flanks that carry, 0 of the others [N s/m], shape (c,)."""
-        return np.array([one.contact.damping * one.loaded for one in self.contacts], dtype=np.float64)
+        return np.array([contact.contact.damping * contact.loaded for contact in self.contacts], dtype=np.float64)
 
     @cached_property
     def mean_stiffness(self) -> FloatArray:

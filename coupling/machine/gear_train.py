@@ -458,7 +458,7 @@ def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], sp
     CouplingError
         Where the power that a train takes in and the power that it gives out differ by more than one in a hundred.
     """
-    varying = {one.rotor for one in torques if not isinstance(one, Torque | TorqueRipple)}
+    varying = {torque.rotor for torque in torques if not isinstance(torque, Torque | TorqueRipple)}
     total = constant_torques(torques)
     for train in trains(list(speeds), [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]):
         if len(train) < 2 or varying.intersection(train):

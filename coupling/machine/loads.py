@@ -192,7 +192,9 @@ class MachineLoads:
 
     def at_speed_ratio(self, ratio: float) -> "MachineLoads":
         """Return the same loads on the machine at ``ratio`` times its nominal speeds."""
-        torques = [one.at_speed_ratio(ratio) if isinstance(one, TorqueSlope) else one for one in self.torques]
+        torques = [
+            torque.at_speed_ratio(ratio) if isinstance(torque, TorqueSlope) else torque for torque in self.torques
+        ]
         return replace(self, torques=tuple(torques))
 
 

@@ -173,8 +173,8 @@ class MachineParts(Protocol):
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
     rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
-    discs = [Disc(*one) for one in rigid if any(one[1:])]
-    stiff = [one for gear in gears for one in _stiffness_diameters(gear, rotor)]
+    discs = [Disc(*disc) for disc in rigid if any(disc[1:])]
+    stiff = [diameter for gear in gears for diameter in _stiffness_diameters(gear, rotor)]
     return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
 
 
@@ -248,18 +248,20 @@ def require_names(machine: MachineParts) -> None:
             raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
     if not machine.shafts:
         raise CouplingError("a machine without shafts; expected at least one")
-    needed = [(f"bearing {one.bearing.name!r}", "shaft", one.rotor) for one in machine.bearings]
-    needed += [(f"gear {one.name!r}", "shaft", one.shaft) for one in machine.gears]
+    needed = [(f"bearing {bearing.bearing.name!r}", "shaft", bearing.rotor) for bearing in machine.bearings]
+    needed += [(f"gear {gear.name!r}", "shaft", gear.shaft) for gear in machine.gears]
     needed += [(pair.label, "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
-    needed += [("an output", "shaft", one.shaft) for one in machine.outputs]
-    needed += [("a force", "shaft", one.rotor) for one in machine.forces]
+    needed += [("an output", "shaft", output.shaft) for output in machine.outputs]
+    needed += [("a force", "shaft", force.rotor) for force in machine.forces]
     for where, kind, name in needed:
         if name not in kinds[kind]:
             named = ", ".join(map(repr, kinds[kind])) or "none"
             raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {named}")
     gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
     for number, pair in enumerate(machine.gear_pairs):
-        if any({pair.driver, pair.driven} == {one.driver, one.driven} for one in machine.gear_pairs[:number]):
+        if any(
+            {pair.driver, pair.driven} == {earlier.driver, earlier.driven} for earlier in machine.gear_pairs[:number]
+        ):
             raise CouplingError(f"{pair.label} is given twice; expected gears that are not yet a pair")
         if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
             raise CouplingError(
@@ -271,10 +273,12 @@ def require_names(machine: MachineParts) -> None:
 def require_stations(machine: MachineParts) -> None:
     """Refuse gears, bearings, torques and forces beyond the ends of their shafts."""
     shafts = {shaft.name: shaft for shaft in machine.shafts}
-    stations = [(f"gear {one.name!r}", one.shaft, one.at) for one in machine.gears]
-    stations += [(f"bearing {one.bearing.name!r}", one.rotor, one.bearing.at) for one in machine.bearings]
-    stations += [("an output", one.shaft, one.at) for one in machine.outputs if one.at is not None]
-    stations += [("a force", one.rotor, one.at) for one in machine.forces]
+    stations = [(f"gear {gear.name!r}", gear.shaft, gear.at) for gear in machine.gears]
+    stations += [
+        (f"bearing {bearing.bearing.name!r}", bearing.rotor, bearing.bearing.at) for bearing in machine.bearings
+    ]
+    stations += [("an output", output.shaft, output.at) for output in machine.outputs if output.at is not None]
+    stations += [("a force", force.rotor, force.at) for force in machine.forces]
     if machine.gear_pairs:
         first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
         stations.append(("the input torque", first, machine.torque_at))

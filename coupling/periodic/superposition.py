@@ -261,7 +261,7 @@ def _atoms(system: CoupledSystem) -> list[ExcitationGroup]:
     for frequency in sorted(load_frequencies, reverse=True):
         if frequency != 0.0 and not any(abs(frequency - one) <= _SAME_FREQUENCY * one for one in frequencies):
             frequencies.append(frequency)
-    return [*(ExcitationGroup((i,)) for i in meshes), *(ExcitationGroup((), (one,)) for one in frequencies)]
+    return [*(ExcitationGroup((i,)) for i in meshes), *(ExcitationGroup((), (frequency,)) for frequency in frequencies)]
 
 
 def _driven_by(

@@ -307,7 +307,7 @@ class OperatingPoint:
 
     def shaft(self, name: str) -> ShaftDeflection:
         """Return the deflection of the shaft of this name."""
-        return next(one for one in self.shafts if one.name == name)
+        return next(shaft for shaft in self.shafts if shaft.name == name)
 
     def gear_forces(self, number: int) -> tuple[FloatArray, FloatArray]:
         """Return the forces of a pair's flanks on the shafts of driver and driven gear, (6,) each.
@@ -330,7 +330,7 @@ class OperatingPoint:
 
     def bearing(self, name: str) -> BearingLoad:
         """Return the load of the bearing of this name."""
-        return next(one for one in self.bearings if one.name == name)
+        return next(bearing for bearing in self.bearings if bearing.name == name)
 
     def flank_gaps(self, unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
         """Gap of the flanks over the face [m], by the names of driver and driven gear.
@@ -350,7 +350,7 @@ class OperatingPoint:
                 f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
                 "expected a torque, or the misalignment"
             )
-        return {one.names: one.station_gap for one in self.pairs}
+        return {pair.names: pair.station_gap for pair in self.pairs}
 
 
 def solve_operating_point(
@@ -689,7 +689,7 @@ class _StaticModel:
     ) -> tuple[PairLoad, ...]:
         """Return the loads of all gear pairs by approach and loads at the stations of their faces."""
         causes = self._causes(x, bearings)
-        largest = max((float(one[:-1].sum()) for one in loads), default=0.0)
+        largest = max((float(load[:-1].sum()) for load in loads), default=0.0)
         if self.pairs and largest <= RESIDUAL_BAR * float(np.abs(self.load).max(initial=0.0)):
             names = ", ".join(pair.label for pair in self.pairs)
             turned = float(np.abs(self.load[5 : self.housing_first : 6]).max())

@@ -104,10 +104,12 @@ def condensed(system: CoupledSystem) -> Condensed:
         linear=(LinearConnector("condensed", directions, connector_stiffness, connector_damping),),
         contacts=tuple(_reduced(contact, recovery) for contact in system.contacts),
         load=system.load @ recovery,
-        harmonic_loads=tuple(replace(one, amplitude=one.amplitude @ recovery) for one in system.harmonic_loads),
-        timed_loads=tuple(replace(one, direction=one.direction @ recovery) for one in system.timed_loads),
+        harmonic_loads=tuple(replace(load, amplitude=load.amplitude @ recovery) for load in system.harmonic_loads),
+        timed_loads=tuple(replace(load, direction=load.direction @ recovery) for load in system.timed_loads),
         acceleration_load=system.acceleration_load @ recovery,
-        nonlinear=tuple(replace(one, directions=recovery.T @ one.directions) for one in system.nonlinear),
+        nonlinear=tuple(
+            replace(connector, directions=recovery.T @ connector.directions) for connector in system.nonlinear
+        ),
     )
     return Condensed(less, retained, recovery)
 
@@ -143,10 +145,10 @@ def _stiff(system: CoupledSystem) -> npt.NDArray[np.bool_]:
     """Mask of residual coordinates beyond the highest frequency of the others on which no load or law acts."""
     loaded = system.load != 0.0
     loaded |= system.acceleration_load != 0.0
-    for load in [*(one.amplitude for one in system.harmonic_loads), *(one.direction for one in system.timed_loads)]:
+    for load in [*(load.amplitude for load in system.harmonic_loads), *(load.direction for load in system.timed_loads)]:
         loaded = loaded | (load != 0.0)
     sliding = [contact.sliding.directions for contact in system.contacts if contact.sliding is not None]
-    for directions in (system.contact_directions, *sliding, *(one.directions for one in system.nonlinear)):
+    for directions in (system.contact_directions, *sliding, *(connector.directions for connector in system.nonlinear)):
         loaded = loaded | np.any(directions != 0.0, axis=1)
     beyond = np.diag(system.stiffness) > system.highest_frequency**2
     return np.asarray(~system.resolved & beyond & ~loaded)

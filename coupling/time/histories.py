@@ -105,7 +105,7 @@ class Histories:
         return replace(self, times=times, **signals)
 
 
-_GROUPS = tuple(one.name for one in fields(Histories) if one.name not in ("times", "bearing_axes"))
+_GROUPS = tuple(field.name for field in fields(Histories) if field.name not in ("times", "bearing_axes"))
 
 
 @dataclass(frozen=True)

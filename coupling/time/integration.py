@@ -262,7 +262,7 @@ class Integration:
         """Start from static equilibrium under the initial loads, coasting where nothing resists, or a given state."""
         system, (_, rates, accelerations) = self.system, self.profile.at(0.0)
         load = sum(
-            (one.at(0.0) for one in system.timed_loads), system.load + accelerations[0] * system.acceleration_load
+            (load.at(0.0) for load in system.timed_loads), system.load + accelerations[0] * system.acceleration_load
         )
         resting = system if np.array_equal(load, system.load) else replace(system, load=load)
         q, v = initial or (static_equilibrium(resting), coasting_velocity(system, float(rates[0])))

@@ -49,7 +49,7 @@ def kernel_arrays(system: CoupledSystem, outputs: TransientOutputs, beta: float,
     """Arrays of the system and of its output rows."""
     output_rows = outputs.displacement, outputs.velocity, outputs.acceleration
     # Rows are writable: a kernel is compiled anew for rows that are not.
-    rows = (np.require(one, requirements=("C", "W")) for one in output_rows)
+    rows = (np.require(rows, requirements=("C", "W")) for rows in output_rows)
     bearings = bearing_arrays(system.nonlinear)
     return KernelArrays(_dynamics(system, beta, gamma), contact_arrays(system), bearings, Outputs(*rows))
 

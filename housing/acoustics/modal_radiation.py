@@ -147,7 +147,7 @@ class ModalRadiation:
                 pressure = np.asarray(delayed * np.exp(1j * _TWO_PI * hertz * delays)[:, None])
                 off = sound.source_error_at(places)
             product = np.asarray(
-                sum(surface_product(one.surface, one.velocity, one.pressure_at_corners) for one in sound.fields)
+                sum(surface_product(field.surface, field.velocity, field.pressure_at_corners) for field in sound.fields)
             )
             # Symmetric by reciprocity, but for the discretisation.
             impedance = 0.5 * (product + product.T)

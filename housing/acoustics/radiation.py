@@ -327,7 +327,7 @@ class RadiatedSound:
 
 
 def _of_source(error: SourceError) -> str:
-    place, percent = ", ".join(f"{1e3 * one:.4g}" for one in error.place), 100.0 * error.largest
+    place, percent = ", ".join(f"{1e3 * coordinate:.4g}" for coordinate in error.place), 100.0 * error.largest
     shown = f"{percent:.3g}" if percent < 999.5 else f"{percent:.0f}"
     return (
         f"the pressure of a known source inside is off by {shown} % at the vertex ({place}) mm of the radiating surface"
@@ -374,7 +374,7 @@ def require_proved(sounds: Sequence[RadiatedSound], *, alone: bool = False) -> l
     HousingError
         As :meth:`RadiatedSound.require_proofs`.
     """
-    counted = [one for one in sounds if one.radiation_efficiency > COUNTS] if alone else counting(sounds)
+    counted = [sound for sound in sounds if sound.radiation_efficiency > COUNTS] if alone else counting(sounds)
     for sound in counted:
         sound.require_proofs()
     return counted
@@ -533,7 +533,7 @@ class HousingRadiation:
     @property
     def area(self) -> float:
         """Radiating area [m²]."""
-        return float(sum(one.surface.area for one in self.elements))
+        return float(sum(elements.surface.area for elements in self.elements))
 
     def require_in_air(self, points: FloatArray) -> None:
         """Refuse points at which the sound pressure cannot be found.
@@ -552,7 +552,7 @@ class HousingRadiation:
         """Highest frequency that six elements a wavelength resolve [Hz]; infinity for the estimate."""
         if self.method == "erp":
             return float("inf")
-        return min(one.highest_frequency() for one in self.elements)
+        return min(elements.highest_frequency() for elements in self.elements)
 
     def solve(self, frequency_hz: float, coordinates: npt.ArrayLike) -> RadiatedSound:
         """Solve for the sound of some motions of the housing.

@@ -334,7 +334,9 @@ def _triangle_skin(surface: RadiatingSurface) -> Skin:
 
 def _members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
     """Numbers of the boundary facets, block after block, that belong to surfaces."""
-    wanted = [block for one in surfaces for block in (mesh.surface(one) if isinstance(one, str) else one)]
+    wanted = [
+        block for surface in surfaces for block in (mesh.surface(surface) if isinstance(surface, str) else surface)
+    ]
     members, first = [np.empty(0, dtype=np.int64)], 0
     for block in mesh.boundary:
         corners = np.sort(block.corners, axis=1)

@@ -235,7 +235,7 @@ def read_shapes(
     MeasuredDataError
         Where a node is unknown, or an eigenvalue is none of a vibration.
     """
-    modal = [one for one in datasets if one["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
+    modal = [dataset for dataset in datasets if dataset["analysis_type"] in (NORMAL, COMPLEX_FIRST, COMPLEX_SECOND)]
     if len(modal) < len(datasets):
         remarks.append(f"{len(datasets) - len(modal)} of dataset 55 not read: no modes")
     if any("r4" in one for one in modal):
@@ -325,7 +325,7 @@ def read_functions(
     MeasuredDataError
         Where a node is unknown, a pair stands twice, or functions have different frequencies or kinds of motion.
     """
-    functions = [one for one in datasets if _is_response(one)]
+    functions = [dataset for dataset in datasets if _is_response(dataset)]
     if len(functions) < len(datasets):
         remarks.append(
             f"{len(datasets) - len(functions)} of dataset 58 not read: no frequency responses of motion to force"
@@ -373,7 +373,7 @@ def _direction(points: SurveyPoints, key: _Key) -> FloatArray:
 
 
 def _motion(datasets: list[Dataset], remarks: list[str]) -> Motion:
-    types = {int(one.get("ordinate_spec_data_type", 0)) for one in datasets}
+    types = {int(dataset.get("ordinate_spec_data_type", 0)) for dataset in datasets}
     if len(types) > 1:
         raise MeasuredDataError(
             f"the functions are of several kinds (specific data types {sorted(types)}); expected one"

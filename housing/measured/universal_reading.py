@@ -183,10 +183,10 @@ def read_universal(path: str | Path, *, unit: str | None = None, shape_frame: Fr
         directions = (
             points.directions if shape_frame == "local" else np.broadcast_to(np.eye(3), points.directions.shape)
         )
-        modes = read_shapes([one for one in datasets if one["type"] == 55], points, directions, remarks)
+        modes = read_shapes([dataset for dataset in datasets if dataset["type"] == 55], points, directions, remarks)
     responses = None
     if 58 in holds:
-        functions = [one for one in datasets if one["type"] == 58]
+        functions = [dataset for dataset in datasets if dataset["type"] == 58]
         responses = read_functions(functions, points, length, force, remarks)
     if modes is not None and modes.geometry is not None:
         geometry = modes.geometry

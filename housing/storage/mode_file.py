@@ -238,7 +238,7 @@ def _mode_arrays(modes: ModeSet) -> dict[str, LabelledArray]:
 
 def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -> ModeSet:
     steps, times = (arrays[name].values.tolist() for name in ("solver_step", "solver_time"))
-    proved = {one.name: arrays[f"certificate_{one.name}"].values.item() for one in fields(Certificate)}
+    proved = {field.name: arrays[f"certificate_{field.name}"].values.item() for field in fields(Certificate)}
     return ModeSet(
         frequencies=arrays["circular_frequency"].values,
         shapes=arrays["shape"].values,

@@ -252,7 +252,7 @@ class FourPointRow(BallRow):
     @property
     def arcs(self) -> tuple[BallRow, BallRow]:
         """Rows that the ball makes with the arcs of one diagonal alone: loaded by +z along the row, and by −z."""
-        arguments = {one.name: getattr(self, one.name) for one in fields(BallRow)}
+        arguments = {field.name: getattr(self, field.name) for field in fields(BallRow)}
         arguments["groove_limits"] = (-RIGHT_ANGLE, RIGHT_ANGLE)
         return BallRow(**arguments), BallRow(
             **arguments | {"direction": -self.direction, "axial_offset": -self.axial_offset}

@@ -106,7 +106,9 @@ def bending_shafts(rotor: Rotor, planes: Sequence[Sequence[RadialSupport]]) -> l
     free = free_bending_shaft(rotor)
     # A displacement unit squared is the reciprocal of a unit of stiffness.
     shift, tilt = (free.displacement_unit**2).tolist()
-    springs = [[(one.stiffness * shift, one.tilt_stiffness * tilt) for one in supports] for supports in planes]
+    springs = [
+        [(support.stiffness * shift, support.tilt_stiffness * tilt) for support in supports] for supports in planes
+    ]
     return free.held(places, *springs)
 
 
