@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.skin import closest_on_triangles
 from housing.errors import HousingError
+from housing.fem.surface import closest_on_triangles
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -133,7 +133,7 @@ class RadiatingSurface:
             some = points[start : start + 64]
             apart = np.linalg.norm(some[:, None] - centers, axis=2)
             row, triangle = np.nonzero(apart < 1.1 * self.lengths)  # corners lie within 2/3 of an edge of the centre
-            shares = closest_on_triangles(self.corners[triangle], some[row])
+            shares, _ = closest_on_triangles(self.corners[triangle], some[row])
             away = np.linalg.norm(np.einsum("pa,paj->pj", shares, self.corners[triangle]) - some[row], axis=1)
             near = away < part * self.lengths[triangle]
             columns.append((start + row[near], triangle[near], away[near]))

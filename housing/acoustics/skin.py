@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from housing.errors import HousingError
-from housing.fem.surface import triangle_middles
+from housing.fem.surface import closest_on_triangles, triangle_middles
 from meshes import Mesh
 from meshes.elements import KINDS, Facets
 
@@ -103,9 +103,8 @@ class Skin:
         tree = cKDTree(np.hstack([points, turned * self.normals[owners]]), balanced_tree=False)
         _, sample_numbers = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
         candidates = owners[np.reshape(sample_numbers, (len(places), -1))]
-        shares = closest_on_triangles(self.corners[candidates], places[:, None])
+        shares, gaps = closest_on_triangles(self.corners[candidates], places[:, None])
         feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])
-        gaps = np.linalg.norm(feet - places[:, None], axis=2)
         difference = np.linalg.norm(self.normals[candidates] - normals[:, None], axis=2)
         best = np.argmin(gaps**2 + (turned * difference) ** 2, axis=1)
         rows = np.arange(len(places))
@@ -152,42 +151,3 @@ def skin_of(mesh: Mesh, facets: Facets) -> Skin:
         raise HousingError("there are no facets; expected those of a housing's skin")
     together = np.concatenate(nodes)
     return Skin(together, mesh.points[together], np.concatenate(facet), np.concatenate(places))
-
-
-def closest_on_triangles(corners: FloatArray, places: FloatArray) -> FloatArray:
-    """Barycentric coordinates of the points of triangles that are nearest to places.
-
-    Parameters
-    ----------
-    corners : ndarray, shape (..., 3, 3)
-    places : ndarray, shape (..., 3)
-        Broadcast against the triangles.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-    """
-    a, first, second = (
-        corners[..., 0, :],
-        corners[..., 1, :] - corners[..., 0, :],
-        corners[..., 2, :] - corners[..., 0, :],
-    )
-    offset = places - a
-    g11, g12, g22 = ((one * other).sum(-1) for one, other in ((first, first), (first, second), (second, second)))
-    h1, h2 = (offset * first).sum(-1), (offset * second).sum(-1)
-    determinant = np.maximum(g11 * g22 - g12**2, 1e-300)
-    u, v = (g22 * h1 - g12 * h2) / determinant, (g11 * h2 - g12 * h1) / determinant
-    best = np.stack([1.0 - u - v, u, v], axis=-1)
-    inside = (best >= 0.0).all(axis=-1)
-    gap = np.where(inside, 0.0, np.inf)
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        edge = corners[..., j, :] - corners[..., i, :]
-        t = ((places - corners[..., i, :]) * edge).sum(-1) / np.maximum((edge**2).sum(-1), 1e-300)
-        t = np.clip(t, 0.0, 1.0)
-        away = np.linalg.norm(corners[..., i, :] + t[..., None] * edge - places, axis=-1)
-        closer = ~inside & (away < gap)
-        gap = np.where(closer, away, gap)
-        candidate = np.zeros_like(best)
-        candidate[..., i], candidate[..., j] = 1.0 - t, t
-        best = np.where(closer[..., None], candidate, best)
-    return best

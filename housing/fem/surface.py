@@ -341,7 +341,7 @@ class _Triangles:
         few = min(_NEIGHBOURS, apart.shape[1]) - 1
         reach = np.partition(apart, few, axis=1)[:, few, None] * (1.0 + _ROUNDING)
         rows, members = np.nonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
-        shares, distances = _closest_on_triangles(self.corners[members], targets[rows])
+        shares, distances = closest_on_triangles(self.corners[members], targets[rows])
         return rows, distances, np.full(len(rows), number), members, shares @ self.places
 
 
@@ -423,31 +423,45 @@ def _clipped(coordinates: FloatArray, block: ElementBlock) -> FloatArray:
     return np.array([u, np.clip(coordinates[1], 0.0, 1.0 - u)])
 
 
-def _closest_on_triangles(corners: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Barycentric coordinates of the point of each triangle (n, 3, 3) nearest to its place (n, 3), and its distance.
+def closest_on_triangles(corners: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Barycentric coordinates of the points of triangles nearest to places, and the distances.
 
     Triangles that a projection made flat (zero area) are measured by their edges.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (..., 3, d)
+        Corners of the triangles in the plane or in space [m].
+    places : ndarray, shape (..., d)
+        Places [m], broadcast against the triangles.
+
+    Returns
+    -------
+    coordinates : ndarray, shape (..., 3)
+    distance : ndarray, shape (...)
+        [m].
     """
-    a, edge_1, edge_2 = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    g11, g12, g22 = (edge_1**2).sum(1), (edge_1 * edge_2).sum(1), (edge_2**2).sum(1)
-    h1, h2 = ((place - a) * edge_1).sum(1), ((place - a) * edge_2).sum(1)
+    first, second = corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :]
+    offset = places - corners[..., 0, :]
+    g11, g12, g22 = (first**2).sum(-1), (first * second).sum(-1), (second**2).sum(-1)
+    h1, h2 = (offset * first).sum(-1), (offset * second).sum(-1)
     determinant = g11 * g22 - g12**2
     flat = determinant <= 1e-12 * g11 * g22
     safe = np.where(flat, 1.0, determinant)
     u, v = (g22 * h1 - g12 * h2) / safe, (g11 * h2 - g12 * h1) / safe
-    best = np.stack([1.0 - u - v, u, v], axis=1)
-    inside = ~flat & (best >= 0.0).all(axis=1)
-    distance = np.where(inside, np.linalg.norm((best[..., None] * corners).sum(1) - place, axis=1), np.inf)
+    best = np.stack([1.0 - u - v, u, v], axis=-1)
+    inside = ~flat & (best >= 0.0).all(axis=-1)
+    distance = np.where(inside, np.linalg.norm(offset - u[..., None] * first - v[..., None] * second, axis=-1), np.inf)
     for i, j in ((0, 1), (1, 2), (2, 0)):
-        edge = corners[:, j] - corners[:, i]
-        length = np.maximum((edge**2).sum(1), 1e-300)
-        t = np.clip(((place - corners[:, i]) * edge).sum(1) / length, 0.0, 1.0)
-        gap = np.linalg.norm(corners[:, i] + t[:, None] * edge - place, axis=1)
+        edge = corners[..., j, :] - corners[..., i, :]
+        beside = places - corners[..., i, :]
+        t = np.clip((beside * edge).sum(-1) / np.maximum((edge**2).sum(-1), 1e-300), 0.0, 1.0)
+        gap = np.linalg.norm(t[..., None] * edge - beside, axis=-1)
         closer = gap < distance
         distance = np.where(closer, gap, distance)
         candidate = np.zeros_like(best)
-        candidate[:, i], candidate[:, j] = 1.0 - t, t
-        best = np.where(closer[:, None], candidate, best)
+        candidate[..., i], candidate[..., j] = 1.0 - t, t
+        best = np.where(closer[..., None], candidate, best)
     return best, distance
 
 

@@ -57,13 +57,11 @@ The compliance is the elastic one: modes with λ <= floor are left out of it, ri
 a free body this is its inertia-relief compliance Sᵀ G S with S = I - M Φ_rigid Φ_rigidᵀ: the load is balanced by the
 inertia of the accelerated body. A body on mounts that are soft beside the limit is held to the same, stricter measure.
 
-Subset of residual modes that spans the responses of lower order to loads at the ports.
-
-A set of residual modes that holds the static response of the discarded modes and their responses at the limit
-(:mod:`housing.modes.residual_modes`, Eq. 5) holds smaller sets too. In its own coordinates, with frequencies ω and
-motions p of the ports, the response to a load is p / ω² at rest, p / (ω² - σ) at ω² = σ, and p / (ω² - σ)^j its
-derivatives there. These span the set of fewer orders; the difference between the two sets shows what the further
-orders contribute.
+*Smaller sets* span the responses of lower order to loads at the ports. A set of residual modes that holds the static
+response of the discarded modes and their responses at the limit (Eq. 5) holds them too. In its own coordinates, with
+frequencies ω and motions p of the ports, the response to a load is p / ω² at rest, p / (ω² - σ) at ω² = σ, and
+p / (ω² - σ)^j its derivatives there. These span the set of fewer orders; the difference between the two sets shows what
+the further orders contribute.
 """
 
 from collections.abc import Callable
