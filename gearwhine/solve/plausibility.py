@@ -85,6 +85,8 @@ def bearing_load_warnings(
 def operation_warnings(case: Case) -> list[dict[str, Any]]:
     """Warn of gear pairs without torque in a loaded train, and of torque lines that miss the torque of operation.
 
+    Outputs that the case names may leave a pair idle on purpose.
+
     Parameters
     ----------
     case : Case
@@ -96,7 +98,7 @@ def operation_warnings(case: Case) -> list[dict[str, Any]]:
     warnings = []
     torques = np.abs(pair_torques(case))
     for pair, torque in zip(case.gear_pair, torques, strict=True):
-        if torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
+        if not operation.output and torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
             message = (
                 f"{pair_label(pair.driver, pair.driven)} carries no torque, as nothing is taken off behind it: are its "
                 "driver and driven exchanged, or does an [[operation.output]] lack?"

@@ -30,6 +30,9 @@ def test_a_pair_behind_which_nothing_is_taken_off_is_told() -> None:
     idle = case_of(exchanged)
     assert told in check_case(idle).warnings
     assert told in load_warnings(idle, solve_load(idle, None))
+    # Where the case says where the torque leaves, it is meant so.
+    output = f'output = [{{ rotor = "middle", torque = {60.0 * 72.0 / 21.0} }}]\n'
+    assert operation_warnings(case_of(exchanged + output)) == []
     assert operation_warnings(case_of(reducer().replace('torque = "60 N*m"', 'torque = "0 N*m"'))) == []
 
 
