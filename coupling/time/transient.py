@@ -313,9 +313,13 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
     stored = max(end.highest - end.lowest, _ROUNDING * max(abs(end.highest), abs(end.lowest)))
     balance = _balance(end.energy - end.start_energy, end.totals, stored)
     if balance.error > ENERGY_BOUND or end.unsettled > 0.01 * end.steps:
+        unsettled = (
+            f", and {end.unsettled} of {end.steps} steps left the teeth's forces unsettled" if end.unsettled else ""
+        )
         raise TransientError(
-            f"the energies do not balance: {100 * balance.error:.2g} % is missing, and {end.unsettled} of {end.steps} "
-            "steps left the teeth's forces unsettled; lower the tolerance"
+            f"the energies do not balance: {100 * balance.error:.2g} % is missing, expected at most "
+            f"{100 * ENERGY_BOUND:g} %{unsettled}; take a tolerance below {settings.tolerance:g}, such as "
+            f"{0.2 * settings.tolerance:.1g}"
         )
     span = settings.duration - settings.record_from
     return TransientFigures(
