@@ -210,10 +210,10 @@ def assemble_machine(
     Raises
     ------
     CouplingError
-        Where a name has no component, two components share one, a rotor has no speed, a seat no housing, a train more
-        than one drive, helical gears push a rotor that no bearing holds along its axis, or the gears of a pair cannot
-        be in mesh: by speeds that are not in the ratio of their teeth, or of one sense; by axes that are not at their
-        centre distance; by faces that are not in one plane.
+        Where a bearing's stiffness has still to follow from its load, a name has no component, two components share
+        one, a rotor has no speed, a seat no housing, a train more than one drive, helical gears push a rotor that no
+        bearing holds along its axis, or the gears of a pair cannot be in mesh: by speeds that are not in the ratio of
+        their teeth, or of one sense; by axes that are not at their centre distance; by faces that are not in one plane.
     rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
@@ -225,6 +225,17 @@ def assemble_machine(
     components: tuple[Component, ...] = (*rotors, *(() if housing is None else (housing,)), *pedestals)
     if len({component.name for component in components}) < len(components):
         raise CouplingError(f"components named {[part.name for part in components]}; expected each name once")
+    # Linearised about a load it has an offset, and may be without stiffness: an unloaded one.
+    loose = [
+        mounted.bearing.name
+        for mounted in bearings
+        if mounted.needs_load and mounted.offset is None and mounted.law is None
+    ]
+    if loose:
+        raise CouplingError(
+            f"no stiffness yet for {', '.join(loose)}: it follows from the bearing's load; expected a machine at its "
+            "operating point (Machine.at_operating_point)"
+        )
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")

@@ -276,8 +276,10 @@ class Study:
     def gears(self) -> Result[tuple[PairAnalysis, ...]]:
         """Analyse each gear pair; see :func:`gearwhine.analyses.machine.gears`."""
         from gearwhine.analyses import machine
+        from gearwhine.solve.gear_pairs import aims_at_sensor
 
-        return machine.gears(self.case, progress=self.progress)
+        housing = self.housing if aims_at_sensor(self.case) else None
+        return machine.gears(self.case, housing=housing, progress=self.progress)
 
     def operating_point(
         self,

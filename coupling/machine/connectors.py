@@ -163,7 +163,7 @@ BearingLaw = RollingLaw | GapLaw
 
 @dataclass(frozen=True)
 class MountedBearing:
-    """A bearing between a rotor and a seat of the housing, or the ground where ``seat`` is None.
+    """A bearing between a rotor and a seat of the housing; where ``seat`` is None, its pedestal or the ground.
 
     With a ``law``, motion follows it in place of the bearing's stiffness, which linear analyses use. With
     ``rolling``, the machine's static equilibrium is that of the bearing's elements; a ``bearing`` without stiffness
@@ -294,7 +294,7 @@ _JUST_AFTER = 1e-9  # mesh periods
 
 @dataclass(frozen=True)
 class LinearConnector:
-    """A connector whose law is f = f₀ + K δ + C δ': a bearing, a coupling, a mount.
+    """A connector whose law is f = f₀ + K δ + C δ': a bearing, a shaft coupling, a torque over speed, condensed parts.
 
     Attributes
     ----------
@@ -302,9 +302,9 @@ class LinearConnector:
     directions : ndarray, shape (n, d)
         D.
     stiffness : ndarray, shape (d, d)
-        K [N/m], not necessarily symmetric.
+        K, not necessarily symmetric: N/m among displacements, N/rad and N m/m between these and rotations, N m/rad.
     damping : ndarray, shape (d, d)
-        C [N s/m].
+        C, in the units of K times s.
     over_speed : SpeedTable, optional
         K and C at other speeds than the nominal one, where they depend on it.
     axes : tuple of int

@@ -90,12 +90,20 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     )
 
 
-def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent) -> Result[tuple[PairAnalysis, ...]]:
+def gears(
+    case: Case,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    progress: Progress = silent,
+) -> Result[tuple[PairAnalysis, ...]]:
     """Analyse each gear pair: geometry, mesh stiffness, transmission error, load sharing, pressure, best tip relief.
 
     Parameters
     ----------
     case : Case
+    housing : SolvedHousing, optional
+        Housing where it is solved already; only a tip relief that aims at a sensor needs it.
     folder : path, optional
         Results folder, whose housing modes are read where a tip relief aims at a sensor.
     progress : callable
@@ -109,7 +117,7 @@ def gears(case: Case, *, folder: Path | None = None, progress: Progress = silent
     require(case, "gear_pair", command="gears")
     point = point_of_pairs(case, None, progress)
     loaded = solve_pairs(case, None, progress, point=point)
-    aims = relief_aims(case, loaded, progress, folder=folder)
+    aims = relief_aims(case, loaded, progress, housing=housing, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
     document = gears_document(pairs)
     if point is not None and case.housing is not None:

@@ -43,7 +43,7 @@ from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import build_machine
 
 FloatArray = npt.NDArray[np.float64]
@@ -348,13 +348,19 @@ def _alike(pair: GearPairGeometry) -> GearPairGeometry:
 
 
 def relief_aims(
-    case: Case, pairs: tuple[LoadedGearPair, ...], progress: Progress = silent, *, folder: Path | None = None
+    case: Case,
+    pairs: tuple[LoadedGearPair, ...],
+    progress: Progress = silent,
+    *,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
 ) -> tuple[ReliefAim, ...]:
     """Objective of the tip-relief search for each pair.
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
     √(½ Σ (w_n a_n)²), with a_n the linear response to transmission error and load shuttling together about the case's
-    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. The housing is solved for it.
+    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. The housing is solved for it
+    where it is not given.
 
     Raises
     ------
@@ -364,10 +370,10 @@ def relief_aims(
         Where the machine's loads cannot balance, so that a pair has no mean force in it.
     """
     aims = [entry.relief_aim for entry in case.gear_pair]
-    if all(aim is None or aim.sensor is None for aim in aims):
+    if not aims_at_sensor(case):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
-    housing = solve_housing(case, progress, folder=folder)
+    housing = housing or solve_housing(case, progress, folder=folder)
     model = MeshHarmonicModel(build_machine(case, housing, pairs, progress))
     limit = housing.trusted_limit_hz
     objectives = []
@@ -392,6 +398,11 @@ def relief_aims(
         follows = pair.pair.damping is None
         objectives.append(SensorLevel(model, number, aim.sensor, weights, damping_follows=follows))
     return tuple(objectives)
+
+
+def aims_at_sensor(case: Case) -> bool:
+    """Whether the tip relief of a gear pair aims at a sensor, for which the housing is solved."""
+    return any(pair.relief_aim is not None and pair.relief_aim.sensor is not None for pair in case.gear_pair)
 
 
 def _without_sensor(aim: GivenAim | None) -> ReliefAim:

@@ -328,7 +328,7 @@ class BoundaryElements:
 
     @cached_property
     def _inner_points(self) -> FloatArray:
-        """Points inside, no nearer to the surface than half an edge; the first few are checks.
+        """Points inside, at least 0.6 edges from the middle of every triangle; the first few are checks.
 
         They are random means of four vertices, so that they turn and grow with the surface. A thin body has none.
         """

@@ -1,4 +1,4 @@
-"""Certificate of a set of modes by Sylvester's law of inertia: none is missing, none stands twice, each is accurate.
+"""Certificate of a set of modes by its Sturm count (Sylvester's inertia): none missing, none twice, each accurate.
 
 The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
 (:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in

@@ -419,7 +419,7 @@ def _independent(stiffness: Operator, residual: FloatArray, known_energy: FloatA
 def _extended(stiffness: Operator, span: FloatArray, further: FloatArray) -> FloatArray:
     """Extend vectors orthonormal in K by the part of further ones outside their span.
 
-    A combination that adds less than a part of 1e-10 of its own strain energy is dropped.
+    A combination that adds less than the part `_ADDS_NOTHING` of its own strain energy is dropped.
     """
     force = np.asarray(stiffness @ further)
     energy_before = np.einsum("ij,ij->j", further, force)

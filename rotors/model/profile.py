@@ -251,7 +251,7 @@ def restricted(coefficients: FloatArray, centre: FloatArray, half: FloatArray) -
 
 
 def _identity(part: Segment | Coupling) -> tuple[object, ...]:
-    """Key that two uniform parts of one section share, whatever their lengths."""
+    """Key that two segments of one section share, whatever their lengths; couplings share it at one length alone."""
     if isinstance(part, Coupling):
         stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
         return (part.length, *stiffnesses)

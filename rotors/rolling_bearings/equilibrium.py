@@ -1,4 +1,4 @@
-"""Static equilibrium of a rolling bearing: displacement, tangent stiffness and element loads under a load.
+"""Static equilibrium of a rolling bearing: displacement, 5x5 tangent stiffness and element loads under a load.
 
 With the energy φ(q) of all elements and the load f, the potential
 

@@ -324,6 +324,8 @@ def test_rolling_bearings_of_objects_get_their_stiffness_from_the_operating_poin
     assert all(one.needs_load and one.elements is elements for one in bearings)
     assert bearings[0].bearing.spatial_damping.diagonal().tolist() == [500.0, 500.0, 0.0, 0.0, 0.0]
     on_rolling = replace(machine, bearings=bearings)
+    with pytest.raises(gw.CouplingError, match=r"no stiffness yet for input-back, .*at_operating_point"):
+        on_rolling.assemble()
     loaded = on_rolling.operating_point()
     for bearing, linear in zip(loaded.bearings, machine.operating_point().bearings, strict=True):
         np.testing.assert_allclose(bearing.force[:2], linear.force[:2], rtol=1e-6)

@@ -103,7 +103,9 @@ class FaceLoad:
 
 
 def face_load_factor(load: FaceLoad, even: FaceLoad) -> float:
-    """Face load factor K_Hβ.
+    """Face load factor K_Hβ: the largest mean load per width over that of an even approach.
+
+    Both are relative to their means; the ratio is extrapolated from the three outer slices to the ends of the face.
 
     Parameters
     ----------

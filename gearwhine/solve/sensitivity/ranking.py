@@ -1,4 +1,4 @@
-"""Sensitivity ranking at an operating point: change of gear pairs, sensors' lines and sound by walls and bearings.
+"""Sensitivity ranking at an operating point: gear pairs, sensors' lines and sound by wall thickness and bearings.
 
 The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.mesh_harmonics`. Parameters of
 the housing are those of :mod:`gearwhine.solve.sensitivity.housing_changes`.
