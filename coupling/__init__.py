@@ -18,7 +18,8 @@ Sub-packages and modules, each of which imports only those before it:
 - ``coupling.machine``: parts, gear train, components (projection onto modes), connectors (5x5 bearing stiffness),
   loads, speed profile, equations of motion.
 - ``coupling.connector_forces``: forces of tooth contacts, rolling bearings and gaps, compiled.
-- ``coupling.statics``: static equilibrium, operating point, mean mesh stiffness.
+- ``coupling.statics``: static equilibrium, operating point, mean mesh stiffness; below the assembly, which takes loaded
+  flanks and mean mesh forces from it.
 - ``coupling.assembly``: assembly of the coupled machine.
 - ``coupling.linear``: complex modes, stability, Campbell diagram, frequency response, excitation orders.
 - ``coupling.signals``: spectra, order tracking, sidebands, names of spectral lines, transfer paths.

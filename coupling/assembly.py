@@ -48,8 +48,8 @@ from coupling.machine.loads import (
     MachineCoordinates,
     MachineLoads,
     base_loads,
-    constant_torques,
     gravity_load,
+    largest_torques,
 )
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -461,7 +461,7 @@ def _require_thrust_carried(
     names = {rotor.name for rotor in rotors}
     movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
     if all(name in names for pair in pairs for name in pair.rotors):
-        require_thrust_carried(pairs, bearings, speeds, constant_torques(torques), movable)
+        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable)
 
 
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:

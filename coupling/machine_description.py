@@ -38,7 +38,7 @@ from coupling.machine.gear_train import (
     require_balanced_outputs,
     require_one_plane,
 )
-from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, constant_torques
+from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
 from coupling.machine.parts import (
     CONSTANT,
     Driving,
@@ -54,7 +54,8 @@ from coupling.machine.parts import (
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
-from coupling.statics.operating_point import OperatingPoint, solve_operating_point
+from coupling.statics.operating_point import OperatingPoint
+from coupling.statics.operating_point_search import solve_operating_point
 from coupling.statics.static_model import StaticGear, StaticPair, StaticShaftPart, static_bearing, static_pair
 from coupling.time.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
@@ -533,7 +534,7 @@ class Machine:
                 map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
             )
         ]
-        require_thrust_carried(pairs, self.bearings, self.speeds, constant_torques(self.constant_torques))
+        require_thrust_carried(pairs, self.bearings, self.speeds, largest_torques(self.constant_torques))
 
     def _require_balance_of_each_shaft(self) -> None:
         """Refuse torques that no gear pair leads away and that do not balance on their own shaft.

@@ -23,9 +23,10 @@ Each analysis returns a frozen result with the certificate that no mode is missi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Sub-packages: ``rotors.model`` (description), ``rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count),
-``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl), ``rotors.analyses``,
-``rotors.rolling_bearings``, ``rotors.ross`` (file exchange), ``rotors.numerics``. The compiled kernels load with the
+Sub-packages, each of which imports only those before it: ``rotors.numerics``, ``rotors.model`` (description),
+``rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count), ``rotors.rolling_bearings``, ``rotors.ross``
+(file exchange), ``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl),
+``rotors.analyses``. The compiled kernels load with the
 first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is right-handed with z along the shaft.
 """
 

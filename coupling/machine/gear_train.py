@@ -24,7 +24,7 @@ from coupling.gears.errors import InterferenceError, NoContactError
 from coupling.gears.geometry.pair import mesh_frequency, turning_sense
 from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.connectors import GearMesh
-from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, constant_torques, trains
+from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques, trains
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -459,7 +459,7 @@ def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], sp
         Where the power that a train takes in and the power that it gives out differ by more than one in a hundred.
     """
     varying = {torque.rotor for torque in torques if not isinstance(torque, Torque | TorqueRipple)}
-    total = constant_torques(torques)
+    total = largest_torques(torques)
     for train in trains(list(speeds), [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]):
         if len(train) < 2 or varying.intersection(train):
             continue

@@ -141,19 +141,22 @@ class TorqueSlope:
 AnyTorque = Torque | TorqueHistory | TorqueRipple | TorqueSlope
 
 
-def constant_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
-    """Sum of the torques on each rotor [N m]: tables over time count by their largest value, ripples and slopes not."""
-    total: dict[str, float] = {}
+def largest_torques(torques: "Sequence[AnyTorque]") -> dict[str, float]:
+    """Largest sum over time of the torques on each rotor [N m], with its sign; ripples and slopes do not count."""
+    constant: dict[str, float] = {}
+    histories: dict[str, list[TorqueHistory]] = {}
     for torque in torques:
         match torque:
             case Torque():
-                value = torque.value
+                constant[torque.rotor] = constant.get(torque.rotor, 0.0) + torque.value
             case TorqueHistory():
-                value = float(torque.values[np.abs(torque.values).argmax()])
-            case _:
-                continue
-        total[torque.rotor] = total.get(torque.rotor, 0.0) + value
-    return total
+                histories.setdefault(torque.rotor, []).append(torque)
+    largest = dict(constant)
+    for rotor, given in histories.items():
+        times = np.unique(np.concatenate([history.times for history in given]))
+        total = constant.get(rotor, 0.0) + sum(np.interp(times, history.times, history.values) for history in given)
+        largest[rotor] = float(total[np.abs(total).argmax()])
+    return largest
 
 
 @dataclass(frozen=True)

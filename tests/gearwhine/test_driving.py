@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import Torque, TransientError, static_equilibrium
+from coupling import CoupledMachine, Torque, TransientError, static_equilibrium
 from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.machine.loads import TorqueHistory, TorqueRipple
+from coupling.machine.loads import TorqueHistory, TorqueRipple, largest_torques
 from coupling.machine.speed_profile import free_speed
 from coupling.statics.mean_mesh import mean_meshes
 from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, parse_case
@@ -296,3 +296,33 @@ def test_a_braked_train_coasts_on_its_back_flanks() -> None:
     assert pair["mean_force_n"] == pytest.approx(100.0 / mesh.geometry.driver.base_radius, rel=1e-3)
     # One constant spring under a constant torque: the start is the motion, so nothing sets in.
     assert pair["peak_force_n"] == pytest.approx(pair["mean_force_n"], rel=1e-6)
+
+
+def test_the_largest_torques_are_those_of_constants_and_histories_together() -> None:
+    """A history that takes a constant torque down to nothing leaves the constant one as the largest."""
+    times = np.array([0.0, 1.0])
+    torques = [
+        Torque("input", 0.0, 150.0),
+        TorqueHistory("input", 0.0, times, np.array([-150.0, 0.0])),
+        Torque("output", 0.1, -200.0),
+        TorqueHistory("output", 0.1, np.array([0.0, 0.5]), np.array([-30.0, 20.0])),
+        TorqueHistory("brake", 0.1, times, np.array([0.0, -5.0])),
+    ]
+    assert largest_torques(torques) == {"input": 150.0, "output": -230.0, "brake": -5.0}
+    # Without a bearing along z the thrust of a helical pair is refused, free run or not.
+    run = {"run": {"from": "0 rpm", "time": "1 s"}}
+    line = {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["300 N*m", "150 N*m", "0 N*m"]}
+    load = {"speed": ["0 rpm", "3000 rpm"], "torque": ["0 N*m", "150 N*m"]}
+    document = tomllib.loads(files("gearwhine.cases").joinpath("helical-pair.toml").read_text(encoding="utf-8"))
+    del document["provenance"]
+    for bearing in document["bearing"]:
+        bearing["stiffness"] = {"xx": "2e8 N/m", "yy": "2e8 N/m"}
+    operation = document["operation"] | {"motor": line, "load": load}
+
+    def assemble(document: dict[str, Any]) -> CoupledMachine:
+        case = parse_case(document)
+        return build_machine(case, None, solve_gears(case))
+
+    for part in ({}, {"operation": operation, "transient": run}):
+        with pytest.raises(ValueError, match="thrust"):
+            assemble(document | part)
