@@ -26,8 +26,10 @@ Each analysis returns a frozen result with the certificate that no mode is missi
 Sub-packages, each of which imports only those before it: ``rotors.numerics``, ``rotors.model`` (description),
 ``rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count), ``rotors.rolling_bearings``, ``rotors.ross``
 (file exchange), ``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl),
-``rotors.analyses``. The compiled kernels load with the
-first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is right-handed with z along the shaft.
+``rotors.analyses``.
+
+The compiled kernels load with the first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is
+right-handed with z along the shaft.
 """
 
 from rotors.analyses.campbell import Campbell as Campbell

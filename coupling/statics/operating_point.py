@@ -36,16 +36,6 @@ from rotors.rolling_bearings import RollingState, linearised_bearing
 
 FloatArray = npt.NDArray[np.float64]
 
-RESIDUAL_BOUND = 1e-9
-"""Largest force out of balance, relative to the largest load, beyond the rounding of elastic forces."""
-
-_ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its terms
-_LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
-_FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
-_CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
-_TE_PHASES = 200
-_IDLE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
-
 
 @dataclass(frozen=True, eq=False)
 class ShaftDeflection:
@@ -273,7 +263,7 @@ class OperatingPoint:
         The housing's modal coordinates.
     residual : float
         Largest force out of balance over the largest load; moments over that load times the longest shaft. Beyond the
-        rounding of the elastic forces it is at most `RESIDUAL_BOUND`.
+        rounding of the elastic forces it is at most `coupling.statics.operating_point_search.RESIDUAL_BOUND`.
     iterations : int
         Number of steps of the trust region and Newton's method.
     free : tuple of str

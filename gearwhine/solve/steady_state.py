@@ -31,7 +31,6 @@ from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
-_TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.5  # lowest speed of a branch over that of operation, where the case names no range
 _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512

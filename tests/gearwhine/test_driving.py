@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, Torque, TransientError, static_equilibrium
+from coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
 from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.machine.loads import TorqueHistory, TorqueRipple, largest_torques
 from coupling.machine.speed_profile import free_speed
+from coupling.signals.spectrum import lines_at
 from coupling.statics.mean_mesh import mean_meshes
-from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, parse_case
+from coupling.time.histories import histories, transient_outputs
+from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
 from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
@@ -236,6 +238,36 @@ def test_the_mesh_of_a_free_run_is_that_of_its_mean_load() -> None:
     shares = [share.value for share in applied_torques(steady, -65.0)]
     assert [load.values[0] for load in machine.timed_loads] == pytest.approx(shares)
     assert [load.values[-1] for load in machine.timed_loads] == pytest.approx([0.0, 0.0], abs=1e-3)
+
+
+def test_a_free_run_at_its_speed_has_the_lines_of_the_steady_motion() -> None:
+    """Bearing forces at the mesh frequency, mostly of load shuttling: time integration against shooting.
+
+    The lines of torque are all but level: a steep one damps the torsion of its shaft at the mesh frequency as well.
+    """
+    lines = {
+        "motor": {"speed": ["0 rpm", "6000 rpm"], "torque": ["151 N*m", "149 N*m"]},
+        "load": {"speed": ["0 rpm", "6000 rpm"], "torque": ["149 N*m", "151 N*m"]},
+    }
+    document = tomllib.loads(files("gearwhine.cases").joinpath("helical-pair.toml").read_text(encoding="utf-8"))
+    del document["provenance"]
+    for rotor in document["rotor"]:
+        rotor["modes"] = 2
+    steady = parse_case(document)
+    transient = {"run": {"from": "3000 rpm", "time": "0.2 s"}, "discard": 5, "tolerance": 1e-4}
+    free = parse_case(document | {"operation": document["operation"] | lines, "transient": transient})
+    pairs = solve_gears(steady)
+    (mesh,) = mesh_frequencies(steady)
+    machine = build_machine(steady, None, pairs)
+    response = periodic_response(machine.system)
+    period = histories(machine, response.record(transient_outputs(machine), 256))
+    run = solve_transient(free, build_machine(free, None, pairs), (mesh,)).histories
+    interval = float(run.times[1] - run.times[0])
+    for name, load in period.bearing_load.items():
+        expected = np.abs(lines_at(load.T, response.period / 256, np.array([mesh]), "uniform"))[:2, 0]
+        found = np.abs(lines_at(run.bearing_load[name].T, interval, np.array([mesh]), "hann"))[:2, 0]
+        np.testing.assert_allclose(found, expected, atol=0.02 * expected.max())
+        assert expected.max() > 1.0
 
 
 def test_torques_of_a_case() -> None:

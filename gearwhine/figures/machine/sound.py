@@ -54,7 +54,6 @@ _HEARD = 25.0  # range below the loudest line in which lines have names and dire
 _STEP = 10.0  # step of the axis of levels [dB]
 _FEWEST_BANDS = 8
 _EFFICIENCY = 62.0  # height of the panel of efficiencies [mm]
-_NUMBERED = 12  # number of modes with numbers
 _ROSE, _ROSE_ROOM = 41.0, 14.0  # diameter of a directivity and gap between two of them [mm]
 _ROSE_RANGE = 30.0  # range of levels of a directivity [dB]
 _LOUDEST = 2  # number of lines whose directivity is drawn

@@ -63,7 +63,6 @@ from housing.errors import TriangleSizeError
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_TWO_PI = 2.0 * np.pi
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
 
 
