@@ -92,7 +92,9 @@ def leading_lines(sensors: Iterable[Document], key: str, most: int = _LINES_OF_A
     for sensor in sensors:
         for line in sensor.get(key, ())[:most]:
             parts = line.get("contributions", {}).get("housing_modes", ())
-            by = {"by": parts[0]["name"], "by_mode": parts[0].get("number")} if parts else {"by": None, "by_mode": None}
+            # The largest of all in size may work against the line.
+            leading = max(parts, key=lambda part: part["share"], default={"name": None})
+            by = {"by": leading["name"], "by_mode": leading.get("number")}
             rows.append({**line, "sensor": sensor["name"]} | by)
     return rows
 

@@ -134,7 +134,10 @@ TRACED = {
     "level_db": 120.0,
     "near_mode": None,
     "contributions": {
-        "housing_modes": [{"name": "housing mode 19 (2664 Hz)", "amplitude_m_per_s2": 3.0, "share": 1.5, "number": 19}],
+        "housing_modes": [
+            {"name": "housing mode 17 (2613 Hz)", "amplitude_m_per_s2": 4.0, "share": -1.7, "number": 17},
+            {"name": "housing mode 19 (2664 Hz)", "amplitude_m_per_s2": 3.0, "share": 1.5, "number": 19},
+        ],
         "bearings": [
             {"name": "back", "amplitude_m_per_s2": 2.5, "share": -0.4},
             {"name": "front", "amplitude_m_per_s2": 2.0, "share": 1.4},
