@@ -320,6 +320,14 @@ class ToothContact:
         return start - reach, end + reach
 
     @property
+    def enters_by_slices(self) -> bool:
+        """Whether the lines of contact lie across the path, so that a pair enters and leaves slice by slice.
+
+        The whole face of a spur gear enters at once, evenly loaded or not.
+        """
+        return self.faces is not None and self.faces.half_span > 0.0
+
+    @property
     def has_corner_contact(self) -> bool:
         """Whether pairs touch beyond their path of contact."""
         return self._slice_range[0] < 0.0
@@ -389,11 +397,11 @@ class ToothContact:
     def event_phases(self) -> tuple[float, ...]:
         """Phases in [0, 1) at which a pair enters its path of contact (0) or leaves it, ascending.
 
-        Empty for an uneven face, whose pairs enter and leave slice by slice, and for a constant number of pairs: a
+        Empty for helical teeth, whose pairs enter and leave slice by slice, and for a constant number of pairs: a
         whole contact ratio with a stiffness and a deviation that continue over the period's ends in value and slope,
         and all pairs alike.
         """
-        if self.faces is not None:
+        if self.enters_by_slices:
             return ()
         leaving = self.contact_ratio % 1.0
         if leaving > 1e-12 and 1.0 - leaving > 1e-12:
@@ -412,8 +420,11 @@ class ToothContact:
 
     @property
     def corner_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending."""
-        if self.faces is not None:
+        """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending.
+
+        Empty for helical teeth, whose slices pass the corner one after another.
+        """
+        if self.enters_by_slices:
             return ()
         phases: set[float] = set()
         for curves in self.variant_curves:

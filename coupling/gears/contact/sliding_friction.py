@@ -93,7 +93,7 @@ def sliding_friction(geometry: GearPairGeometry, contact: ToothContact, coeffici
     friction = SlidingFriction(
         coefficient / math.cos(geometry.driver.base_helix_angle), geometry.pitch_point_position, geometry.contact_ratio
     )
-    return replace(friction, shares=_shares(contact, friction)) if _reverses_by_slices(contact) else friction
+    return replace(friction, shares=_shares(contact, friction)) if contact.enters_by_slices else friction
 
 
 def sliding_direction_means(
@@ -119,10 +119,6 @@ def sliding_direction_means(
     sign = np.where(point, np.sign(low - pitch_point), (high + low - 2.0 * reversal) / length)
     moment = np.where(point, low * np.sign(low - pitch_point), (0.5 * (high**2 + low**2) - reversal**2) / length)
     return sign, moment
-
-
-def _reverses_by_slices(contact: ToothContact) -> bool:
-    return contact.faces is not None and contact.faces.half_span > 0.0
 
 
 def _shares(contact: ToothContact, friction: SlidingFriction) -> FloatArray:

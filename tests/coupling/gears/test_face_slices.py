@@ -322,6 +322,28 @@ def test_the_tables_force_is_its_energys_slope(uneven, phase: float, depth: floa
     assert (after[3] - before[3]) / 2e-6 == pytest.approx(here[4], rel=1e-4, abs=1e-7 * here[3])
 
 
+def test_an_uneven_spur_face_enters_and_meets_its_reliefs_at_once() -> None:
+    """The energy's slope by the phase jumps where that of the even face does, and nowhere else."""
+    pair = GearPairGeometry(replace(PINION, helix_deviation=HelixDeviation(crowning=12e-6)), WHEEL)
+    plain = tooth_contact(SPUR, MODEL, corner_contact=True)
+    uneven = tooth_contact(pair, MODEL, corner_contact=True, faces=face_slices(pair, misalignment=2e-4))
+    assert uneven.event_phases == plain.event_phases
+    assert uneven.corner_phases == plain.corner_phases
+    marks = np.unique([*plain.event_phases, *plain.corner_phases])
+    assert marks.size == 4
+    phases = np.arange(20_001) / 20_000 + 1.23e-5
+    history = np.array([tooth_force(phase, 20e-6, 0.0, *uneven.kernel_arguments) for phase in phases])
+    trapezoids = 0.5 * (history[1:, 4] + history[:-1, 4]) * np.diff(phases)
+    missed = np.abs(np.diff(history[:, 3]) - trapezoids)
+    at_marks = np.searchsorted(phases, marks + (marks < phases[0])) - 1
+    relief = np.searchsorted(phases, plain.corner_phases) - 1
+    assert missed[relief].min() > 100.0 * np.delete(missed, at_marks).max()
+
+
+def test_a_helical_pair_enters_slice_by_slice(uneven) -> None:  # type: ignore[no-untyped-def]
+    assert uneven.event_phases == uneven.corner_phases == ()
+
+
 def test_stiffness_without_flattening_gives_the_whole_back() -> None:
     slices = face_slices(SPUR)
     whole = np.array([3e8, 1e12])
