@@ -156,7 +156,9 @@ class Scratch(NamedTuple):
     delta_free: FloatArray  # (e + c,)
     rate_free: FloatArray  # (e + c,)
     slip: FloatArray  # (e + c,) rates of the runout errors
-    force_before: FloatArray  # (e + c,)
+    force_before: FloatArray  # (e + c,) at the step's start: forces, compressions and energies of the teeth
+    delta_before: FloatArray  # (e + c,)
+    energy_before: FloatArray  # (e + c,)
     laws: FloatArray  # (c, 6)
     spare: FloatArray  # (c, 6)
     drag: FloatArray  # (c, 4) slopes of friction

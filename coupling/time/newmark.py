@@ -31,7 +31,6 @@ from coupling.connector_forces.contact_kernels import (
     DAMPING,
     ENERGY,
     FORCE,
-    PHASE_SLOPE,
     evaluate_contact,
     evaluate_forces,
     flank_gap,
@@ -133,8 +132,9 @@ def evaluate_powers(
     """Powers of the loads, of the losses, of the rotation, and of friction from the nominal rotation [W].
 
     The last entry is twice the kinetic energy [J]. With the teeth's energy U(p, δ), δ = dᵀq - e: the rotating teeth
-    give ∂U/∂p p' - f e', and the damping takes v C v + c δ'². Together with the loads they change the energy of motion,
-    springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and C_t.
+    give ∂U/∂p p' - f e', of which :func:`_work_on_teeth` adds the first, and the damping takes v C v + c δ'². Together
+    with the loads they change the energy of motion, springs and teeth. ``stiffness`` and ``damping`` (r, r) are K_t and
+    C_t.
     """
     tq, tv, laws = scratch.tq, scratch.tv, scratch.laws
     by_loads, by_damping, square = 0.0, 0.0, 0.0
@@ -151,7 +151,7 @@ def evaluate_powers(
                 by_damping += 0.5 * tv[i] * (stiffness[i, j] - stiffness[j, i]) * tq[j]
     by_rotation = scratch.bearing_work[BEARING_POWER] * speed
     for k in range(laws.shape[0]):
-        by_rotation += laws[k, PHASE_SLOPE] * contacts.mesh_frequency[k] * speed - laws[k, FORCE] * scratch.slip[k]
+        by_rotation -= laws[k, FORCE] * scratch.slip[k]
         by_damping += laws[k, DAMPING] * scratch.rate[k] * scratch.rate[k]
     powers = scratch.powers
     powers[BY_LOADS], powers[BY_DAMPING], powers[BY_ROTATION] = by_loads, by_damping, by_rotation
@@ -175,6 +175,32 @@ def _add_friction(contacts: Contacts, speed: float, scratch: Scratch) -> None:
             powers[BY_ROTATION] -= push[row] * dv[row] + push[row + 1] * dv[row + 1]
             sliding = push[row] * contacts.sliding[k, 0] + push[row + 1] * contacts.sliding[k, 1]
             powers[BY_FRICTION] += sliding * speed
+
+
+@inner()
+def _work_on_teeth(contacts: Contacts, nominal_time0: float, nominal_time: float, scratch: Scratch) -> float:
+    """Work that the rotation does on the teeth in a step [J]: ∫ ∂U/∂p dp between two nominal times.
+
+    It is the change of their energy with the phase alone, in the mean of that at the first compression and that at the
+    last. ∂U/∂p jumps and ripples as the slices of helical teeth meet the corners of the profiles, often in one step:
+    quadrature of it adds up errors that depend on where the steps fall, and that smaller steps need not make smaller.
+    """
+    spare, work = scratch.spare, 0.0
+    for k in range(contacts.phase.size):
+        evaluate_contact(contacts, k, nominal_time, scratch.delta_before[k], 0.0, spare, k)
+        work += 0.5 * (spare[k, ENERGY] - scratch.energy_before[k])
+        evaluate_contact(contacts, k, nominal_time0, scratch.delta[k], 0.0, spare, k)
+        work += 0.5 * (scratch.laws[k, ENERGY] - spare[k, ENERGY])
+    return work
+
+
+@inner(inline="always")
+def _keep_teeth(contacts: Contacts, scratch: Scratch) -> None:
+    """Keep forces, compressions and energies of the teeth for the end of the next step."""
+    for k in range(contacts.phase.size):
+        scratch.force_before[k] = scratch.laws[k, FORCE]
+        scratch.delta_before[k] = scratch.delta[k]
+        scratch.energy_before[k] = scratch.laws[k, ENERGY]
 
 
 @inner()
@@ -309,7 +335,7 @@ def newmark_steps(
             speed0 + 0.5 * alpha * (t1 - t0), alpha, scratch,
         )  # fmt: skip
         totals[ROTATION_WORK] += fresh - stored
-        stored = fresh
+        stored, evaluated = fresh, nominal_time
         for step in range(count):
             t, after = t0 + step * h, (step + 1) * h
             speed = speed0 + alpha * after
@@ -337,7 +363,11 @@ def newmark_steps(
             _correct(q, v, dynamics, h, scratch)
             if alpha != 0.0:
                 _add_drive_load(q, dynamics, alpha, scratch)
-            stored = _accumulate(v, dynamics, contacts, matrices, slot, t, h, speed, totals, contact_totals, scratch)
+            stored = _accumulate(
+                v, dynamics, contacts, matrices, slot, t, h, evaluated, nominal_time, speed, totals, contact_totals,
+                scratch,
+            )  # fmt: skip
+            evaluated = nominal_time
     return next_sample, stored, curvature, acceleration, unsettled
 
 
@@ -389,8 +419,7 @@ def _start_segment(
     )
     for k in range(scratch.powers.size):
         scratch.powers_before[k] = scratch.powers[k]
-    for k in range(c):
-        scratch.force_before[k] = scratch.laws[k, FORCE]
+    _keep_teeth(contacts, scratch)
     return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)
 
 
@@ -564,12 +593,17 @@ def _accumulate(
     slot: int,
     t: float,
     h: float,
+    nominal_time0: float,
+    nominal_time: float,
     speed: float,
     totals: FloatArray,
     contact_totals: FloatArray,
     scratch: Scratch,
 ) -> float:
-    """Add a step's work, losses and contact figures; returns the energy in teeth and connectors at its end."""
+    """Add a step's work, losses and contact figures; returns the energy in teeth and connectors at its end.
+
+    The teeth were last evaluated at the nominal times ``nominal_time0``, before the step, and ``nominal_time``.
+    """
     powers, powers_before = scratch.powers, scratch.powers_before
     evaluate_powers(
         dynamics, contacts, matrices.connector_stiffness[slot], matrices.connector_damping[slot], speed, v, scratch
@@ -577,6 +611,7 @@ def _accumulate(
     totals[LOAD_WORK] += 0.5 * h * (powers_before[BY_LOADS] + powers[BY_LOADS])
     totals[DAMPING_LOSS] += 0.5 * h * (powers_before[BY_DAMPING] + powers[BY_DAMPING])
     totals[ROTATION_WORK] += 0.5 * h * (powers_before[BY_ROTATION] + powers[BY_ROTATION])
+    totals[ROTATION_WORK] += _work_on_teeth(contacts, nominal_time0, nominal_time, scratch)
     totals[FRICTION_LOSS] += 0.5 * h * (powers_before[BY_FRICTION] + powers[BY_FRICTION])
     totals[LARGEST_KINETIC] = max(totals[LARGEST_KINETIC], 0.5 * powers[TWICE_KINETIC])
     for k in range(powers.size):
@@ -589,5 +624,5 @@ def _accumulate(
         else:
             contact_totals[k, LAST_TOUCH] = t + h
         contact_totals[k, PEAK] = max(contact_totals[k, PEAK], force)
-        scratch.force_before[k] = force
+    _keep_teeth(contacts, scratch)
     return stored_in(dynamics, matrices.connector_stiffness[slot], scratch)

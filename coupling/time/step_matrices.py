@@ -93,7 +93,9 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
         ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)
     )
     shapes |= dict.fromkeys(("dq", "dv", "da", "dq_predicted", "dv_predicted", "push"), (k,))
-    shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "force_before"), (u,))
+    shapes |= dict.fromkeys(
+        ("delta", "rate", "delta_free", "rate_free", "slip", "force_before", "delta_before", "energy_before"), (u,)
+    )
     return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
 

@@ -1,16 +1,27 @@
 """Newmark's march: the energy it keeps, the order it has, and the settings that betray it."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
 from coupling import CoupledSystem, TransientError, TransientOutputs, TransientSettings, simulate, static_equilibrium
-from coupling.gears import ToothContact
+from coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    TipRelief,
+    ToothContact,
+    tooth_contact,
+)
 from coupling.gears import piecewise_cubic as piecewise
+from coupling.gears.contact.face_slices import face_slices
 from coupling.machine.components import Component
 from coupling.machine.connectors import ContactConnector, LinearConnector
 from coupling.machine.coupled_system import HarmonicLoad
+from coupling.machine.speed_profile import SpeedProfile
 from coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
@@ -216,3 +227,33 @@ def test_refinement_reaches_the_tolerance() -> None:
     assert errors[0] < 5e-2
     assert errors[2] < errors[1] < errors[0]
     assert errors[2] < 5e-4
+
+
+@pytest.fixture(scope="module")
+def helical_mesh() -> CoupledSystem:
+    """A mass on helical teeth under an uneven load: slice after slice meets the corners of the profiles."""
+    relief, helix = TipRelief(12e-6, length=2e-3), float(np.radians(15.0))
+    pinion = Gear("pinion", 21, 2e-3, np.radians(20.0), 28e-3, helix_angle=helix, tip_relief=relief)
+    pair = GearPairGeometry(pinion, replace(pinion, name="wheel", teeth=49, helix_angle=-helix))
+    faces = face_slices(pair, misalignment=1e-4)
+    contact = tooth_contact(pair, PotentialEnergyStiffness(), 60.0, corner_contact=True, faces=faces)
+    tooth = ContactConnector("mesh", np.ones(1), contact, 0.0, 1015.0, np.empty((0, 3)))
+    return CoupledSystem((component(np.ones((1, 1))),), (0.0,), contacts=(tooth,), load=np.array([1200.0]))
+
+
+@pytest.mark.parametrize("end", [1.0, 1.003, 1.03])
+def test_a_slow_ramp_on_helical_teeth_balances_the_better_the_finer_the_steps(
+    helical_mesh: CoupledSystem, end: float
+) -> None:
+    turning = SpeedProfile(np.array([0.0, 0.3]), np.array([1.0, end]))
+    coarse, fine = (
+        simulate(
+            helical_mesh, TransientSettings(0.3, 0.0, 1e-4, 1e-4, tolerance=tolerance), everything(1), turning=turning
+        )
+        for tolerance in (2e-3, 1e-4)
+    )
+    assert coarse.contact_loss[0] == 0.0
+    assert coarse.energy.error < 5e-3
+    # Newmark's method is of the second order.
+    expected = coarse.energy.error * (coarse.steps / fine.steps) ** 2
+    assert fine.energy.error == pytest.approx(expected, rel=0.3)
