@@ -1,8 +1,9 @@
 # Two commands do everything on a fresh machine:
 #
 #   make demo   runs the main job on the NASA gear noise rig
-#   make test   lint, strict types, import arrows, tests
+#   make test   lint, strict types, import arrows, tests but the slow ones
 #
+# make test-slow runs those, as continuous integration does after make test,
 # and make docs builds the documentation site in build/site.
 #
 # Each makes the virtual environment in .venv and installs into it where that is missing or out of date.
@@ -19,7 +20,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
+.PHONY: demo test test-slow lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -36,8 +37,15 @@ lint: install-dev
 types: install-dev
 	$(BIN)/mypy
 
+# One thread for each of two worker processes.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile
+
 unit: install-dev browser
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist loadfile
+	$(PYTEST) -m "not slow"
+
+# Whole commands, pages and notebooks, published cases on their full meshes, pages in a browser, chains to the sound.
+test-slow: install-dev browser
+	$(PYTEST) -m slow
 
 install: $(VENV)/.installed system $(VENV)/.compiled
 install-dev: $(VENV)/.installed-dev system $(VENV)/.compiled

@@ -42,6 +42,7 @@ def loaded_after(statement: str) -> set[str]:
     return {name.split(".")[0] for name in done.stdout.split()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", ["meshes", "housing", "rotors", "coupling", "coupling.gears"])
 def test_importing_a_room_brings_neither_mesher_nor_renderer_nor_compiler(room: str) -> None:
     heavy = {"gmsh", "vtkmodules", "pyvista", "matplotlib", "numba", "pydantic"}

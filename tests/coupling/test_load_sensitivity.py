@@ -93,6 +93,7 @@ def difference(machine: Machine, number: int, change: Callable[..., OperatingPoi
     return np.asarray((8.0 * near - far) / (12.0 * step))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_bearings(machine: Machine) -> None:
     """Stiffness and position to 1e-7 of the largest derivative of each outcome.

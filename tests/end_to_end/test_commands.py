@@ -13,7 +13,7 @@ from PIL import Image
 
 from gearwhine.cli import run_command
 
-pytestmark = pytest.mark.rendered
+pytestmark = [pytest.mark.rendered, pytest.mark.slow]
 
 COARSE = ("--set", "housing.box.mesh_size=45 mm")
 

@@ -59,6 +59,7 @@ def survey_of(path: Path) -> SurveyData:
     return SurveyData(geometry=geometry, modes=modes, responses=responses)
 
 
+@pytest.mark.slow
 def test_responses_are_compared_by_the_command(gearwhine, tmp_path: Path) -> None:
     (tmp_path / "box.toml").write_text(CASE, encoding="utf-8")
     write_survey(tmp_path / "survey.uff", survey_of(tmp_path / "box.toml"))

@@ -131,6 +131,7 @@ WRONG: list[tuple[str, list[str], list[str]]] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("changes", "said"), [row[1:] for row in WRONG], ids=[row[0] for row in WRONG])
 def test_what_is_wrong_is_told_by_the_check(
     gearwhine: Any, case: Any, drawing: str, tmp_path: Path, changes: list[str], said: list[str]

@@ -42,6 +42,7 @@ def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.Capture
     assert "Further pictures" not in page
 
 
+@pytest.mark.slow
 def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
 

@@ -126,6 +126,7 @@ def replace_by_text(file: Path) -> None:
     file.write_text("something else", encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [cut_short, flip_a_bit, replace_by_text])
 def test_a_damaged_file_is_solved_again_with_a_warning(gearwhine, out: Path, damage) -> None:
     damage(out / "modes.nc")
@@ -140,6 +141,7 @@ def test_a_damaged_file_is_solved_again_with_a_warning(gearwhine, out: Path, dam
     assert modes(gearwhine)["reused"] is True
 
 
+@pytest.mark.slow
 def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) -> None:
     def command(name: str, *arguments: str) -> dict:
         outcome = gearwhine(name, "small-gearbox", "--json", "-q", "-o", "out", *COARSE, *arguments)
@@ -196,6 +198,7 @@ def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(
     assert "--no-pictures" in refused.err
 
 
+@pytest.mark.slow
 def test_runs_at_once_in_one_folder_both_end_well(start_process, tmp_path: Path) -> None:
     walls = ("10 mm", "12 mm")
     arguments = ("modes", "steel-box", "-q", "--json", "-o", "out", *COARSE)

@@ -89,6 +89,7 @@ def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:
     assert np.abs(force / pressed).max() == pytest.approx(0.06, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     """The mesh order over speed, against a projection of the mesh force on the turned angle, window by window."""
     loose = ("--set", "transient.tolerance=1e-2")
@@ -129,6 +130,7 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     assert "Spectra along the run: lines through the origin" in page
 
 
+@pytest.mark.slow
 def test_resonances_of_more_mesh_harmonics(gearwhine: Any, answer: Any) -> None:
     """By default those of three harmonics of the mesh of 28 teeth; the table says so, and how to see more."""
     orders = {}

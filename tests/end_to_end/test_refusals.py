@@ -107,6 +107,7 @@ def test_a_terminal_of_ascii_shows_what_it_can(tmp_path: Path) -> None:
     assert done.stdout.isascii()
 
 
+@pytest.mark.slow
 def test_mutated_cases_and_damaged_files_end_in_words(tmp_path: Path) -> None:
     """A short form of benchmarks/fuzz.py: bundled cases with changes, and copies of CAD, mesh and survey files."""
     from fuzz import case_outcomes, file_outcomes

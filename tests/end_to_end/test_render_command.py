@@ -60,6 +60,7 @@ def test_an_interactive_report_has_the_shapes_of_the_folder(gearwhine, run_on_fi
     assert moving_shapes(tmp_path / "out") == []
 
 
+@pytest.mark.slow
 def test_a_line_is_drawn_in_its_true_size(gearwhine, run_on_file: Path, tmp_path: Path) -> None:
     """One mode's line: its share is 1, and its largest acceleration that of the mode's own shape on file."""
     outcome = gearwhine("render", *CASE, "-o", "out", "--line", "490", "--json")

@@ -24,6 +24,7 @@ def contents(folder: Path, but: str) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in found}
 
 
+@pytest.mark.slow
 def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert gearwhine("run", "spur-pair", "-q", "-o", "out", "--no-pictures", *SHORT).code == 0
@@ -82,6 +83,7 @@ def test_a_sub_folder_that_is_none_is_refused_before_the_work(
     assert "'gears', where that command's go, is no folder" in outcome.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "option", "settings", "key", "array", "picture"),
     [

@@ -51,6 +51,7 @@ def test_the_iso_bearing_under_a_case() -> None:
     assert 1e6 * state.displacement[0] == pytest.approx(15.110, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "rolling",
     [

@@ -30,6 +30,7 @@ def test_without_a_speed_there_is_no_whirl_to_draw(gearwhine) -> None:
     assert pictures == {f"rotor-shaft-{kind}.png" for kind in ("shaft", "modes", "torsion", "static")}
 
 
+@pytest.mark.slow
 def test_gears_seats_and_odd_names(gearwhine) -> None:
     renamed = []
     for key in ("rotor.0.name", "bearing.0.rotor", "bearing.1.rotor", "gear.0.rotor"):

@@ -138,6 +138,7 @@ def _compare(ours: Any, theirs: Any) -> None:
     np.testing.assert_allclose(hertz, expected, rtol=0.005)
 
 
+@pytest.mark.slow
 def test_a_step_file_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
     box, box_seats = _modes(gearwhine, folder, _case(folder, f"{BOX}bonded = true\n", boss=WITH_BOSS))
     assert len(box["modes"]) == 6
@@ -152,6 +153,7 @@ def test_a_step_file_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path)
     np.testing.assert_allclose(moved, expected, rtol=0.05)
 
 
+@pytest.mark.slow
 def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
     """Parts that touch are left apart; circles that bolts clamp are found by place and tied by the box's springs."""
     positions = ", ".join(f'["{x} mm", "{z} mm"]' for x, z in BOLTS)

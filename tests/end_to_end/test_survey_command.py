@@ -24,6 +24,7 @@ def planned(gearwhine, tmp_path: Path) -> Path:
     return tmp_path / "out"
 
 
+@pytest.mark.slow
 def test_a_planned_survey_measures_the_model_that_planned_it(gearwhine, planned: Path, tmp_path: Path) -> None:
     ours, theirs = read_survey(planned / "survey.csv").geometry, read_survey(planned / "survey.uff").geometry
     assert ours.labels == theirs.labels

@@ -19,6 +19,8 @@ import xarray as xr
 
 from gearwhine.cli import run_command
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent.parent
 TEETH, BASE_RADIUS, TORQUE = 28, 0.5 * 28 * 3.175e-3 * math.cos(math.radians(20.0)), 71.77
 SPEEDS = (3000.0, 3600.0, 4200.0)

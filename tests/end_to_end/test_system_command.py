@@ -31,6 +31,7 @@ def test_shares_and_verdict(answer: Any) -> None:
     assert response["per"] == "m"
 
 
+@pytest.mark.slow
 def test_over_speed_with_files(gearwhine: Any, tmp_path: Path) -> None:
     outcome = gearwhine("system", "small-gearbox", *SWEEP, "-o", "out", "--json", "-q")
     assert outcome.code == 0
@@ -71,6 +72,7 @@ HELICAL = (
 """The small gearbox with helical gears out of the middle of their shafts, whose back bearings carry the thrust."""
 
 
+@pytest.mark.slow
 def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Path) -> None:
     """Helical gears out of the middle: shuttling leads at the mesh frequency, which the transmissibility does not have.
 

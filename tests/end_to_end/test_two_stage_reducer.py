@@ -52,6 +52,7 @@ def _measures(path: Path) -> dict[str, list[Any]]:
         return found
 
 
+@pytest.mark.slow
 def test_the_script_draws_the_bundled_file(script: ModuleType, tmp_path: Path) -> None:
     """The same solids by volume, faces and bounds: another version of the kernel may write other bytes."""
     script.write(tmp_path / "drawn.step")
@@ -136,6 +137,7 @@ def test_check_tells_mesh_frequencies_and_speeds(gearwhine: Any) -> None:
     assert "Campbell diagram at 51 speeds, -536.688 to 0 rpm" in shown
 
 
+@pytest.mark.slow
 def test_a_copied_example_brings_its_drawing(gearwhine: Any, script: ModuleType, tmp_path: Path) -> None:
     assert [file.name for file in bundled_files(NAME)] == [f"{NAME}.toml", f"{NAME}.step"]
     assert gearwhine("examples", "copy", NAME).code == 0

@@ -77,6 +77,7 @@ def one_worker(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     return lambda: monkeypatch.setattr(updating, "default_workers", lambda: 1)
 
 
+@pytest.mark.slow
 def test_an_update_finds_a_secret_and_writes_it(gearwhine, one_worker: Callable[[], None], tmp_path: Path) -> None:
     (tmp_path / "box.toml").write_text(CASE, encoding="utf-8")
     walls = [f"housing.box.wall.{face}=13 mm" for face in ("left", "right", "bottom", "back")]
@@ -156,6 +157,7 @@ def secret_survey(text: str) -> SurveyData:
     return SurveyData(geometry=geometry, modes=modes)
 
 
+@pytest.mark.slow
 def test_an_update_by_measured_shapes_finds_a_secret(gearwhine, one_worker: Callable[[], None], tmp_path: Path) -> None:
     one_worker()
     walls = "{ left = '13 mm', right = '13 mm', bottom = '13 mm', top = '13 mm', back = '13 mm', front = '13 mm' }"

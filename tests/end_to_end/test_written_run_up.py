@@ -20,6 +20,7 @@ def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, A
         return data.load(), summary
 
 
+@pytest.mark.slow
 def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     case = tmp_path / "lopsided.toml"
     case.write_text(lopsided(housing=False), encoding="utf-8")

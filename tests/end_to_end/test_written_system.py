@@ -23,6 +23,8 @@ from lopsided_case import (
 
 from gearwhine.cli import run_command
 
+pytestmark = pytest.mark.slow
+
 ComplexArray = npt.NDArray[np.complex128]
 
 SWEPT = (2000.0, 3000.0, 4000.0)

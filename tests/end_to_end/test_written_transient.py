@@ -32,6 +32,8 @@ from scipy.io import wavfile
 from gearwhine.case import load_case
 from gearwhine.cli import run_command
 
+pytestmark = pytest.mark.slow
+
 ComplexArray = npt.NDArray[np.complex128]
 
 TURNS, DISCARDED = 50, 20

@@ -14,6 +14,7 @@ BASE_RADIUS = 3e-3 * 28 / 2 * np.cos(np.radians(20.0))
 RIG_BASE_RADIUS = 3.175e-3 * 28 / 2 * np.cos(np.radians(20.0))
 
 
+@pytest.mark.slow
 def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_path: Path) -> None:
     found = example("first_steps")
     certificate = found["modes"].proofs["certificate"]
@@ -24,6 +25,7 @@ def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_pat
     assert (tmp_path / "results" / "results.nc").is_file()
 
 
+@pytest.mark.slow
 def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
     """While flanks stay together the equations are linear in the load, whatever the stiffness does over time."""
     found = example("parameter_study", "sweep")
@@ -34,6 +36,7 @@ def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
     assert means == pytest.approx(np.array([20.0, 80.0]) / BASE_RADIUS, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_noise_rig_carries_its_torque_and_names_the_measured_modes(example: Any) -> None:
     found = example("noise_rig_end_to_end", "rig")
     assert found["mean_force"] == pytest.approx(71.77 / RIG_BASE_RADIUS, rel=2e-3)
@@ -43,6 +46,7 @@ def test_noise_rig_carries_its_torque_and_names_the_measured_modes(example: Any)
     assert [pair["measured_hz"] for pair in pairs] == pytest.approx(measured)
 
 
+@pytest.mark.slow
 def test_figures_of_the_three_stage_train_are_redrawn(tmp_path: Path) -> None:
     """TM-101442, Figs. 4 to 12; the torsional modes of stage 1 in Fig. 9 are a rigid rotation and those of Table I."""
     script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "redraw_three_stage.py"))

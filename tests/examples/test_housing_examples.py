@@ -11,6 +11,7 @@ from gearwhine.notebook import machine_html, modes_html
 from gearwhine.solve import updating
 
 
+@pytest.mark.slow
 def test_modes_of_a_step_file_are_those_of_its_solid(example: Any) -> None:
     found = example("housing_modes_of_a_step_file")
     housing, modes = found["housing"], found["modes"]
@@ -26,6 +27,7 @@ def test_modes_of_a_step_file_are_those_of_its_solid(example: Any) -> None:
     assert modes.frequencies_hz == pytest.approx(below, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_update_finds_the_modulus_of_the_twin(example: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """All frequencies are as √E, so that both the error before the fit and the fit itself have closed forms."""
     # In this process: to start others takes longer than the fit, and changes nothing.

@@ -26,12 +26,14 @@ def test_spectrum_of_two_shafts_has_the_mean_force_and_the_mesh_frequency(exampl
     assert loudest == pytest.approx(round(loudest), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_run_up_is_loudest_at_the_resonance(example: Any) -> None:
     found = example("run_up", "waterfall.png")
     # Windows of the run-up are some 90 rpm apart.
     assert found["peak_rpm"] == pytest.approx(mesh_resonance_rpm(found["study"]), abs=90.0)
 
 
+@pytest.mark.slow
 def test_steady_state_is_loudest_at_the_resonance(example: Any) -> None:
     found = example("steady_state_over_speed", "curve.png")
     assert found["peak_rpm"] == pytest.approx(mesh_resonance_rpm(found["study"]), rel=0.01)

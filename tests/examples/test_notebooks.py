@@ -12,6 +12,8 @@ import pytest
 
 import gearwhine as gw
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 MAKER = runpy.run_path(str(ROOT / "scripts" / "make_notebooks.py"))
 NAMES = MAKER["NAMES"]

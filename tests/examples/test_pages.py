@@ -126,6 +126,7 @@ def test_the_reducer_of_the_tutorial_is_the_bundled_one() -> None:
     assert [block for block in found if block.strip() not in case] == []
 
 
+@pytest.mark.slow
 def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, 0.05), **how))
@@ -139,6 +140,7 @@ def test_the_page_on_python_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert float(names["force"].mean()) == pytest.approx(mean, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(ROOT / "scripts")

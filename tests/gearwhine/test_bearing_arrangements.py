@@ -39,6 +39,7 @@ def lines_of(study: gw.Study) -> str:
     )
 
 
+@pytest.mark.slow
 def test_check_names_the_arrangement_and_who_takes_which_thrust() -> None:
     back, face = gw.load("helical-pair", opposed()), gw.load("helical-pair", opposed(("-z", "+z")))
     assert back.warnings == face.warnings == ()

@@ -138,6 +138,7 @@ def test_backlash_is_that_of_thinned_teeth() -> None:
     assert given.backlash == 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("helix", [0.0, 20.0])
 def test_backlash_has_its_three_sizes_under_their_names(helix: float) -> None:
     """Thinned along the reference circle by s / cos β in the transverse plane, on gears at their nominal distance.

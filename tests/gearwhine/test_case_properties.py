@@ -56,6 +56,7 @@ TABLES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.sampled_from(KEYS), TABLES, max_size=5))
 @settings(max_examples=150, deadline=None)
 def test_any_dictionary_is_a_case_or_a_case_error(document: dict[str, Any]) -> None:

@@ -1,6 +1,7 @@
 """The default tolerance of a transient: what is reported to 0.1 dB does not depend on it."""
 
 import numpy as np
+import pytest
 from scipy.signal import argrelmax
 
 from gearwhine.case import load_case, mesh_frequencies
@@ -15,6 +16,7 @@ def solved(tolerance: str) -> SolvedTransient:
     return solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
 
 
+@pytest.mark.slow
 def test_levels_do_not_depend_on_it() -> None:
     """Peaks within 40 dB of the highest agree with a march of seven times the steps to half of the last digit told."""
     default, fine = solved(""), solved("5e-6")

@@ -51,6 +51,7 @@ def test_floating_at_the_other_end_is_located_there() -> None:
     assert found[:, 2] == pytest.approx([0.0, THRUST, -THRUST, 0.0], rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["linear", "nonlinear"])
 def test_motion_has_the_forces_of_the_equilibrium(law: str) -> None:
     motion = {"transient.revolutions": 4, "transient.discard": 3}

@@ -79,6 +79,7 @@ def test_the_housing_is_solved_once(study: gw.Study) -> None:
     assert study.modes().solved is study.housing
 
 
+@pytest.mark.slow
 def test_modes_are_written_without_loading_a_library_of_figures(tmp_path: Path) -> None:
     code = (
         f"import sys, gearwhine as gw; files = gw.load('small-gearbox', {COARSE!r}).modes().write({str(tmp_path)!r})\n"
@@ -88,6 +89,7 @@ def test_modes_are_written_without_loading_a_library_of_figures(tmp_path: Path) 
     assert done.stdout.split() == ["True", "False"]
 
 
+@pytest.mark.slow
 def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> None:
     found = study.system(campbell=True)
     files = found.write(tmp_path)
@@ -177,6 +179,7 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_sidebands_are_drawn_over_speed() -> None:
     """Lines of sidebands stand in a Campbell diagram, so asking for them asks for one."""
     study = gw.load("spur-pair")

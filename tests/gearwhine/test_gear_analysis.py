@@ -345,6 +345,7 @@ def test_the_relief_is_sought_for_the_aim_of_the_case() -> None:
     assert aim["best"] == pair.optimum.value[0]
 
 
+@pytest.mark.slow
 def test_the_level_at_a_sensor_is_an_aim() -> None:
     """Of spur gears in the middle, which shuttle no load: the transmissibility, by the spring alone, times the error.
 

@@ -14,6 +14,8 @@ from gearwhine.output.terminal import show
 from gearwhine.results.operating_point import sections
 from gearwhine.solve.operating_point import SolvedLoad
 
+pytestmark = pytest.mark.slow
+
 OF_LOAD = {
     "k_h_beta",
     "mean_stiffness_n_per_m",

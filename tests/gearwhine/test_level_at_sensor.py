@@ -159,6 +159,7 @@ def test_the_level_of_other_flanks_is_that_of_the_machine_with_them(
     assert level(aim, other.pairs[0]) == pytest.approx(other.level(), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_best_relief_is_quieter_than_others_by_their_lines(
     housing: SolvedHousing, given: Gearbox, aim: SensorLevel
 ) -> None:

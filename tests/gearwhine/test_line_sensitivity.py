@@ -110,6 +110,7 @@ def without_stiffness(model: LineModel) -> LineModel:
     return found
 
 
+@pytest.mark.slow
 def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     """Walls, length with its seats, springs and a modulus together: to 1e-4 of the sum of their parts.
 
@@ -322,6 +323,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     assert not np.allclose(slopes, own, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bearings and flanks follow the equilibrium here, which has a part in the lines of its own."""
     monkeypatch.setattr(ranking, "_LENGTH_STEP", 1e-9)

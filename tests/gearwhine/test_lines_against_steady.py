@@ -58,6 +58,7 @@ def static_by_the_motions_law(contact: ToothContact, force: float, phases: Float
     return compression, tangent
 
 
+@pytest.mark.slow
 def test_lines_are_those_of_the_motion_where_the_mesh_hardly_varies(case: Case) -> None:
     """To the force that linear response neglects, by the linear response to a unit mesh force.
 

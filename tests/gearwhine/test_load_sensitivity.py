@@ -82,6 +82,7 @@ def fields(case: Case, solve: Solve) -> StaticSensitivity:
     return housing_fields(case, housing, point, list(pair.values()))
 
 
+@pytest.mark.slow
 def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: StaticSensitivity, solve: Solve) -> None:
     """Walls, bosses, a length with its seats, springs and a modulus together, along a direction: to 1e-5."""
     own = by_case_parameters(case, fields, PARAMETERS)
@@ -103,6 +104,7 @@ def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: StaticSe
     assert abs(expected[2]) < 1e-13
 
 
+@pytest.mark.slow
 def test_the_weight_of_the_housing(case: Case, solve: Solve) -> None:
     """Its density, by which weight alone acts, to 1e-6."""
     document = case_document(case)

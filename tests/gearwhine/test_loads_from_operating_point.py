@@ -143,6 +143,7 @@ def test_a_given_load_is_taken() -> None:
     assert np.abs(stiffness - rotor_bearings(parse_case(document()))["input"][0][0].stiffness).max() > 1e6
 
 
+@pytest.mark.slow
 def test_a_run_has_the_operating_point_that_its_motion_starts_from(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

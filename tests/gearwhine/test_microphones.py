@@ -72,6 +72,7 @@ def amplitude(heard: FloatArray, within: slice) -> FloatArray:
     return np.asarray(2.0 * np.abs((part * window) @ np.exp(-2j * np.pi * _TONE * times)) / window.sum())
 
 
+@pytest.mark.slow
 def test_a_tone_keeps_its_level_away_from_the_ends_which_are_quiet() -> None:
     heard = pressure(np.cos(2.0 * np.pi * _TONE * _INTERVAL * np.arange(_COUNT) + 0.4))
     steady = expected_amplitude()

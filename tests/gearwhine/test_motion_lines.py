@@ -68,6 +68,7 @@ def test_bearings_share_the_frequencies_of_their_tones() -> None:
         np.testing.assert_allclose(found.forces["back"][row], of_back, atol=5e-3)
 
 
+@pytest.mark.slow
 def test_a_record_of_broken_turns_sounds_as_one_of_whole_turns() -> None:
     whole, broken = quick_run(24.0).solved, quick_run(24.37).solved
     assert whole.transient is not None
@@ -173,6 +174,7 @@ RUN_UP = {
 BASE = {"operation.base": {"harmonic": [{"frequency": "300 Hz", "y": "3 m/s^2"}]}, "transient.tolerance": 1e-3}
 
 
+@pytest.mark.slow
 def test_a_run_up_has_no_lines_but_microphones_over_time() -> None:
     result = sounding_gearbox(TOP | RUN_UP).run()
     sound = result.solved.sound

@@ -48,6 +48,7 @@ def designs() -> ParametricHousing:
     return ParametricHousing(fitted_case(case), case.update.modes, threads=1)
 
 
+@pytest.mark.slow
 def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: ParametricHousing) -> None:
     """Geometry, springs, a mass, moduli and a density at once, along two directions: to 1e-6 of the largest."""
     start = designs.solve(designs.start)

@@ -24,6 +24,7 @@ def found(name: str, changes: dict[str, Any]) -> dict[tuple[str, str], dict[str,
     }
 
 
+@pytest.mark.slow
 def test_slips_of_a_drawn_housing_are_named_with_both_sizes() -> None:
     """One check of the reducer with five slips; its bores are found in the drawing, 52 mm long about z = -98 mm."""
     size = "bearing.input-back.stiffness.rolling.catalogue"

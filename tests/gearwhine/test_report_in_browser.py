@@ -158,6 +158,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
         yield opened
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["static", "interactive"])
 @pytest.mark.parametrize(("width", "dark"), [(400, True), (1280, False), (3840, True)])
 def test_a_page_fits_each_width_in_both_colours(
@@ -181,6 +182,7 @@ def test_a_page_fits_each_width_in_both_colours(
     assert browser.requests() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["static", "interactive"])
 def test_a_page_does_what_every_page_does(browser: Browser, pages: dict[str, Path], form: str) -> None:
     look_at(browser, pages[form], interactive=form == "interactive")
@@ -258,6 +260,7 @@ def test_a_table_is_copied_with_tabs(browser: Browser, pages: dict[str, Path]) -
     assert rows[2] == ["2", "1007.30", "0.0200", "0.015"]
 
 
+@pytest.mark.slow
 def test_shapes_move_pause_and_are_chosen(browser: Browser, pages: dict[str, Path]) -> None:
     browser.resize(400, 500)  # small, since it is drawn without a graphics card
     browser.open(pages["interactive"])
@@ -291,6 +294,7 @@ UNPACKED = """
 """
 
 
+@pytest.mark.slow
 def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser, pages: dict[str, Path]) -> None:
     """What opens with the page is its own script alone, which is small; the rest is packed and inert."""
     browser.resize(1280, 500)
@@ -315,6 +319,7 @@ def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser,
     assert browser.requests() == []
 
 
+@pytest.mark.slow
 def test_each_shape_is_unpacked_once_and_only_when_it_is_shown(browser: Browser, pages: dict[str, Path]) -> None:
     browser.resize(400, 500)
     script = browser.call("Page.addScriptToEvaluateOnNewDocument", source=UNPACKED)["identifier"]

@@ -32,6 +32,7 @@ def run_up(teeth: tuple[int, int], seconds: float) -> tuple[Case, SolvedTransien
     return case, solve_transient(case, machine, mesh_frequencies(case))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("teeth", [(27, 29), (26, 30)])
 def test_tooth_numbers_without_common_turns_have_their_orders(teeth: tuple[int, int]) -> None:
     case, solved = run_up(teeth, 0.6)

@@ -23,6 +23,8 @@ from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing.acoustics.modal_radiation import ModalRadiation
 
+pytestmark = pytest.mark.slow
+
 COARSE = {"acoustics.mesh_size": "30 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
 
 

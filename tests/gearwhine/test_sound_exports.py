@@ -16,6 +16,8 @@ from gearwhine.case import CaseError
 from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
 
+pytestmark = pytest.mark.slow
+
 Exported = tuple[Path, dict[str, Any]]
 
 

@@ -69,6 +69,7 @@ def test_every_mode_that_radiates_is_held_against_the_pressure_inside(monkeypatc
         gw.load("steel-box", COARSE).sound()
 
 
+@pytest.mark.slow
 def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pytest.MonkeyPatch) -> None:
     document = gw.load("steel-box", COARSE).sound().document
     modes = [mode for mode in document["modes"] if mode["radiation_efficiency"] > 1e-4]

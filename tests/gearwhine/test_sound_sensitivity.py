@@ -117,6 +117,7 @@ surface, reciprocity of the integrals takes part.
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chain", CHAINS)
 def test_the_whole_chain_by_the_housing(chain: str) -> None:
     """Walls and feet together: fourth-order differences of mesh, modes, equilibrium, assembly, line and sound."""
@@ -165,6 +166,7 @@ def study() -> gw.Study:
     return gw.load("small-gearbox", SOUNDING)
 
 
+@pytest.mark.slow
 def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
@@ -236,6 +238,7 @@ def shown_rows(table: Table) -> list[dict[str, str]]:
     return [{heading: column.text(row) for heading, column in columns.items()} for row in table.rows]
 
 
+@pytest.mark.slow
 def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
     """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case."""
     changes = {"acoustics.method": "erp", "acoustics.mesh_size": "26 mm"}
@@ -250,6 +253,7 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
         assert abs(found) > 3.0
 
 
+@pytest.mark.slow
 def test_a_line_of_the_sound_is_chosen(study: gw.Study) -> None:
     result = study.operating_point(line="sound@5133")
     assert [one["ranked"] for one in result.document["loudest_lines"]] == [True, False]

@@ -151,6 +151,7 @@ def test_a_mesh_without_torque_is_refused(machine: CoupledMachine) -> None:
         superposed_response(idle)
 
 
+@pytest.mark.slow
 def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     place = tmp_path / "reducer.toml"
     place.write_text(reducer(unbalanced="output"), encoding="utf-8")

@@ -15,6 +15,8 @@ from gearwhine.sweep.resolution import MissedPeak, missed_peaks, over_with, peak
 from gearwhine.sweep.resonances import SOUND, Resonances
 from gearwhine.sweep.solution import PointResult
 
+pytestmark = pytest.mark.slow
+
 ORDER, NATURAL, RATIO = 28.0, 700.0, 0.01
 TEETH = "pinion -> wheel"
 

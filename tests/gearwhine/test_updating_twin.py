@@ -156,6 +156,7 @@ def spread_of(found: SearchResult, target: Target) -> Posterior:
     return posterior(target, found.misfit, design.coordinates, design.surrogate().at(design.coordinates))
 
 
+@pytest.mark.slow
 def test_secrets_are_recovered_within_the_reported_uncertainty(designs: ParametricHousing, reduced: Surrogate) -> None:
     """At least 95 of 100, on the reduced model; and every mode is paired with its own.
 

@@ -84,6 +84,7 @@ def test_turning_and_shifting_a_body_changes_no_frequency(box: Mesh, steel: Mate
     assert np.abs(found[0, elastic] / modes.frequencies[elastic] ** 2).max() < 1e-7
 
 
+@pytest.mark.slow
 def test_frequency_slopes_are_those_of_solved_modes(
     box: Mesh, geometry: BoxGeometry, steel: Material, constants: FloatArray
 ) -> None:

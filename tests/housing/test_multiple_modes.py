@@ -140,6 +140,7 @@ def _check(body: Body, modes: ModeSet) -> None:
         np.testing.assert_allclose(kept, 1.0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("run", range(RUNS))
 @pytest.mark.parametrize(("shape", "most"), [(_cube, 3), (_ring, 2)], ids=["cube", "ring"])
 def test_multiple_modes_come_complete_by_limit_and_by_number(

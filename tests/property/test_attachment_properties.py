@@ -95,6 +95,7 @@ def test_turning_and_moving_everything_changes_no_frequency_and_no_damping(
     np.testing.assert_allclose(body_there.inertia, expected, atol=1e-11 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 @few
 @given(mass=st.floats(0.1, 50.0), inertia=st.floats(0.0, 1.0), offset=st.tuples(*[st.floats(-0.2, 0.2)] * 3))
 def test_added_mass_raises_no_frequency(

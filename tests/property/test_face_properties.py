@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -57,6 +58,7 @@ def pairs(draw: st.DrawFn) -> GearPairGeometry:
         raise
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(pairs(), st.floats(-1e-3, 1e-3), st.floats(1e3, 3e5), st.sampled_from([1, -1]))
 def test_every_mesh_balances_its_load_with_finite_stiffness(
@@ -82,6 +84,7 @@ def test_every_mesh_balances_its_load_with_finite_stiffness(
     assert all(math.isfinite(value) for value in law)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(pairs(), st.floats(1e4, 3e5))
 def test_exchanging_the_gears_changes_nothing(pair: GearPairGeometry, line_load: float) -> None:
@@ -98,6 +101,7 @@ def test_exchanging_the_gears_changes_nothing(pair: GearPairGeometry, line_load:
     np.testing.assert_allclose(errors[1], errors[0], rtol=1e-5, atol=1e-12)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(pairs(), st.floats(1e4, 3e5), st.floats(0.3, 3.0))
 def test_compression_knows_no_size(pair: GearPairGeometry, line_load: float, scale: float) -> None:

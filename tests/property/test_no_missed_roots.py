@@ -293,6 +293,7 @@ def test_every_root_of_axial_motion(case: Case, count: int, part: float) -> None
     )
 
 
+@pytest.mark.slow
 @MANY
 @given(cases(), DIFFERENCES, st.integers(6, 14), PARTS)
 def test_every_root_of_both_planes(case: Case, difference: float, count: int, part: float) -> None:

@@ -90,6 +90,7 @@ def assert_same(found: npt.NDArray[np.complex128], reference: npt.NDArray[np.com
     assert set(np.flatnonzero(lower)) <= set(columns), f"{found} leave out some of {reference[lower]}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["undamped", "crossed", "tilting", "thrust", "pedestals"])
 def test_every_eigenvalue_at_speed(kind: str) -> None:
     @SOME

@@ -48,6 +48,8 @@ from rotors import (
     write_ross,
 )
 
+pytestmark = pytest.mark.slow
+
 Published = Callable[..., None]
 Array = npt.NDArray[Any]
 Meshes = Callable[[str], tuple[Any, Any, Any]]

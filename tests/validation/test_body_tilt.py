@@ -110,6 +110,7 @@ def simpson(count: int) -> FloatArray:
     return weights / weights.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gear",
     [PINION, WHEEL, replace(PINION, face_width=100e-3), replace(WHEEL, face_width=25e-3)],

@@ -20,6 +20,7 @@ MEASURED_HZ = [658.0, 1049.0, 1710.0, 2000.0, 2276.0, 2536.0, 2722.0, 2962.0]
 pytestmark = pytest.mark.slow
 
 
+@pytest.mark.slow
 def test_dominant_modes_after_updating(
     published: Callable[..., None], remark: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -132,6 +132,7 @@ def test_natural_frequencies_of_the_stages(
         published(TABLE_I, f"stage {stage}, torsional mode {number}", value, ours, "Hz", rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_the_search_for_rotors_leads_to_those_of_the_case(case: Case, number: int) -> None:
     """Each stage found anew, from the script's own nominal design; every size as the case has it."""

@@ -43,6 +43,8 @@ from coupling.gears.geometry.profile import flank_points, load_angle, tooth_outl
 from coupling.gears.stiffness.beam import PlaneState
 from meshes.gmsh_meshing import gmsh_session
 
+pytestmark = pytest.mark.slow
+
 ALPHA = math.radians(20.0)
 RIG = Gear("28 teeth", 28, 3.175e-3, ALPHA, 6.35e-3, root_radius=1.35e-3, bore=40e-3)
 MA = Gear("62 teeth", 62, 2e-3, ALPHA, 20e-3, bore=35e-3, youngs_modulus=206e9)

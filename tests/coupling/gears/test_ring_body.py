@@ -81,6 +81,7 @@ def test_more_shapes_and_waves_change_nothing(theta: float, monkeypatch: pytest.
     assert coarse.radial == pytest.approx(fine.radial, rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("thickness", "theta"), [(2.0, 0.03), (2.0, 0.09), (3.0, 0.06), (5.0, 0.06)])
 def test_sainsots_polynomials_are_the_middle_of_the_arc_in_plane_strain(thickness: float, theta: float) -> None:
     # Displacements where the tooth's axis meets the root circle under a linear normal, a constant shear and a constant

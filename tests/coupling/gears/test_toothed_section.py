@@ -127,6 +127,7 @@ def right_handed(mesh: skfem.MeshTet, cells: np.ndarray) -> np.ndarray:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("teeth", "width"), [(20, 10.0), (20, 20.0), (40, 10.0)])
 def test_a_solid_pinion_bends_as_the_round_one(teeth: int, width: float) -> None:
     """With teeth that carry nothing at the ends of the face, by 20 of them; 40 were not looked at for that."""

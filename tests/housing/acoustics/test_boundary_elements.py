@@ -44,6 +44,7 @@ def sphere_efficiencies(surface: RadiatingSurface, ka: float) -> tuple[np.ndarra
 
 
 # π and 4.4934 are natural frequencies of the air inside, at which the plain equation fails.
+@pytest.mark.slow
 @pytest.mark.parametrize("ka", [0.25, 0.5, 1.0, 2.0, np.pi, 4.493409457909064, 5.0])
 def test_sphere(sphere_2000, ka):
     found, field = sphere_efficiencies(sphere_2000, ka)
@@ -96,6 +97,7 @@ def sources(wavenumber):
 
 
 # Natural frequencies of the air inside the box, (c/2) √Σ(nᵢ/lᵢ)², and frequencies beside them.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("hz", "bar"),
     [(1060.6, 0.02), (1075, 0.02), (3000, 0.02), (5000, 0.05), (5020, 0.05)],
@@ -169,6 +171,7 @@ def test_a_floor_is_the_mirrored_pair():
     assert single.resistance == pytest.approx(0.5 * whole.resistance, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ka", [0.25, 0.5, 1.0, 2.0, 5.0])
 def test_piston_in_a_baffle(piston, ka):
     """L. L. Beranek, Acoustics, eq. 5.10: R = 1 - J1(2ka)/ka, X = H1(2ka)/ka, in units of rho c pi a²."""
@@ -203,6 +206,7 @@ def plate_efficiency(m: int, n: int, length: float, width: float, k: float) -> f
     return float(power / (0.5 * length * width / 4.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", [(1, 1), (1, 2), (2, 2), (1, 3), (3, 3)])
 @pytest.mark.parametrize("k", [1.0, 4.0, 9.0])
 def test_simply_supported_plate(mode, k):
