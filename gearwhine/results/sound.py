@@ -177,15 +177,24 @@ def _picture_of(row: Document) -> tuple[str, ...]:
     return (f"picture sound-faces-{row['frequency_hz']:.1f}Hz",)
 
 
+def _leading(parts: list[dict[str, Any]]) -> dict[str, Any] | None:
+    """Return the part with the largest share; the first, largest in size, may take power back."""
+    return max(parts, key=lambda part: float(part["share"]), default=None)
+
+
+def _leading_mode(line: Mapping[str, Any]) -> dict[str, Any] | None:
+    return _leading(line["contributions"]["housing_modes"])
+
+
 def _largest(heading: str, group: str) -> Column:
     """Return the column that names the largest part of a line's power, with its share."""
 
     def text(row: Document) -> str:
-        parts = row["contributions"][group]
-        if not parts:
+        part = _leading(row["contributions"][group])
+        if part is None:
             return ""
-        name = str(parts[0]["name"]).removeprefix(_MODE_NAME).replace(_LOCAL, "local")
-        return f"{name}, {100.0 * parts[0]['share']:.0f} %"
+        name = str(part["name"]).removeprefix(_MODE_NAME).replace(_LOCAL, "local")
+        return f"{name}, {100.0 * part['share']:.0f} %"
 
     return Column(heading, text)
 
@@ -214,14 +223,8 @@ LINE_COLUMNS = (
 """Columns of a line, in the report."""
 
 
-def _first_mode(line: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the mode with the largest part of a line's power."""
-    parts = line["contributions"]["housing_modes"]
-    return parts[0] if parts else None
-
-
 def _mode_number(line: Mapping[str, Any]) -> int | None:
-    mode = _first_mode(line)
+    mode = _leading_mode(line)
     return None if mode is None or mode["name"] == _LOCAL else int(mode["name"].removeprefix(_MODE_NAME))
 
 
@@ -285,7 +288,7 @@ SWEPT_LINE = (
     ),
     Quantity(
         "mode_share",
-        lambda row: None if (mode := _first_mode(row[0])) is None else mode["share"],
+        lambda row: None if (mode := _leading_mode(row[0])) is None else mode["share"],
         name="sound_line_mode_share",
         unit="1",
         long_name="part of that mode in the line's power",

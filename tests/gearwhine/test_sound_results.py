@@ -154,6 +154,15 @@ def test_terminal_shows_the_loudest_lines_with_their_causes(document: dict[str, 
     assert [row["mode"] for row in rows(modes)] == [str(mode["number"]) for mode in document["modes"]]
 
 
+def test_a_part_that_takes_power_back_leads_no_line(document: dict[str, Any]) -> None:
+    against = [{"name": "housing mode 2", "share": -1.4}, {"name": "housing mode 3", "share": 1.3}]
+    loudest = max(document["lines"], key=lambda line: line["sound_power_db"])
+    swapped = loudest | {"contributions": loudest["contributions"] | {"housing_modes": against}}
+    lines = [swapped if line is loudest else line for line in document["lines"]]
+    (section,) = sections(document | {"lines": lines})
+    assert rows(section.tables[0])[0]["by mode"] == "3, 130 %"
+
+
 def test_nine_microphones_on_a_box_are_a_sentence_and_others_a_table(document: dict[str, Any]) -> None:
     box = [
         {"name": f"box {n}", "position_m": [1.0, 1.0, 0.0], "level_db": 60.0 + n, "level_db_a": 61.0 + n}
