@@ -57,7 +57,7 @@ from coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from coupling.linear.mesh_excitation import HARMONICS, MeshHarmonicModel, Response
 from coupling.machine.connectors import LinearConnector
 from coupling.statics.operating_point import BearingLoad, OperatingPoint
-from coupling.statics.sensitivity import deflection_slope
+from coupling.statics.sensitivity import deflection_slope, rigid_slope
 from rotors.rolling_bearings import rolling_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -377,14 +377,14 @@ class LineModel(MeshHarmonicModel):
         sides = [
             (rotor.motions(at + way * step) - at_middle) / (way * step)
             if 0.0 <= at + way * step <= length
-            else _rigid_slope(at_middle)
+            else rigid_slope(at_middle)
             for way in (1.0, -1.0)
         ]
         slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
         if mounted.seat is not None:
             assert self.machine.housing is not None
             seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
-            slope = slope - self.machine.rows(self.machine.housing.name, _rigid_slope(seat))
+            slope = slope - self.machine.rows(self.machine.housing.name, rigid_slope(seat))
         return np.asarray(slope)
 
 
@@ -401,9 +401,3 @@ def _tangent_rate(load: BearingLoad) -> FloatArray:
             place = load.deflection + way * size * np.eye(5)[axis]
             rate[axis] += way / (2.0 * size) * rolling_state(bearing, place).stiffness
     return rate
-
-
-def _rigid_slope(motions: FloatArray) -> FloatArray:
-    """Slope along z of the motions of a rigid body, by its rotations about x and y, shape (5, m)."""
-    nothing = np.zeros_like(motions[0])
-    return np.array([motions[4], -motions[3], nothing, nothing, nothing])

@@ -143,7 +143,7 @@ def _slope(shaft: ShaftDeflection, load: BearingLoad) -> FloatArray:
             sides.append((4.0 * near - far - 3.0 * middle) / (2.0 * way * step))
         else:
             # Beyond the shaft's end there is no strain.
-            sides.append(_rigid_slope(middle[3:]))
+            sides.append(rigid_slope(middle))
     return np.asarray(0.5 * (sides[0] + sides[1]))
 
 
@@ -152,9 +152,10 @@ def _seat_slope(point: OperatingPoint, load: BearingLoad, coordinates: FloatArra
     if coordinates is None:
         return np.zeros(5)
     rows = point.tangent.bearings[load.name][point.tangent.housing]
-    return _rigid_slope(-rows[:, 3:].T @ coordinates)
+    return rigid_slope(-rows.T @ coordinates)
 
 
-def _rigid_slope(rotation: FloatArray) -> FloatArray:
-    """Differentiate the motions of a rigid body along z, by its rotations about x and y."""
-    return np.array([rotation[1], -rotation[0], 0.0, 0.0, 0.0])
+def rigid_slope(motions: FloatArray) -> FloatArray:
+    """Differentiate the motions of a rigid body along z by its rotations about x and y, shape (5, ...)."""
+    still = np.zeros_like(motions[0])
+    return np.array([motions[4], -motions[3], still, still, still])
