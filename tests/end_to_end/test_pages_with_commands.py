@@ -38,8 +38,8 @@ COARSE = 0.05
 """Least size of the elements of a box [m]."""
 FEWER_POINTS = {"rpm:19": "rpm:2", "N*m:10": "N*m:2"}
 """Ranges of a sweep that are cut."""
-REPORTED = {"rig": "rig", "reducer": "reducer"}
-"""Folders of pages whose reports are looked at in a browser, by the pages' names."""
+REPORTED = {"rig": False, "reducer": True}
+"""Pages whose reports are looked at in a browser, in the folder of the page's name; whether in the interactive form."""
 _WITHOUT_A_CASE = ("examples",)
 
 
@@ -68,18 +68,19 @@ def with_less_effort(words: list[str]) -> list[str]:
     return [*words, *changes]
 
 
-def _look_at_reports(gearwhine: Any, folder: Path, place: Path) -> None:
-    """Both forms of the report of a folder in a browser, and the interactive one where all names are hostile."""
+def _look_at_reports(gearwhine: Any, folder: Path, place: Path, *, interactive: bool) -> None:
+    """Either form of the report of a folder in a browser, and the same one where all names are hostile."""
     if (program := find_chromium()) is None:
         return
     with_hostile_names(folder, place / "hostile")
+    form = ("--interactive",) if interactive else ()
     for one in (folder, place / "hostile"):
-        outcome = gearwhine("report", str(one), "--interactive", "-q")
+        outcome = gearwhine("report", str(one), *form, "-q")
         assert outcome.code == 0, outcome.err
+    page = "report-interactive.html" if interactive else "report.html"
     with Browser(program, place / "profile") as browser:
-        look_at(browser, folder / "report.html", interactive=False)
-        look_at(browser, folder / "report-interactive.html", interactive=True)
-        browser.open(place / "hostile" / "report-interactive.html")
+        look_at(browser, folder / page, interactive=interactive)
+        browser.open(place / "hostile" / page)
         assert browser.value("document.body.textContent").count(HOSTILE) > 20
         is_clean(browser)
 
@@ -119,7 +120,7 @@ def test_a_page_runs_from_its_first_line_to_its_last(
         modulus = gw.load("fit/updated.toml").case.material["steel"].youngs_modulus
         assert modulus == pytest.approx(196e9, rel=2e-3)
     if page.stem in REPORTED:
-        _look_at_reports(gearwhine, tmp_path / REPORTED[page.stem], tmp_path)
+        _look_at_reports(gearwhine, tmp_path / page.stem, tmp_path, interactive=REPORTED[page.stem])
     for named in re.findall(r"`((?:rig|reducer|plan|fit|small-gearbox-results)/[\w.-]+)`", page.read_text("utf-8")):
         assert (tmp_path / named).exists(), named
 
