@@ -438,8 +438,8 @@ def _shuttling(
     """Moments of a contact's load about the middle of the face, see `shuttling_loads`."""
     line = mesh.line_of_action(sense)
     tilting = np.zeros(coordinates.size)
-    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
-        rows = coordinates.rotor(mounted.rotor).motions(mounted.at)
+    for mounted, at, flank in zip((mesh.driver, mesh.driven), mesh.stations, (line.driver, line.driven), strict=True):
+        rows = coordinates.rotor(mounted.rotor).motions(at)
         tilting += coordinates.rows(mounted.rotor, flank.tilting(rows))
     return shuttling_loads(
         contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.mesh_frequency
@@ -490,7 +490,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         return None
     return sliding_flanks(
         coordinates,
-        [(gear.rotor, gear.at) for gear in (mesh.driver, mesh.driven)],
+        [(gear.rotor, at) for gear, at in zip((mesh.driver, mesh.driven), mesh.stations, strict=True)],
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.line_of_action(sense),
@@ -509,10 +509,10 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     direction = np.zeros(coordinates.size)
     errors = []
     sides = ((mesh.driver, mesh.geometry.driver, line.driver), (mesh.driven, mesh.geometry.driven, line.driven))
-    for mounted, gear, flank in sides:
+    for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
-        motions = rotor.motions(mounted.at)
-        compression = flank.turning(rotor.rotation(mounted.at)) + flank.across(motions) + flank.axial(motions)
+        motions = rotor.motions(at)
+        compression = flank.turning(rotor.rotation(at)) + flank.across(motions) + flank.axial(motions)
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

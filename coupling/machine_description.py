@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import GearPairGeometry
+from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
@@ -27,7 +27,6 @@ from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
-    LARGEST_OFFSET,
     GearedShafts,
     GearTrain,
     Output,
@@ -36,7 +35,6 @@ from coupling.machine.gear_train import (
     geometry_on_axes,
     imbalances_of_shafts,
     require_balanced_outputs,
-    require_one_plane,
 )
 from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
 from coupling.machine.parts import (
@@ -133,9 +131,6 @@ class Machine:
         require_stations(self)
         require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
-        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
-            places = [self.shaft(gear.shaft).start + gear.at for gear in self._gears_of(pair)]
-            require_one_plane(pair.label, places, geometry.face_width)
         self._require_power_flow()
         self._require_thrust_carried()
 
@@ -172,8 +167,10 @@ class Machine:
         geometries = []
         for pair in self.gear_pairs:
             driver, driven = self._gears_of(pair)
-            axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes))
+            shafts = self.shaft(driver.shaft), self.shaft(driven.shaft)
+            axes = shafts[0].axis, shafts[1].axis
+            places = shafts[0].start + driver.at, shafts[1].start + driven.at
+            geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes, places))
         return tuple(geometries)
 
     @cached_property
@@ -586,7 +583,8 @@ class Machine:
             count = None if count is None else round(limit_factor * count)
         gears = self._gears_on(shaft.name)
         forces = [force for force in self.forces if force.rotor == shaft.name]
-        moments_at = [gear.at for gear in gears if gear.gear.helix_angle != 0.0]
+        loaded_at = [*((gear.at, gear.gear) for gear in gears), *self._meshes_on(shaft.name)]
+        moments_at = list(dict.fromkeys(at for at, gear in loaded_at if gear.helix_angle != 0.0))
         thrusts_at = [*moments_at, *(force.at for force in forces if force.force[2] != 0.0)]
         # The tangent of a rolling bearing's law may vanish where its moments do not stay zero.
         for mounted in bearings:
@@ -599,7 +597,7 @@ class Machine:
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in bearings],
             frequency_limit=limit,
             count=count,
-            gears_at=[gear.at for gear in gears],
+            gears_at=list(dict.fromkeys(at for at, _ in loaded_at)),
             forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
@@ -609,16 +607,10 @@ class Machine:
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
     ) -> tuple[StaticGear, StaticGear]:
-        """Place both gears of a pair on their shafts, with stations over the narrower face."""
-        starts = [self.shaft(gear.shaft).start for gear in gears]
-        middles = [start + gear.at for start, gear in zip(starts, gears, strict=True)]
-        halves = [0.5 * gear.gear.face_width for gear in gears]
-        left = max(middle - half for middle, half in zip(middles, halves, strict=True))
-        right = min(middle + half for middle, half in zip(middles, halves, strict=True))
-        aligned = abs(middles[0] - middles[1]) <= LARGEST_OFFSET
+        """Place both gears of a pair on their shafts, with stations over the common face."""
         placed = []
-        for gear, start in zip(gears, starts, strict=True):
-            at = gear.at if aligned else 0.5 * (left + right) - start
+        for gear, middle in zip(gears, geometry.common_middles, strict=True):
+            at = gear.at + middle
             stations = at + face_stations(geometry.face_width)
             carriers = np.clip(stations, *carrying_length(gear, self.shaft(gear.shaft).rotor))
             placed.append(StaticGear(gear.name, gear.shaft, at, carriers, stations - carriers))
@@ -641,6 +633,15 @@ class Machine:
 
     def _gears_on(self, shaft: str) -> list[ShaftGear]:
         return [gear for gear in self.gears if gear.shaft == shaft]
+
+    def _meshes_on(self, shaft: str) -> list[tuple[float, Gear]]:
+        """Stations of a shaft on which mesh forces act, the middles of common faces, each with its gear."""
+        return [
+            (gear.at + middle, gear.gear)
+            for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True)
+            for gear, middle in zip(self._gears_of(pair), geometry.common_middles, strict=True)
+            if gear.shaft == shaft
+        ]
 
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""

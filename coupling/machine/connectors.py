@@ -234,7 +234,7 @@ class MountedBearing:
 
 @dataclass(frozen=True)
 class MountedGear:
-    """Place of a gear: its rotor, the distance from the rotor's left end and the axis in the x-y plane [m]."""
+    """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m]."""
 
     name: str
     rotor: str
@@ -282,6 +282,12 @@ class GearMesh:
     def line_of_action(self, sense: int) -> LineOfAction:
         """Line of action of the flanks that the driver closes by a rotation of this sense, 1 or -1."""
         return line_of_action(self.geometry, self._centre_line, sense)
+
+    @property
+    def stations(self) -> tuple[float, float]:
+        """Where the mesh force acts on both rotors: the middle of the common face from their left ends [m]."""
+        driver, driven = self.geometry.common_middles
+        return self.driver.at + driver, self.driven.at + driven
 
     @property
     def label(self) -> str:

@@ -21,7 +21,7 @@ from typing import Literal
 from coupling.errors import CouplingError
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.errors import InterferenceError, NoContactError
-from coupling.gears.geometry.pair import mesh_frequency, turning_sense
+from coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
 from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.connectors import GearMesh
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques, trains
@@ -503,11 +503,22 @@ def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
             f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
             f"apart; expected the gears' centre distance, {1e3 * distance:.6g} mm"
         )
-    require_one_plane(mesh.label, [starts[gear.rotor] + gear.at for gear in gears], mesh.geometry.face_width)
+    places = [starts[gear.rotor] + gear.at for gear in gears]
+    require_one_plane(mesh.label, places, (mesh.geometry.driver, mesh.geometry.driven))
+    offset = places[1] - places[0]
+    if abs(offset - mesh.geometry.axial_offset) > LARGEST_OFFSET:
+        raise CouplingError(
+            f"{mesh.label}: the driven gear is {1e3 * offset:.6g} mm along z from the driver; expected its geometry's "
+            f"axial_offset, {1e3 * mesh.geometry.axial_offset:.6g} mm"
+        )
 
 
 def geometry_on_axes(
-    driver: Gear, driven: Gear, shafts: tuple[str, str], axes: Sequence[tuple[float, float]]
+    driver: Gear,
+    driven: Gear,
+    shafts: tuple[str, str],
+    axes: Sequence[tuple[float, float]],
+    places: Sequence[float] = (0.0, 0.0),
 ) -> GearPairGeometry:
     """Two gears in mesh at the distance of their shafts' axes.
 
@@ -518,26 +529,32 @@ def geometry_on_axes(
         Names of the two shafts.
     axes : sequence of (float, float)
         Positions x, y of the axes [m].
+    places : sequence of float
+        Places of the middles of both faces along z [m].
 
     Raises
     ------
+    CouplingError
+        Where the gears are not in one plane.
     coupling.gears.GearError
         Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
         the shafts.
     """
     distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
+    require_one_plane(pair_label(driver.name, driven.name), places, (driver, driven))
+    offset = places[1] - places[0]
     try:
-        return GearPairGeometry(driver, driven, distance)
+        return GearPairGeometry(driver, driven, distance, offset if abs(offset) > LARGEST_OFFSET else 0.0)
     except (InterferenceError, NoContactError) as error:
         raise type(error)(f"{error}; the axes are those of {shafts[0]!r} and {shafts[1]!r}") from error
 
 
-def require_one_plane(label: str, places: Sequence[float], face_width: float) -> None:
-    """Refuse gears that are not in one plane: two middles of faces along z, and the width of the narrower face [m].
+def require_one_plane(label: str, places: Sequence[float], gears: Sequence[Gear]) -> None:
+    """Refuse gears that are not in one plane, by the places of the middles of their faces along z [m].
 
-    A pair is analysed as one whose narrower face carries over its whole width.
+    A pair of which half the narrower face or more misses the other is one by mistake.
     """
-    shift, reach = abs(places[0] - places[1]), 0.5 * face_width
+    shift, reach = abs(places[0] - places[1]), 0.5 * min(gear.face_width for gear in gears)
     if shift > reach + LARGEST_OFFSET:
         raise CouplingError(
             f"{label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half a "
@@ -575,7 +592,12 @@ def mesh_phases(
     angles: dict[str, float] = {}
     phases = []
     for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
-        at_zero = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
+        met = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
+        # A pair enters at the middle of the common face; there helical teeth stand turned from the middle of their own.
+        at_zero = [
+            angle - gear.turn_along(middle)
+            for angle, gear, middle in zip(met, (pair.driver, pair.driven), pair.common_middles, strict=True)
+        ]
         pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
         if driver in angles:
             phase = (angles[driver] - at_zero[0]) / pitches[0]

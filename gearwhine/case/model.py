@@ -107,6 +107,14 @@ class Case(Table):
         first, second = (self.rotor_named(name).axis for name in rotors if name is not None)
         return math.hypot(second[0] - first[0], second[1] - first[1])
 
+    def axial_offset(self, pair: GearPair) -> float:
+        """Return the place of the driven gear along z from the driver [m]; 0 where a gear has no rotor."""
+        gears = self.gear_named(pair.driver), self.gear_named(pair.driven)
+        if any(gear.rotor is None or gear.at is None for gear in gears):
+            return 0.0
+        first, second = (self.rotor_named(gear.rotor).start + gear.at for gear in gears)  # type: ignore[arg-type,operator]
+        return second - first
+
     def finds_load(self, bearing: Bearing) -> bool:
         """Whether the load of a rolling bearing follows from the machine's operating point."""
         return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None

@@ -11,6 +11,7 @@ from coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
 from coupling.gears.errors import ThinTipError
 from coupling.gears.geometry.gear import require_tip_thickness
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.machine.gear_train import LARGEST_OFFSET
 from coupling.machine.parts import inertia_with_discs
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
@@ -120,7 +121,8 @@ def pair_geometries(case: Case) -> tuple[GearPairGeometry, ...]:
 def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
     """Return the pair's geometry at the centre distance of its shafts, or without backlash where shafts are missing."""
     driver, driven = (build_gear(case, case.gear_named(name)) for name in (pair.driver, pair.driven))
-    return GearPairGeometry(driver, driven, case.centre_distance(pair))
+    offset = case.axial_offset(pair)
+    return GearPairGeometry(driver, driven, case.centre_distance(pair), offset if abs(offset) > LARGEST_OFFSET else 0.0)
 
 
 def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:

@@ -119,7 +119,7 @@ def _of_gears(case: Case, rotors: Mapping[str, Rotor]) -> Iterator[dict[str, Any
 
 
 def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
-    """Warn of gears so far apart along z that less than the narrower face meets the other, which the model takes."""
+    """Warn of gears so far apart along z that less than the narrower face meets the other."""
     gears = {gear.name: gear for gear in case.gear}
     for pair in case.gear_pair:
         ends = []
@@ -136,9 +136,9 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
                 yield warning(
                     "gear faces",
                     f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {ranges}, have {_mm(common)} in '
-                    f"common; the model takes {_mm(whole)}, the whole of the narrower one",
+                    f"common, which carries; the narrower one is {_mm(whole)} wide",
                     common_m=common,
-                    taken_m=whole,
+                    narrower_m=whole,
                 )
 
 

@@ -1,6 +1,7 @@
 """Gear trains that cannot exist: the library refuses them with the numbers that do not fit."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -95,6 +96,7 @@ def test_any_pair_in_mesh_is_taken_and_any_slip_refused(
 ) -> None:
     """At any angle of the line of centres, and with faces that overlap by half."""
     pair = GearPairGeometry(*(Gear(str(z), z, 3e-3, math.radians(20.0), 6.35e-3) for z in teeth))
+    pair = replace(pair, axial_offset=shift)
     a = pair.working_centre_distance
     axis = (a * math.cos(angle), a * math.sin(angle))
     machine = built(shaft, pair=pair, axis=axis, start=shift, speeds=(speed, -speed * teeth[0] / teeth[1]))

@@ -395,11 +395,12 @@ def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
 def test_the_common_face_carries_wherever_it_lies() -> None:
     """A wheel wider than its pinion is pressed where the pinion is, 8 mm off its own middle or not.
 
-    Its shaft is thicker than its body, so that the place of the body does not matter.
+    Its teeth go on far enough at either side to support those in mesh alike. Its shaft is thicker than its body, so
+    that the place of the body does not matter.
     """
     machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
     thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.14, 0.0, STEEL)]))
-    wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=45e-3))
+    wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=90e-3))
     centred, moved = (
         replace(
             machine, shafts=[machine.shafts[0], thick], gears=[machine.gears[0], replace(wide, at=wide.at + shift)]

@@ -105,8 +105,8 @@ def test_gears_that_meet_on_a_part_of_the_narrower_face_are_named() -> None:
     wide = {"gear.pinion.face_width": "30 mm", "gear.wheel.face_width": "24 mm"}
     assert found("helical-pair", wide | {"gear.pinion.at": "123 mm"}) == {}
     (told,) = found("helical-pair", wide | {"gear.pinion.at": "115 mm"}).values()
-    assert (told["common_m"], told["taken_m"]) == pytest.approx((22e-3, 24e-3))
-    assert "have 22 mm in common; the model takes 24 mm" in told["message"]
+    assert (told["common_m"], told["narrower_m"]) == pytest.approx((22e-3, 24e-3))
+    assert "have 22 mm in common, which carries; the narrower one is 24 mm wide" in told["message"]
 
 
 def test_a_bearing_without_a_seat_beside_a_housing_is_named() -> None:

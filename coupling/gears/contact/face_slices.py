@@ -235,9 +235,9 @@ def face_slices(
     gap = misalignment * z
     if face_gap:
         gap = gap + lagrange(face_stations(b), z) @ np.array(face_gap)
-    for gear in (geometry.driver, geometry.driven):
+    for gear, middle in zip((geometry.driver, geometry.driven), geometry.common_middles, strict=True):
         if gear.helix_deviation is not None:
-            gap = gap - gear.helix_deviation.at(z, b)
+            gap = gap - gear.helix_deviation.at(z + middle, gear.face_width)
     couplings = [
         tooth_coupling(gear, radius)
         for gear, radius in zip((geometry.driver, geometry.driven), _middle_radii(geometry), strict=True)
@@ -247,7 +247,7 @@ def face_slices(
         width=b / count,
         shift=hand * geometry.overlap_ratio * z / b,
         gap=np.asarray(gap, dtype=np.float64),
-        flattening=1.0 / (hertz_compliance(geometry.driver, geometry.driven) * b),
+        flattening=1.0 / (hertz_compliance(geometry) * b),
         coupling=1.0 / sum(1.0 / coupling for coupling in couplings) if count > 1 else 0.0,
     )
 

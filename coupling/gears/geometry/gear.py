@@ -256,6 +256,10 @@ class Gear:
         """Virtual number of teeth, of the spur gear of the normal section: ``z / (cos(beta_b)^2 cos(beta))``."""
         return self.teeth / (math.cos(self.base_helix_angle) ** 2 * math.cos(self.helix_angle))
 
+    def turn_along(self, z: float) -> float:
+        """Rotation about z of the teeth at z from the middle of the face [rad]; positive for a right hand at z > 0."""
+        return 2.0 * math.pi * z / self.lead
+
     def helix_angle_at(self, radius: float) -> float:
         """Helix angle [rad] on the cylinder of `radius` [m]: ``tan(beta_y) = tan(beta) r_y / r``."""
         return math.atan(math.tan(self.helix_angle) * radius / self.pitch_radius)

@@ -266,9 +266,7 @@ class CompliantTeeth(ABC):
         total = np.zeros((FACE_SHAPES, FACE_SHAPES))
         middle = 0.5 * geometry.contact_ratio
         radii = geometry.driver_radius(middle), geometry.driven_radius(middle)
-        for gear, radius, shared in zip(
-            (geometry.driver, geometry.driven), radii, self._shared_by_gear(geometry), strict=True
-        ):
+        for gear, radius, shared in zip(geometry.carrying_gears, radii, self._shared_by_gear(geometry), strict=True):
             body = self.shared_body(gear)
             if body is None or shared == 0.0:
                 continue
@@ -283,7 +281,7 @@ class CompliantTeeth(ABC):
     def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
         both = geometry.contact_ratio - 1.0
-        driver, driven = self._neighbours(geometry.driver), self._neighbours(geometry.driven)
+        driver, driven = map(self._neighbours, geometry.carrying_gears)
         if driver is None or driven is None or both <= 0.0:
             return 0.0, 0.0
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
@@ -307,7 +305,7 @@ class CompliantTeeth(ABC):
             tooth = self.solve_tooth(spur)
             return lambda radius: tooth(radius).total
 
-        driver, driven = (transverse_compliance(gear, total) for gear in (geometry.driver, geometry.driven))
+        driver, driven = (transverse_compliance(gear, total) for gear in geometry.carrying_gears)
         return lambda position: driver(geometry.driver_radius(position)) + driven(geometry.driven_radius(position))
 
     def contact_compliance(
@@ -316,7 +314,7 @@ class CompliantTeeth(ABC):
         """Approach of the flanks over their load [m/N] at `position`, under `force` [N] (None: the model's own)."""
         at = np.asarray(position, dtype=np.float64)
         if self.contact == "yang-sun":
-            flattening = hertz_compliance(geometry.driver, geometry.driven)
+            flattening = hertz_compliance(geometry)
             return np.full(at.shape, flattening / math.cos(geometry.driver.base_helix_angle))
         load = force if force is not None else self.force
         if load is None:

@@ -27,21 +27,20 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError
-from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.geometry.profile import flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def hertz_compliance(driver: Gear, driven: Gear) -> float:
+def hertz_compliance(geometry: GearPairGeometry) -> float:
     """Flattening of two loaded flanks, per unit load [m/N].
 
-    ``2 eta / (pi b)``, b the narrower face; for equal materials ``4 (1 - nu^2) / (pi E b)``, the load-independent form
+    ``2 eta / (pi b)``, b the common face; for equal materials ``4 (1 - nu^2) / (pi E b)``, the load-independent form
     of Yang & Sun (1985).
     """
-    yielding = sum((1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in (driver, driven))
-    return 2.0 * yielding / (math.pi * min(driver.face_width, driven.face_width))
+    yielding = sum((1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in (geometry.driver, geometry.driven))
+    return 2.0 * yielding / (math.pi * geometry.face_width)
 
 
 @dataclass(frozen=True, eq=False)

@@ -150,7 +150,7 @@ def test_spall_across_a_part_of_the_face_softens_the_contact() -> None:
     position = pair.driver_position(MIDDLE)
     more = 1.0 / contact.variants[0].stiffness(position) - 1.0 / contact.stiffness(position)
     # Six tenths of the face carry: the flattening is ten sixths.
-    assert more == pytest.approx((10.0 / 6.0 - 1.0) * hertz_compliance(PINION, WHEEL), rel=1e-7)
+    assert more == pytest.approx((10.0 / 6.0 - 1.0) * hertz_compliance(GearPairGeometry(PINION, WHEEL)), rel=1e-7)
 
 
 def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:

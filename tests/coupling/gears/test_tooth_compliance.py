@@ -87,9 +87,9 @@ def test_hertz_of_two_half_planes() -> None:
     gear = GEARS[0]
     nu = gear.poisson_ratio
     alike = 4.0 * (1.0 - nu**2) / (math.pi * gear.youngs_modulus * gear.face_width)
-    assert hertz_compliance(gear, gear) == pytest.approx(alike, rel=1e-14)
+    assert hertz_compliance(GearPairGeometry(gear, gear)) == pytest.approx(alike, rel=1e-14)
     rigid = replace(gear, youngs_modulus=1e30, face_width=1.0)
-    assert hertz_compliance(gear, rigid) == pytest.approx(0.5 * alike, rel=1e-14)
+    assert hertz_compliance(GearPairGeometry(gear, rigid)) == pytest.approx(0.5 * alike, rel=1e-14)
 
 
 def test_root_angle_readings() -> None:
