@@ -123,6 +123,8 @@ def test_compliance_knows_no_size(gear: Gear, scale: float) -> None:
 @settings(deadline=None, max_examples=25)
 @given(pairs(), st.floats(0.2, 5.0))
 def test_stiffness_is_proportional_to_width_and_modulus(pair: GearPairGeometry, factor: float) -> None:
+    # Teeth beside a narrower mate support those in mesh by their shear, whatever the width.
+    pair = replace(pair, driven=replace(pair.driven, face_width=pair.driver.face_width))
     reference = tooth_contact(pair, PotentialEnergyStiffness()).unloaded_mean_mesh_stiffness
     for quantity in ("face_width", "youngs_modulus"):
         scaled = GearPairGeometry(
