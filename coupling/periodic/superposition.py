@@ -185,7 +185,9 @@ def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PER
     """Group excitations whose common period holds at most a number of the fastest one's cycles.
 
     Meshes are grouped first, the fastest first, then loads and runout errors; each joins the group with which its
-    common period is the shortest, or begins one. Constant loads are in none.
+    common period is the shortest, or begins one. What repeats within a group's own period joins it however long that
+    is: the load shuttling of a mesh whose teeth are not alike adds to its lines with their phases. Constant loads are
+    in none.
 
     Parameters
     ----------
@@ -198,11 +200,20 @@ def excitation_groups(system: CoupledSystem, longest: float = LONGEST_COMMON_PER
         joined = [ExcitationGroup(group.meshes + atom.meshes, group.frequencies + atom.frequencies) for group in groups]
         cycles = [common_cycles(_driven_by(system, group)) for group in joined]
         best = int(np.argmin(cycles)) if cycles else -1
-        if best >= 0 and cycles[best] <= longest:
+        if best >= 0 and (cycles[best] <= longest or _repeats_within(system, groups[best], joined[best])):
             groups[best] = joined[best]
         else:
             groups.append(atom)
     return tuple(groups)
+
+
+def _repeats_within(system: CoupledSystem, group: ExcitationGroup, joined: ExcitationGroup) -> bool:
+    """Whether a group with one more excitation has the period that it has without."""
+    try:
+        alone, together = (common_period(_driven_by(system, one)) for one in (group, joined))
+    except CouplingError:
+        return False
+    return together <= alone * (1.0 + _SAME_FREQUENCY)
 
 
 def superposed_response(

@@ -145,6 +145,18 @@ def test_groups_of_hunting_teeth(tmp_path: Path) -> None:
     assert together.meshes == (0, 1)
 
 
+def test_load_shuttling_of_a_damaged_mesh_is_of_one_motion_with_it() -> None:
+    """A crack repeats with the pinion's 23 teeth; harmonics of the mesh fit in, and their lines add with phases."""
+    case = load_case("helical-pair", ['gear.pinion.fault=[{kind="crack",tooth=5,depth="1 mm"}]']).case
+    system = build_machine(case, None, solve_gears(case)).system
+    shuttling = [abs(load.frequency) for load in system.harmonic_loads]
+    assert max(shuttling) > 2.5 * 2.0 * np.pi * system.contacts[0].mesh_frequency
+    assert common_cycles(system) > 40.0
+    (together,) = excitation_groups(system)
+    assert together.meshes == (0,)
+    assert sorted(together.frequencies) == pytest.approx(sorted(shuttling))
+
+
 def test_a_mesh_without_torque_is_refused(machine: CoupledMachine) -> None:
     idle = replace(machine.system, load=np.zeros(machine.system.size))
     with pytest.raises(PeriodicError, match="carries no mean force"):
