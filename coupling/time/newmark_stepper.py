@@ -32,7 +32,7 @@ class NewmarkStepper:
 
     steps_in_one = 1
     order = 2.0
-    too_fine = "steps below {step:.1e} s; raise the tolerance or keep fewer high modes"
+    too_fine = "steps below {step:.1e} s; raise the tolerance or lower the frequency limit of a shaft"
 
     def __init__(
         self, system: CoupledSystem, settings: TransientSettings, outputs: TransientOutputs, profile: SpeedProfile
