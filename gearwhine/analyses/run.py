@@ -25,7 +25,14 @@ from gearwhine.results.housing import HOUSING, modes_document, origin_document, 
 from gearwhine.results.motion import leading_lines
 from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
-from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, run_signature_document, transient_document
+from gearwhine.results.run import (
+    RUN_SIGNATURE,
+    TRANSIENT,
+    HistoryStream,
+    TracedTransient,
+    run_signature_document,
+    transient_document,
+)
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing
@@ -322,7 +329,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
         (GEARS, solved.pairs),
         (LOAD, solved.load),
         (SYSTEM, solved.system),
-        (TRANSIENT, None if solved.transient is None else (solved.transient, solved.signature)),
+        (TRANSIENT, None if solved.transient is None else TracedTransient(solved.transient, solved.signature)),
         (RUN_SIGNATURE, solved.run_signature),
         (SOUND, solved.sound),
         streams=streams,

@@ -1,40 +1,67 @@
 """Motion of a machine, integrated in time or periodic: how its mesh forces and the lines of its sensors are shown."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
+if TYPE_CHECKING:
+    from coupling.machine.connectors import GearMesh
+    from coupling.periodic.response import PeriodicResponse
+    from coupling.periodic.superposition import SuperposedResponse
+    from coupling.signals.spectrum import SignalParts
+    from coupling.time.transient import TransientFigures
+
 _LEAST_ERROR = 0.03  # smallest error of a line that is shown
 _LINES_OF_A_SENSOR = 6  # lines of a sensor in the report
 _HIGHEST = 5  # lines of a sensor on the terminal
 
+
+class MeshFigures(NamedTuple):
+    """Gear mesh, the figures of a motion by contact, and the number of the loaded contact."""
+
+    mesh: "GearMesh"
+    figures: "TransientFigures | PeriodicResponse | SuperposedResponse"
+    contact: int
+
+
+class NamedParts(NamedTuple):
+    """Bearing or gear: its name, and the mean and alternating parts of its signals."""
+
+    name: str
+    parts: "SignalParts"
+
+
 MESH = (
-    Quantity("driver", lambda row: row[0].driver.name, heading="driver"),
-    Quantity("driven", lambda row: row[0].driven.name, heading="driven"),
-    Quantity("mean_force_n", lambda row: float(row[1].mean_force[row[2]]), heading="mean force [N]", shown=".0f"),
-    Quantity("peak_force_n", lambda row: float(row[1].peak_force[row[2]]), heading="largest force [N]", shown=".0f"),
+    Quantity("driver", lambda row: row.mesh.driver.name, heading="driver"),
+    Quantity("driven", lambda row: row.mesh.driven.name, heading="driven"),
+    Quantity(
+        "mean_force_n", lambda row: float(row.figures.mean_force[row.contact]), heading="mean force [N]", shown=".0f"
+    ),
+    Quantity(
+        "peak_force_n", lambda row: float(row.figures.peak_force[row.contact]), heading="largest force [N]", shown=".0f"
+    ),
     Quantity(
         "contact_loss_fraction",
-        lambda row: float(row[1].contact_loss[row[2]]),
+        lambda row: float(row.figures.contact_loss[row.contact]),
         heading="apart [%]",
         shown=".2f",
         scale=100.0,
     ),
 )
-"""Quantities of a gear mesh; a row is the mesh, the motion's figures by contact, and the number of the loaded one."""
+"""Quantities of a gear mesh in motion; a row is a :class:`MeshFigures`."""
 
 BEARING = (
-    Quantity("name", lambda row: row[0], heading="bearing"),
-    Quantity("mean_force_n", lambda row: row[1].mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
-    Quantity("rms_force_n", lambda row: row[1].rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
-    Quantity("mean_moment_n_m", lambda row: row[1].mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
-    Quantity("rms_moment_n_m", lambda row: row[1].rms[3:]),
+    Quantity("name", lambda row: row.name, heading="bearing"),
+    Quantity("mean_force_n", lambda row: row.parts.mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
+    Quantity("rms_force_n", lambda row: row.parts.rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
+    Quantity("mean_moment_n_m", lambda row: row.parts.mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
+    Quantity("rms_moment_n_m", lambda row: row.parts.rms[3:]),
 )
-"""Loads of a bearing: forces along x, y, z and moments about x and y; a row is its name and the parts of its load."""
+"""Loads of a bearing: forces along x, y, z and moments about x and y; a row is a :class:`NamedParts`."""
 
 SENSOR_COLUMNS = (
     Column("sensor", "name"),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,12 @@ from gearwhine.results.bearing_lives import life_quantities
 from housing.acoustics.sound_levels import power_level
 
 if TYPE_CHECKING:
+    from coupling.linear.mesh_harmonics import Line
+    from coupling.statics.operating_point import OperatingPoint
     from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
+    from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity
+    from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
@@ -375,11 +379,19 @@ SHAFT = (
 )
 """Quantities of a deflected shaft."""
 
+
+class _Torque(NamedTuple):
+    """Torque of the first driver [N m], and the operating point there."""
+
+    torque: float
+    point: "OperatingPoint"
+
+
 TORQUE = (
-    Quantity("torque_n_m", lambda row: row[0], "operating_torque", (), "N m", "torque of the first driver"),
+    Quantity("torque_n_m", lambda row: row.torque, "operating_torque", (), "N m", "torque of the first driver"),
     Rows(
         "gear_pairs",
-        lambda row: row[1].pairs,
+        lambda row: row.point.pairs,
         (
             Quantity("driver", lambda load: load.pair.driver.name),
             Quantity("driven", lambda load: load.pair.driven.name),
@@ -390,16 +402,25 @@ TORQUE = (
         ),
     ),
 )
-"""Quantities of an operating point; a row is its torque and its solution."""
+"""Quantities of an operating point over torque."""
 
 _HZ = 0.5 / np.pi
 
+
+class _SensorLine(NamedTuple):
+    """Line of a sensor, its mesh harmonics in words, and whether parameters are ranked by it."""
+
+    line: "Line"
+    excitation: str
+    ranked: bool
+
+
 SENSOR_LINE = (
-    Quantity("sensor", lambda row: row[0].output.sensor, "line_sensor", heading="sensor"),
-    Quantity("excitation", lambda row: row[1], "line_excitation", heading="excitation"),
+    Quantity("sensor", lambda row: row.line.output.sensor, "line_sensor", heading="sensor"),
+    Quantity("excitation", lambda row: row.excitation, "line_excitation", heading="excitation"),
     Quantity(
         "frequency_hz",
-        lambda row: row[0].frequency * _HZ,
+        lambda row: row.line.frequency * _HZ,
         "line_frequency",
         (),
         "Hz",
@@ -409,7 +430,7 @@ SENSOR_LINE = (
     ),
     Quantity(
         "amplitude_m_per_s2",
-        lambda row: row[0].value,
+        lambda row: row.line.value,
         "line_amplitude",
         (),
         "m/s2",
@@ -417,15 +438,24 @@ SENSOR_LINE = (
         heading="[m/s²]",
         shown=".3g",
     ),
-    Quantity("ranked", lambda row: row[2]),
+    Quantity("ranked", lambda row: row.ranked),
 )
-"""Quantities of a sensor's line; a row is the line, its mesh harmonics, and whether parameters are ranked by it."""
+"""Quantities of a sensor's line."""
+
+
+class _LoudestLine(NamedTuple):
+    """One of the loudest lines, its mesh harmonics in words, and whether parameters are ranked by it."""
+
+    sound: "HarmonicSound"
+    excitation: str
+    ranked: bool
+
 
 SOUND_LINE = (
-    Quantity("excitation", lambda row: row[1], "loudest_line_excitation", heading="excitation"),
+    Quantity("excitation", lambda row: row.excitation, "loudest_line_excitation", heading="excitation"),
     Quantity(
         "frequency_hz",
-        lambda row: row[0].line.frequency * _HZ,
+        lambda row: row.sound.line.frequency * _HZ,
         "loudest_line_frequency",
         (),
         "Hz",
@@ -435,7 +465,7 @@ SOUND_LINE = (
     ),
     Quantity(
         "",
-        lambda row: row[0].line.value,
+        lambda row: row.sound.line.value,
         "loudest_line_power",
         (),
         "W",
@@ -443,19 +473,19 @@ SOUND_LINE = (
     ),
     Quantity(
         "sound_power_db",
-        lambda row: float(power_level(row[0].line.value)),
+        lambda row: float(power_level(row.sound.line.value)),
         heading="L_W [dB]",
         shown=".1f",
     ),
     Quantity(
         "sound_power_db_a",
-        lambda row: float(power_level(row[0].weighting * row[0].line.value)),
+        lambda row: float(power_level(row.sound.weighting * row.sound.line.value)),
         heading="L_WA [dB]",
         shown=".1f",
     ),
-    Quantity("ranked", lambda row: row[2]),
+    Quantity("ranked", lambda row: row.ranked),
 )
-"""Quantities of a loudest line; a row is the line, its mesh harmonics, and whether parameters are ranked by it."""
+"""Quantities of a loudest line."""
 
 _LEVELS = (
     Quantity("level_db", lambda change: change.level),
@@ -464,15 +494,38 @@ _LEVELS = (
     Quantity("first_order_is_off", lambda change: change.first_order_is_off),
 )
 
+
+class _Influence(NamedTuple):
+    """Influence of a parameter, the gear pairs, and the sensitivity that it is of."""
+
+    influence: "Influence"
+    pairs: tuple[PairLoad, ...]
+    sensitivity: "LoadSensitivity"
+
+
+class _PairChange(NamedTuple):
+    """Gear pair, and the changes of its misalignment [rad], of K_Hβ and of its transmission error, p-p [m]."""
+
+    load: PairLoad
+    misalignment: float
+    k_h_beta: float
+    transmission_error: float
+
+
+def _pair_changes(row: _Influence) -> list[_PairChange]:
+    changes = zip(row.pairs, row.influence.changes.tolist(), strict=True)
+    return [_PairChange(load, *of_pair) for load, of_pair in changes]
+
+
 INFLUENCE = (
-    Quantity("parameter", lambda row: row[0].parameter),
-    Quantity("kind", lambda row: row[0].kind),
-    Quantity("step", lambda row: row[0].step_text),
-    Quantity("step_words", lambda row: row[0].words[0]),
-    Quantity("reverse_words", lambda row: row[0].words[1]),
+    Quantity("parameter", lambda row: row.influence.parameter),
+    Quantity("kind", lambda row: row.influence.kind),
+    Quantity("step", lambda row: row.influence.step_text),
+    Quantity("step_words", lambda row: row.influence.words[0]),
+    Quantity("reverse_words", lambda row: row.influence.words[1]),
     Rows(
         "lines",
-        lambda row: row[2].sensor_changes(row[0]) if row[2].sensor_lines else ABSENT,
+        lambda row: row.sensitivity.sensor_changes(row.influence) if row.sensitivity.sensor_lines else ABSENT,
         (
             Quantity("sensor", lambda change: change.line.output.sensor),
             Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
@@ -484,7 +537,7 @@ INFLUENCE = (
     ),
     Rows(
         "sound",
-        lambda row: row[2].sound_changes(row[0]) if row[2].loudest_lines else ABSENT,
+        lambda row: row.sensitivity.sound_changes(row.influence) if row.sensitivity.loudest_lines else ABSENT,
         (
             Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
             Quantity("power_w", lambda change: change.change),
@@ -495,22 +548,22 @@ INFLUENCE = (
     ),
     Part(
         "sound_a",
-        lambda row: row[2].total_sound_change(row[0]) if row[2].loudest_lines else ABSENT,
+        lambda row: row.sensitivity.total_sound_change(row.influence) if row.sensitivity.loudest_lines else ABSENT,
         _LEVELS,
     ),
     Rows(
         "gear_pairs",
-        lambda row: zip(row[1], row[0].changes.tolist(), strict=True),
+        _pair_changes,
         (
-            Quantity("driver", lambda row: row[0].pair.driver.name),
-            Quantity("driven", lambda row: row[0].pair.driven.name),
-            Quantity("misalignment_rad", lambda row: row[1][0]),
-            Quantity("k_h_beta", lambda row: _unless_idle(row[1][1])),
-            Quantity("transmission_error_peak_to_peak_m", lambda row: _unless_idle(row[1][2])),
+            Quantity("driver", lambda row: row.load.pair.driver.name),
+            Quantity("driven", lambda row: row.load.pair.driven.name),
+            Quantity("misalignment_rad", lambda row: row.misalignment),
+            Quantity("k_h_beta", lambda row: _unless_idle(row.k_h_beta)),
+            Quantity("transmission_error_peak_to_peak_m", lambda row: _unless_idle(row.transmission_error)),
         ),
     ),
 )
-"""Changes by a step of a parameter; a row is the parameter's influence, the gear pairs and the sensitivity.
+"""Changes by a step of a parameter.
 
 Changes of gear pairs are to first order, so that the reverse step has the opposite ones.
 """
@@ -562,7 +615,8 @@ def _sensor_lines(solved: "SolvedLoad") -> Any:
     if sensitivity is None or sensitivity.lines is None or not sensitivity.sensor_lines:
         return ABSENT
     return [
-        (line, sensitivity.lines.cause(line), n == sensitivity.line) for n, line in enumerate(sensitivity.sensor_lines)
+        _SensorLine(line, sensitivity.lines.cause(line), n == sensitivity.line)
+        for n, line in enumerate(sensitivity.sensor_lines)
     ]
 
 
@@ -573,7 +627,7 @@ def _loudest_lines(solved: "SolvedLoad") -> Any:
         return ABSENT
     ranked = (sensitivity.sound_weights > 0.0).tolist()
     return [
-        (loud, sensitivity.lines.cause(loud.line), is_ranked)
+        _LoudestLine(loud, sensitivity.lines.cause(loud.line), is_ranked)
         for loud, is_ranked in zip(sensitivity.loudest_lines, ranked, strict=True)
     ]
 
@@ -583,7 +637,7 @@ def _loudest_level(solved: "SolvedLoad") -> Any:
     lines = _loudest_lines(solved)
     if lines is ABSENT:
         return ABSENT
-    return float(power_level(sum(loud.weighting * loud.line.value for loud, _, _ in lines)))
+    return float(power_level(sum(row.sound.weighting * row.sound.line.value for row in lines)))
 
 
 def _lines_without(solved: "SolvedLoad") -> Any:
@@ -619,7 +673,7 @@ LOAD = (
     Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
     Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
     Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda pair: pair.load, PAIR), *TAKEN), "loaded_pair"),
-    Rows("over_torque", lambda solved: solved.over_torque.items() if solved.over_torque else ABSENT, TORQUE),
+    Rows("over_torque", lambda solved: [_Torque(*each) for each in solved.over_torque.items()] or ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
     Quantity("loudest_lines_db_a", _loudest_level),
@@ -629,7 +683,10 @@ LOAD = (
         lambda solved: (
             ABSENT
             if solved.sensitivity is None
-            else [(influence, solved.point.pairs, solved.sensitivity) for influence in solved.sensitivity.influences]
+            else [
+                _Influence(influence, solved.point.pairs, solved.sensitivity)
+                for influence in solved.sensitivity.influences
+            ]
         ),
         INFLUENCE,
     ),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,9 +15,13 @@ from gearwhine.results.bearing_lives import life_quantities
 from gearwhine.results.housing import COUNT_CERTIFICATE
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from gearwhine.solve.bearing_lives import BearingLife
-    from gearwhine.solve.rotors import Crossings, SolvedRotor
+    from gearwhine.solve.rotors import Crossings, ProbeReading, SolvedResponse, SolvedRotor
+    from rotors.analyses.campbell import Crossing
     from rotors.rolling_bearings import RollingState
+    from rotors.whirl.whirl_modes import WhirlModes
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
@@ -29,7 +33,14 @@ def _in_rpm(speed: float | None) -> float | None:
     return None if speed is None else speed * RPM
 
 
-def _strain_shares(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
+class _Whirl(NamedTuple):
+    """Rotor, and its whirl modes at one speed."""
+
+    solved: "SolvedRotor"
+    whirl: "WhirlModes"
+
+
+def _strain_shares(row: _Whirl) -> dict[str, Any]:
     """Return the shares in each whirl mode's strain energy by kind of part, mean over a cycle; a row for each mode."""
     solved, whirl = row
     shares = whirl.strain_energy_shares(solved.rotor.joints)
@@ -38,7 +49,7 @@ def _strain_shares(row: tuple["SolvedRotor", Any]) -> dict[str, Any]:
     return parts | ({"pedestal": shares.pedestals} if pedestals else {})
 
 
-def _most_strained(row: tuple["SolvedRotor", Any]) -> Any:
+def _most_strained(row: _Whirl) -> Any:
     """Part with the largest share of the strain energy of each whirl mode; None for a mode that strains nothing.
 
     Only the speed that terminal and report show has it: operation, or else the last of the sweep.
@@ -77,51 +88,65 @@ def _strain(kind: str) -> Quantity:
     )
 
 
-def _crossings(key: str, of: Any) -> tuple[Rows, Quantity]:
-    """Declare damped critical speeds of a rotor for one order, or why there are none; ``of`` returns both of a row."""
+class _Crossing(NamedTuple):
+    """Rotor, and a damped critical speed of it."""
 
-    def rows(row: Any) -> list[tuple["SolvedRotor", Any]] | None:
-        solved, crossings = of(row)
-        return None if isinstance(crossings, str) else [(solved, crossing) for crossing in crossings]
-
-    def reason(row: Any) -> "Crossings | None":
-        crossings: Crossings = of(row)[1]
-        return crossings if isinstance(crossings, str) else None
-
-    return Rows(key, rows, CROSSING), Quantity(f"why_no_{key}", reason)
+    solved: "SolvedRotor"
+    crossing: "Crossing"
 
 
 CROSSING = (
-    Quantity("speed_rpm", lambda row: row[1].speed * RPM),
-    Quantity("direction", lambda row: row[1].direction),
-    Quantity("axial_share", lambda row: row[1].axial_share),
-    Quantity("log_decrement", lambda row: row[1].log_decrement),
-    Quantity("margin", lambda row: abs(row[1].speed / row[0].operation) - 1.0 if row[0].operation else None),
+    Quantity("speed_rpm", lambda row: row.crossing.speed * RPM),
+    Quantity("direction", lambda row: row.crossing.direction),
+    Quantity("axial_share", lambda row: row.crossing.axial_share),
+    Quantity("log_decrement", lambda row: row.crossing.log_decrement),
+    Quantity(
+        "margin", lambda row: abs(row.crossing.speed / row.solved.operation) - 1.0 if row.solved.operation else None
+    ),
 )
-"""Quantities of a damped critical speed; a row is the solved rotor and the crossing of its Campbell diagram."""
+"""Quantities of a damped critical speed."""
+
+
+class _Order(NamedTuple):
+    """Rotor, an order, and the damped critical speeds of that order, or why there are none."""
+
+    solved: "SolvedRotor"
+    order: float
+    crossings: "Crossings"
+
+
+def _crossings(row: _Order) -> list[_Crossing] | None:
+    return None if isinstance(row.crossings, str) else [_Crossing(row.solved, crossing) for crossing in row.crossings]
+
+
+CRITICAL_SPEEDS = (
+    Rows("critical_speeds", _crossings, CROSSING),
+    Quantity("why_no_critical_speeds", lambda row: row.crossings if isinstance(row.crossings, str) else None),
+)
+"""Damped critical speeds of a rotor for one order, or why there are none."""
 
 WHIRL = (
-    Quantity("", lambda row: f"{row[0].rotor.name} at {row[1].speed * RPM:.6g} rpm", "whirl_state"),
-    Quantity("speed_rpm", lambda row: row[1].speed * RPM, "whirl_speed", (), "rpm", "speed of the rotor"),
+    Quantity("", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm", "whirl_state"),
+    Quantity("speed_rpm", lambda row: row.whirl.speed * RPM, "whirl_speed", (), "rpm", "speed of the rotor"),
     Quantity(
         "frequency_hz",
-        lambda row: row[1].frequencies / HERTZ,
+        lambda row: row.whirl.frequencies / HERTZ,
         "whirl_frequency",
         ("whirl_number",),
         "Hz",
         "natural frequency of whirl",
     ),
-    Quantity("damping_ratio", lambda row: row[1].damping_ratios),
-    Quantity("log_decrement", lambda row: row[1].log_decrements),
-    Quantity("direction", lambda row: row[1].direction),
-    Quantity("axial_share", lambda row: row[1].axial_share),
-    Quantity("stable", lambda row: row[1].stable),
+    Quantity("damping_ratio", lambda row: row.whirl.damping_ratios),
+    Quantity("log_decrement", lambda row: row.whirl.log_decrements),
+    Quantity("direction", lambda row: row.whirl.direction),
+    Quantity("axial_share", lambda row: row.whirl.axial_share),
+    Quantity("stable", lambda row: row.whirl.stable),
     Quantity("most_strained", _most_strained),
     _strain("segment"),
     _strain("bearing"),
     _strain("pedestal"),
 )
-"""Quantities of whirl at one speed; a row is the solved rotor and its whirl modes."""
+"""Quantities of whirl at one speed."""
 
 _STEPS = ("campbell_step", "whirl_branch")
 CAMPBELL = (
@@ -167,33 +192,37 @@ CAMPBELL = (
     ),
     Quantity("unstable_from_rpm", lambda solved: _in_rpm(solved.campbell.unstable_from)),
     Quantity("proved_at_rpm", lambda solved: solved.campbell.speeds[solved.campbell.proved] * RPM),
-    *_crossings("critical_speeds", lambda solved: (solved, solved.crossings)),
+    Part("", lambda solved: _Order(solved, 1.0, solved.crossings), CRITICAL_SPEEDS),
     Rows(
         "orders",
-        lambda solved: [(solved, order, crossings) for order, crossings in solved.orders.items()],
-        (
-            Quantity("order", lambda row: row[1]),
-            *_crossings("critical_speeds", lambda row: (row[0], row[2])),
-        ),
+        lambda solved: [_Order(solved, order, crossings) for order, crossings in solved.orders.items()],
+        (Quantity("order", lambda row: row.order), *CRITICAL_SPEEDS),
     ),
 )
 """Whirl over speed: a row for each speed, a column for each branch, which keeps its place through its crossings."""
 
 
-def _loaded(row: tuple["SolvedRotor", str]) -> "RollingState":
-    return row[0].rolling[row[1]]
+class _Rolling(NamedTuple):
+    """Rotor, and the name of one of its rolling bearings."""
+
+    solved: "SolvedRotor"
+    name: str
 
 
-def _rated(row: tuple["SolvedRotor", str]) -> "BearingLife":
+def _loaded(row: _Rolling) -> "RollingState":
+    return row.solved.rolling[row.name]
+
+
+def _rated(row: _Rolling) -> "BearingLife":
     """Ratings and lives at the speed of operation."""
-    return row[0].lives[row[1]]
+    return row.solved.lives[row.name]
 
 
-def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
+def _frequencies(row: _Rolling) -> dict[str, float] | None:
     """Characteristic frequencies of the first row at the speed of operation [Hz]."""
     from rotors.rolling_bearings import characteristic_frequencies
 
-    operation = row[0].operation
+    operation = row.solved.operation
     if not operation:
         return None
     frequencies = characteristic_frequencies(_loaded(row).bearing.rows[0], operation)
@@ -201,8 +230,8 @@ def _frequencies(row: tuple["SolvedRotor", str]) -> dict[str, float] | None:
 
 
 ROLLING = (
-    Quantity("", lambda row: f"{row[0].rotor.name}: {row[1]}", "rolling_bearing"),
-    Quantity("name", lambda row: row[1], heading="bearing"),
+    Quantity("", lambda row: f"{row.solved.rotor.name}: {row.name}", "rolling_bearing"),
+    Quantity("name", lambda row: row.name, heading="bearing"),
     Quantity(
         "load_n",
         lambda row: _loaded(row).load[:3],
@@ -231,10 +260,19 @@ ROLLING = (
     Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
     Quantity("residual", lambda row: _loaded(row).residual),
 )
-"""Quantities of a rolling bearing under its load; a row is the solved rotor and the name of the bearing."""
+"""Quantities of a rolling bearing under its load."""
 
 _PLANE = Quantity("", lambda _: ["x", "y"], "plane", ("plane",), common=True)
 _SAG = ("static_step",)
+
+
+class _BearingLoad(NamedTuple):
+    """Name of a bearing, and its load: forces along x, y, z [N] and moments about x, y [N m]."""
+
+    name: str
+    load: "npt.NDArray[np.float64]"
+
+
 STATIC = (
     Quantity("gravity_m_per_s2", lambda solved: solved.weight.deflection.gravity),
     Rows(
@@ -248,13 +286,14 @@ STATIC = (
     Quantity("bearings_at_rpm", lambda solved: None if solved.rest_speed is None else _in_rpm(solved.weight.speed)),
     Rows(
         "bearings",
-        lambda solved: list(
-            zip(solved.weight.deflection.bearings, solved.weight.deflection.bearing_loads, strict=True),
-        ),
+        lambda solved: [
+            _BearingLoad(*each)
+            for each in zip(solved.weight.deflection.bearings, solved.weight.deflection.bearing_loads, strict=True)
+        ],
         (
-            Quantity("name", lambda row: row[0], heading="bearing carries"),
-            Quantity("load_n", lambda row: row[1][:3]),
-            Quantity("moment_n_m", lambda row: row[1][3:]),
+            Quantity("name", lambda row: row.name, heading="bearing carries"),
+            Quantity("load_n", lambda row: row.load[:3]),
+            Quantity("moment_n_m", lambda row: row.load[3:]),
         ),
     ),
     Quantity("largest_deflection_m", lambda solved: solved.weight.largest[0]),
@@ -273,15 +312,24 @@ STATIC = (
 """Bearing loads under gravity and constant forces, and the shaft's sag."""
 
 _PROBE = ("response_step",)
+
+
+class _Probe(NamedTuple):
+    """Reading of a probe over speed, and the one at operation where there is any."""
+
+    reading: "ProbeReading"
+    at_operation: "ProbeReading | None"
+
+
 PROBE = (
-    Quantity("", lambda row: f"{row[0].probe.rotor}: {row[0].probe.name}", "probe"),
-    Quantity("", lambda row: row[0].speeds * RPM, "response_speed", _PROBE, "rpm", "speed of the rotor"),
-    Quantity("name", lambda row: row[0].probe.name),
-    Quantity("at_m", lambda row: row[0].probe.at),
-    Quantity("angle_deg", lambda row: math.degrees(row[0].probe.angle)),
+    Quantity("", lambda row: f"{row.reading.probe.rotor}: {row.reading.probe.name}", "probe"),
+    Quantity("", lambda row: row.reading.speeds * RPM, "response_speed", _PROBE, "rpm", "speed of the rotor"),
+    Quantity("name", lambda row: row.reading.probe.name),
+    Quantity("at_m", lambda row: row.reading.probe.at),
+    Quantity("angle_deg", lambda row: math.degrees(row.reading.probe.angle)),
     Quantity(
         "",
-        lambda row: np.abs(row[0].amplitude),
+        lambda row: np.abs(row.reading.amplitude),
         "probe_amplitude",
         _PROBE,
         "m",
@@ -289,24 +337,37 @@ PROBE = (
     ),
     Quantity(
         "",
-        lambda row: row[0].phase_lag,
+        lambda row: row.reading.phase_lag,
         "probe_phase_lag",
         _PROBE,
         "rad",
         "lag of the reading behind the mark",
     ),
-    Quantity("", lambda row: row[0].major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"),
-    Quantity("largest_amplitude_m", lambda row: row[0].largest[0]),
-    Quantity("largest_at_rpm", lambda row: row[0].largest[1] * RPM),
-    Quantity("operation_amplitude_m", lambda row: None if row[1] is None else np.abs(row[1].amplitude[0])),
-    Quantity("operation_phase_lag_deg", lambda row: None if row[1] is None else np.degrees(row[1].phase_lag[0])),
+    Quantity("", lambda row: row.reading.major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"),
+    Quantity("largest_amplitude_m", lambda row: row.reading.largest[0]),
+    Quantity("largest_at_rpm", lambda row: row.reading.largest[1] * RPM),
+    Quantity(
+        "operation_amplitude_m", lambda row: None if row.at_operation is None else np.abs(row.at_operation.amplitude[0])
+    ),
+    Quantity(
+        "operation_phase_lag_deg",
+        lambda row: None if row.at_operation is None else np.degrees(row.at_operation.phase_lag[0]),
+    ),
 )
-"""Quantities of a probe; a row is its reading over speed, and the one at operation."""
+"""Quantities of a probe."""
 
 
-def _readings(response: Any) -> list[tuple[Any, Any]]:
-    """Each probe's reading over speed, and the one at operation where there is any."""
-    return list(zip(response.readings, response.at_operation or [None] * len(response.readings), strict=True))
+def _readings(solved: "SolvedResponse") -> list[_Probe]:
+    at_operation = solved.at_operation or [None] * len(solved.readings)
+    return [_Probe(*each) for each in zip(solved.readings, at_operation, strict=True)]
+
+
+class _BearingForce(NamedTuple):
+    """Response, the name of a bearing, and the amplitudes of the force on it along x and y, shape (2, b) [N]."""
+
+    solved: "SolvedResponse"
+    name: str
+    force: "npt.NDArray[np.float64]"
 
 
 def _range(unit: str, of: Any) -> tuple[Quantity, Quantity]:
@@ -321,16 +382,16 @@ RESPONSE = (
     Rows(
         "bearings",
         lambda solved: [
-            (solved, name, np.abs(solved.response.bearing_forces[:, place, :2]).T)
+            _BearingForce(solved, name, np.abs(solved.response.bearing_forces[:, place, :2]).T)
             for place, name in enumerate(solved.response.bearings)
         ],
         (
-            Quantity("", lambda row: row[1], "unbalance_bearing"),
-            Quantity("name", lambda row: row[1]),
-            Quantity("largest_force_n", lambda row: row[2].max(axis=1)),
+            Quantity("", lambda row: row.name, "unbalance_bearing"),
+            Quantity("name", lambda row: row.name),
+            Quantity("largest_force_n", lambda row: row.force.max(axis=1)),
             Quantity(
                 "",
-                lambda row: row[2],
+                lambda row: row.force,
                 "unbalance_bearing_force",
                 ("plane", *_PROBE),
                 "N",
@@ -338,7 +399,7 @@ RESPONSE = (
             ),
             Quantity(
                 "",
-                lambda row: row[0].response.speeds * RPM,
+                lambda row: row.solved.response.speeds * RPM,
                 "unbalance_bearing_speed",
                 _PROBE,
                 "rpm",
@@ -491,7 +552,7 @@ ROTOR = (
     _rest_strain("bearing", 1),
     Quantity("rest_bearings_at_rpm", lambda solved: _in_rpm(solved.rest_speed)),
     Quantity("operation_rpm", lambda solved: _in_rpm(solved.operation)),
-    Rows("whirl", lambda solved: [(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
+    Rows("whirl", lambda solved: [_Whirl(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
     Quantity(
         "",
         lambda solved: solved.whirl_deflection,
@@ -522,7 +583,12 @@ ROTOR = (
         (Quantity("bearings", lambda solved: None), Quantity("why_not", lambda solved: solved.weight)),
     ),
     Part("unbalance_response", lambda solved: solved.response, RESPONSE),
-    Rows("rolling_bearings", lambda solved: [(solved, name) for name in solved.rolling], ROLLING, "rolling_bearing"),
+    Rows(
+        "rolling_bearings",
+        lambda solved: [_Rolling(solved, name) for name in solved.rolling],
+        ROLLING,
+        "rolling_bearing",
+    ),
     Quantity(
         "damping", lambda solved: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
     ),

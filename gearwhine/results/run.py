@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5netcdf
 import numpy as np
@@ -19,6 +19,8 @@ from gearwhine.results.motion import (
     BEARING,
     MESH,
     SENSOR_COLUMNS,
+    MeshFigures,
+    NamedParts,
     leading_lines,
     line_table,
     mesh_sentence,
@@ -28,8 +30,14 @@ from gearwhine.results.motion import (
 from housing.storage.netcdf import Variables
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from coupling.linear.complex_modes import CoupledModes
+    from coupling.signals import LineName
+    from coupling.signals.sidebands import Sideband
+    from coupling.signals.spectrum import Peak, Spectrum
     from gearwhine.solve.run_up import RunSignature
-    from gearwhine.solve.signature import SolvedSignature
+    from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
     from gearwhine.solve.transient import SolvedTransient
     from gearwhine.solve.transient_record import Signals
 
@@ -37,30 +45,51 @@ MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit moda
 _HERTZ_LONG = ("Hz", "frequency")
 
 
-def _name(row: Any) -> Any:
-    """Return the name of a line, if any; its row holds the peak, the name and the coupled modes."""
-    return row if row[1] is not None else None
+class TracedTransient(NamedTuple):
+    """Transient and, where lines are traced, their signature."""
+
+    transient: "SolvedTransient"
+    signature: "SolvedSignature | None" = None
 
 
-def _near_mode(row: Any) -> dict[str, Any] | None:
-    _, named, modes = row
-    if named.mode is None:
+class _NamedPeak(NamedTuple):
+    """Peak of a spectrum with the name of its line and the coupled modes; of a sensor also the traced line."""
+
+    peak: "Peak"
+    named: "LineName"
+    modes: "CoupledModes"
+    line: "TracedLine | None" = None
+
+
+class _UnnamedPeak(NamedTuple):
+    """Peak of a spectrum whose lines are not traced."""
+
+    peak: "Peak"
+
+
+def _if_named(row: _NamedPeak | _UnnamedPeak) -> _NamedPeak | None:
+    return row if isinstance(row, _NamedPeak) else None
+
+
+def _near_mode(row: _NamedPeak) -> dict[str, Any] | None:
+    mode, modes = row.named.mode, row.modes
+    if mode is None:
         return None
     return {
-        "number": named.mode + 1,
-        "kind": modes.kinds[named.mode],
-        "where": modes.where[named.mode],
-        "frequency_hz": modes.frequencies_hz[named.mode],
+        "number": mode + 1,
+        "kind": modes.kinds[mode],
+        "where": modes.where[mode],
+        "frequency_hz": modes.frequencies_hz[mode],
     }
 
 
 NAMED = (
-    Quantity("name", lambda row: row[1].name),
-    Quantity("kind", lambda row: row[1].kind),
-    Quantity("order", lambda row: row[1].order),
+    Quantity("name", lambda row: row.named.name),
+    Quantity("kind", lambda row: row.named.kind),
+    Quantity("order", lambda row: row.named.order),
     Quantity("near_mode", _near_mode),
 )
-"""Quantities of a named peak; a row is the peak, its name and the coupled modes."""
+"""Quantities of a named peak."""
 
 CONTRIBUTION = (
     Quantity("name", lambda part: part.name),
@@ -69,12 +98,12 @@ CONTRIBUTION = (
     Quantity("number", lambda part: ABSENT if part.mode is None else part.mode),
 )
 TRACED = (
-    Part("", lambda row: (row[0], row[1].named, row[2]), NAMED),
-    Quantity("phase_rad", lambda row: np.angle(row[1].value)),
-    Quantity("level_db", lambda row: float(row[1].level_db)),
+    *NAMED,
+    Quantity("phase_rad", lambda row: np.angle(row.line.value)),
+    Quantity("level_db", lambda row: float(row.line.level_db)),
     Part(
         "contributions",
-        lambda row: row[1],
+        lambda row: row.line,
         (
             Rows("housing_modes", lambda line: line.told_modes, CONTRIBUTION),
             Rows("bearings", lambda line: line.told_bearings, CONTRIBUTION),
@@ -82,79 +111,111 @@ TRACED = (
         ),
     ),
 )
-"""Quantities of a traced peak; a row is the peak, its traced line and the coupled modes."""
+"""Quantities of a traced peak."""
 
 
 def _peak(key: str) -> tuple[Quantity, Quantity]:
-    return Quantity("frequency_hz", lambda row: row[0].frequency), Quantity(key, lambda row: row[0].amplitude)
+    return Quantity("frequency_hz", lambda row: row.peak.frequency), Quantity(key, lambda row: row.peak.amplitude)
+
+
+class _Sidebands(NamedTuple):
+    """Pair of sidebands of a gear mesh, and the shafts that they come from."""
+
+    shafts: "ShaftSidebands"
+    pair: "Sideband"
 
 
 def _sidebands(unit: str) -> tuple[Quantity, ...]:
     """Declare the quantities of a mesh's shaft and one pair of sidebands."""
     return (
-        Quantity("gear_pair", lambda row: row[0].mesh),
-        Quantity("shafts", lambda row: row[0].shafts),
-        Quantity("carrier_hz", lambda row: row[1].carrier),
-        Quantity("number", lambda row: row[1].number),
-        Quantity("distance_hz", lambda row: row[1].distance),
-        Quantity(f"carrier_amplitude_{unit}", lambda row: row[1].carrier_amplitude),
-        Quantity(f"lower_amplitude_{unit}", lambda row: row[1].lower),
-        Quantity(f"upper_amplitude_{unit}", lambda row: row[1].upper),
-        Quantity("amplitude_modulation", lambda row: row[1].amplitude_modulation),
-        Quantity("phase_modulation_rad", lambda row: row[1].phase_modulation),
+        Quantity("gear_pair", lambda row: row.shafts.mesh),
+        Quantity("shafts", lambda row: row.shafts.shafts),
+        Quantity("carrier_hz", lambda row: row.pair.carrier),
+        Quantity("number", lambda row: row.pair.number),
+        Quantity("distance_hz", lambda row: row.pair.distance),
+        Quantity(f"carrier_amplitude_{unit}", lambda row: row.pair.carrier_amplitude),
+        Quantity(f"lower_amplitude_{unit}", lambda row: row.pair.lower),
+        Quantity(f"upper_amplitude_{unit}", lambda row: row.pair.upper),
+        Quantity("amplitude_modulation", lambda row: row.pair.amplitude_modulation),
+        Quantity("phase_modulation_rad", lambda row: row.pair.phase_modulation),
     )
 
 
-def _sensor_peaks(row: Any) -> list[Any]:
-    solved, signature, name = row
-    peaks = solved.sensor_peaks(name)
+class _Sensor(NamedTuple):
+    """Transient, its signature where lines are traced, and the name of a sensor."""
+
+    transient: "SolvedTransient"
+    signature: "SolvedSignature | None"
+    name: str
+
+
+def _sensor_peaks(row: _Sensor) -> list[_NamedPeak] | list[_UnnamedPeak]:
+    peaks, signature = row.transient.sensor_peaks(row.name), row.signature
     if signature is None:
-        return [(peak, None, None) for peak in peaks]
-    return [(peak, line, signature.modes) for peak, line in zip(peaks, signature.lines[name], strict=True)]
+        return [_UnnamedPeak(peak) for peak in peaks]
+    lines = zip(peaks, signature.lines[row.name], strict=True)
+    return [_NamedPeak(peak, line.named, signature.modes, line) for peak, line in lines]
+
+
+def _sensor_sidebands(row: _Sensor) -> Any:
+    if row.signature is None:
+        return ABSENT
+    return _clear(row.signature, row.signature.sidebands[row.name])
+
+
+def _clear(signature: "SolvedSignature", sidebands: "tuple[ShaftSidebands, ...]") -> list[_Sidebands]:
+    return [_Sidebands(*each) for each in signature.clear_sidebands(sidebands)]
 
 
 SENSOR = (
-    Quantity("name", lambda row: row[2]),
-    Quantity("rms_m_per_s2", lambda row: row[0].sensor_rms(row[2])),
-    Rows("peaks", _sensor_peaks, (*_peak("amplitude_m_per_s2"), Part("", _name, TRACED))),
-    Rows(
-        "sidebands",
-        lambda row: ABSENT if row[1] is None else row[1].clear_sidebands(row[1].sidebands[row[2]]),
-        _sidebands("m_per_s2"),
-    ),
+    Quantity("name", lambda row: row.name),
+    Quantity("rms_m_per_s2", lambda row: row.transient.sensor_rms(row.name)),
+    Rows("peaks", _sensor_peaks, (*_peak("amplitude_m_per_s2"), Part("", _if_named, TRACED))),
+    Rows("sidebands", _sensor_sidebands, _sidebands("m_per_s2")),
 )
-"""Quantities of a sensor; a row is the transient, its signature where lines are traced, and the sensor's name."""
+"""Quantities of a sensor."""
 
 
-def _friction(row: Any) -> Any:
+class _Pair(NamedTuple):
+    """Transient, its signature where lines are traced, and the numbers of a gear pair's loaded contact and its own."""
+
+    transient: "SolvedTransient"
+    signature: "SolvedSignature | None"
+    contact: int
+    number: int
+
+
+def _mesh_figures(row: _Pair) -> MeshFigures:
+    return MeshFigures(row.transient.machine.meshes[row.number], row.transient.result, row.contact)
+
+
+def _friction(row: _Pair) -> Any:
     """Friction of a mesh over the record: its force and its power."""
-    return row[0].histories.mesh_friction.get(_contact(row))
+    return row.transient.histories.mesh_friction.get(_contact(row))
 
 
-def _contact(row: Any) -> str:
+def _contact(row: _Pair) -> str:
     """Return the name of the contact that the mean load presses."""
-    return str(row[0].machine.system.contacts[row[2]].name)
+    return str(row.transient.machine.system.contacts[row.contact].name)
 
 
-def _force_peaks(row: Any) -> list[Any]:
-    solved, signature, _, number = row
-    peaks = solved.force_peaks(_contact(row))
+def _force_peaks(row: _Pair) -> list[_NamedPeak] | list[_UnnamedPeak]:
+    peaks, signature = row.transient.force_peaks(_contact(row)), row.signature
     if signature is None:
-        return [(peak, None, None) for peak in peaks]
-    names = list(signature.force_lines.values())[number]
-    return [(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
+        return [_UnnamedPeak(peak) for peak in peaks]
+    names = list(signature.force_lines.values())[row.number]
+    return [_NamedPeak(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
 
 
-def _force_sidebands(row: Any) -> Any:
-    _, signature, _, number = row
-    if signature is None:
+def _force_sidebands(row: _Pair) -> Any:
+    if row.signature is None:
         return ABSENT
-    return signature.clear_sidebands(list(signature.force_sidebands.values())[number])
+    return _clear(row.signature, list(row.signature.force_sidebands.values())[row.number])
 
 
 PAIR = (
-    Part("", lambda row: (row[0].machine.meshes[row[3]], row[0].result, row[2]), MESH),
-    Quantity("flanks", lambda row: "drive" if row[2] == row[3] else "back"),
+    Part("", _mesh_figures, MESH),
+    Quantity("flanks", lambda row: "drive" if row.contact == row.number else "back"),
     Part(
         "friction",
         _friction,
@@ -164,11 +225,11 @@ PAIR = (
             Quantity("peak_force_n", lambda friction: np.abs(friction[:, 0]).max()),
         ),
     ),
-    Quantity("back_flank_peak_force_n", lambda row: row[0].back_flank_peak(row[3])),
-    Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _name, NAMED))),
+    Quantity("back_flank_peak_force_n", lambda row: row.transient.back_flank_peak(row.number)),
+    Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _if_named, NAMED))),
     Rows("sidebands", _force_sidebands, _sidebands("n")),
 )
-"""Quantities of a gear pair; a row is the transient, its signature, the loaded contact's number and the pair's."""
+"""Quantities of a gear pair."""
 MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
 
 CONVENTIONS = {
@@ -178,14 +239,14 @@ CONVENTIONS = {
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
 }
 SIGNATURE = (
-    Rows("bearings", lambda row: row[0].bearing_parts(), BEARING),
+    Rows("bearings", lambda row: [NamedParts(*each) for each in row.transient.bearing_parts()], BEARING),
     Rows(
         "gears",
-        lambda row: row[0].gear_parts(),
+        lambda row: [NamedParts(*each) for each in row.transient.gear_parts()],
         (
-            Quantity("name", lambda gear: gear[0]),
-            Quantity("mean_displacement_m", lambda gear: gear[1].mean),
-            Quantity("peak_displacement_m", lambda gear: gear[1].peak),
+            Quantity("name", lambda gear: gear.name),
+            Quantity("mean_displacement_m", lambda gear: gear.parts.mean),
+            Quantity("peak_displacement_m", lambda gear: gear.parts.peak),
         ),
     ),
     Quantity("conventions", lambda row: CONVENTIONS),
@@ -218,19 +279,19 @@ RECORD = (
 ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lost", "teeth", "friction"))
 
 
-def _trusted(row: Any) -> dict[str, Any]:
+def _trusted(row: TracedTransient) -> dict[str, Any]:
     """Return the frequency up to which a spectrum of the transient is complete [Hz]: above it modes are missing."""
-    return {"trusted_below_hz": float(row[0].trusted_limit)}
+    return {"trusted_below_hz": float(row.transient.trusted_limit)}
 
 
 def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tuple[Quantity, ...]:
     """Peak amplitudes and phases of the spectra of like signals."""
 
-    def of_each(row: Any, part: str) -> dict[str, Any] | None:
-        return {label: getattr(spectrum, part) for label, spectrum in of(row[0]).items()} or None
+    def of_each(row: TracedTransient, part: str) -> dict[str, Any] | None:
+        return {label: getattr(spectrum, part) for label, spectrum in of(row.transient).items()} or None
 
-    def attributes(row: Any) -> dict[str, Any]:
-        first, sampling = next(iter(of(row[0]).values())), row[0].record.sampling
+    def attributes(row: TracedTransient) -> dict[str, Any]:
+        first, sampling = next(iter(of(row.transient).values())), row.transient.record.sampling
         values: dict[str, Any] = {"window": first.window} | _trusted(row)
         if sampling.is_long:
             values |= {
@@ -243,7 +304,7 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
     return (
         Quantity(
             "",
-            lambda row: next((spectrum.frequencies for spectrum in of(row[0]).values()), None),
+            lambda row: next((spectrum.frequencies for spectrum in of(row.transient).values()), None),
             "frequency",
             ("frequency",),
             *_HERTZ_LONG,
@@ -273,12 +334,14 @@ def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quant
     """Peak amplitudes of the loads on bearings; ``rows`` of x, y, z and the moments about x and y."""
     return Quantity(
         "",
-        lambda row: {label: load[rows] for label, load in row[1].bearing_amplitudes(row[0]).items()} or None,
+        lambda row: (
+            {label: load[rows] for label, load in row.signature.bearing_amplitudes(row.transient).items()} or None
+        ),
         f"bearing_{name}_spectrum",
         ("bearing", *axis, "frequency"),
         unit,
         f"peak amplitude of the {quantity}",
-        attributes=lambda row: {"window": next(iter(row[1].bearing_spectra.values())).window} | _trusted(row),
+        attributes=lambda row: {"window": next(iter(row.signature.bearing_spectra.values())).window} | _trusted(row),
     )
 
 
@@ -319,70 +382,100 @@ LINES = (
 """Quantities of the lines of all sensors with their parts."""
 
 
-def _modal_spectrum(row: Any) -> Any:
-    spectrum = row[0].modal_spectrum()
-    return None if spectrum is None else (*spectrum, float(row[0].trusted_limit))
+class _ModalSpectrum(NamedTuple):
+    """Names of modal coordinates, their spectrum, and the frequency up to which it is whole [Hz]."""
+
+    names: list[str]
+    spectrum: "Spectrum"
+    limit: float
+
+
+def _modal_spectrum(row: TracedTransient) -> _ModalSpectrum | None:
+    spectrum = row.transient.modal_spectrum()
+    return None if spectrum is None else _ModalSpectrum(*spectrum, float(row.transient.trusted_limit))
 
 
 MODAL = (
-    Quantity("", lambda row: row[0], "modal_coordinate", ("modal_coordinate",)),
-    Quantity("", lambda row: row[1].frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
+    Quantity("", lambda row: row.names, "modal_coordinate", ("modal_coordinate",)),
+    Quantity("", lambda row: row.spectrum.frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
     Quantity(
         "",
-        lambda row: row[1].amplitude,
+        lambda row: row.spectrum.amplitude,
         "modal_displacement_spectrum",
         ("modal_coordinate", "frequency"),
         "m kg0.5",
         f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
-        attributes=lambda row: {"window": row[1].window, "trusted_below_hz": row[2]},
+        attributes=lambda row: {"window": row.spectrum.window, "trusted_below_hz": row.limit},
     ),
 )
-"""Modal spectrum; a row is the coordinates' names, their spectrum, and the frequency up to which it is whole [Hz]."""
+"""Quantities of the modal spectrum."""
+
+
+class _HousingLines(NamedTuple):
+    """Frequencies up to the limit [Hz], the lines of the housing modes there, and their window."""
+
+    frequencies: "npt.NDArray[np.float64]"
+    lines: "npt.NDArray[np.complex128]"
+    window: str
+
+
+def _housing_lines(row: TracedTransient) -> _HousingLines | None:
+    assert row.signature is not None
+    lines = row.signature.housing_lines(row.transient.trusted_limit)
+    return None if lines is None else _HousingLines(*lines)
+
 
 HOUSING_LINES = (
-    Quantity("", lambda row: row[0], "housing_line", ("housing_line",), *_HERTZ_LONG),
+    Quantity("", lambda row: row.frequencies, "housing_line", ("housing_line",), *_HERTZ_LONG),
     _COMPLEX,
     Quantity(
         "",
-        lambda row: np.stack([row[1].real, row[1].imag], axis=-1),
+        lambda row: np.stack([row.lines.real, row.lines.imag], axis=-1),
         "housing_acceleration_spectrum",
         ("housing_mode", "housing_line", "part"),
         "m kg0.5 s-2",
         "complex peak amplitude of a housing mode's acceleration, by unit modal mass",
-        attributes=lambda row: {"window": row[2]},
+        attributes=lambda row: {"window": row.window},
     ),
 )
-"""Spectrum of the housing modes, for operating shapes; a row is frequencies up to the limit, lines and window."""
+"""Quantities of the spectrum of the housing modes, for operating shapes."""
 
 TRANSIENT: Fields = (
-    Quantity("speed_rpm", lambda row: row[0].speed * RPM),
-    Part("run", lambda row: None if row[0].turning is None else row[0], RUN),
-    Quantity("method", lambda row: row[0].method),
-    Quantity("steps", lambda row: row[0].result.steps),
-    Quantity("rejected_steps", lambda row: row[0].result.rejected),
-    Quantity("smallest_step_s", lambda row: row[0].result.smallest_step),
-    Quantity("steps_per_second", lambda row: row[0].steps_per_second),
-    Quantity("energy_error", lambda row: row[0].result.energy.error),
-    Part("energy_j", lambda row: row[0].result.energy, ENERGY),
-    Quantity("coordinates", lambda row: row[0].machine.system.size),
-    Quantity("trusted_below_hz", lambda row: row[0].trusted_limit),
-    Part("record", lambda row: row[0], RECORD),
-    Rows("sensors", lambda row: [(*row, name) for name in row[0].sensor_spectra], SENSOR),
+    Quantity("speed_rpm", lambda row: row.transient.speed * RPM),
+    Part("run", lambda row: None if row.transient.turning is None else row.transient, RUN),
+    Quantity("method", lambda row: row.transient.method),
+    Quantity("steps", lambda row: row.transient.result.steps),
+    Quantity("rejected_steps", lambda row: row.transient.result.rejected),
+    Quantity("smallest_step_s", lambda row: row.transient.result.smallest_step),
+    Quantity("steps_per_second", lambda row: row.transient.steps_per_second),
+    Quantity("energy_error", lambda row: row.transient.result.energy.error),
+    Part("energy_j", lambda row: row.transient.result.energy, ENERGY),
+    Quantity("coordinates", lambda row: row.transient.machine.system.size),
+    Quantity("trusted_below_hz", lambda row: row.transient.trusted_limit),
+    Part("record", lambda row: row.transient, RECORD),
+    Rows(
+        "sensors",
+        lambda row: [_Sensor(row.transient, row.signature, name) for name in row.transient.sensor_spectra],
+        SENSOR,
+    ),
     Rows(
         "gear_pairs",
-        lambda row: [(*row, pressed, number) for number, pressed in enumerate(row[0].machine.loaded_contacts)],
+        lambda row: [
+            _Pair(row.transient, row.signature, pressed, number)
+            for number, pressed in enumerate(row.transient.machine.loaded_contacts)
+        ],
         PAIR,
     ),
     *_spectra(lambda solved: solved.sensor_spectra, "sensor_spectrum", "sensor", "m/s2", "acceleration"),
     *_spectra(lambda solved: solved.force_spectra, "mesh_force_spectrum", "contact", "N", "the gear-mesh force"),
     Part(
         "",
-        lambda row: None if row[1] is None else row,
+        lambda row: None if row.signature is None else row,
         (
             *SIGNATURE,
             Quantity(
                 "",
-                lambda row: next((spectrum.frequencies for spectrum in row[1].bearing_spectra.values()), None),
+                lambda row: next((spectrum.frequencies for spectrum in row.signature.bearing_spectra.values()), None),
                 "frequency",
                 ("frequency",),
                 *_HERTZ_LONG,
@@ -393,17 +486,17 @@ TRANSIENT: Fields = (
                 "moment", slice(3, 5), ("moment_axis",), "N m", "moment of the shaft on its bearing about x and y"
             ),
             Part("", _modal_spectrum, MODAL),
-            Part("", lambda row: row[1].line_table(), LINES),
-            Part("", lambda row: row[1].housing_lines(row[0].trusted_limit), HOUSING_LINES),
+            Part("", lambda row: row.signature.line_table(), LINES),
+            Part("", _housing_lines, HOUSING_LINES),
         ),
     ),
 )
-"""Quantities of a transient; a row is the transient and, where lines are traced, their signature."""
+"""Quantities of a transient; a row is a :class:`TracedTransient`."""
 
 
 def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | None" = None) -> dict[str, Any]:
     """Return the transient as the command's JSON; with a signature also the origin of its lines."""
-    return document_of(TRANSIENT, (solved, signature))
+    return document_of(TRANSIENT, TracedTransient(solved, signature))
 
 
 ORDER = (

@@ -2,17 +2,21 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
-from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, line_table, mesh_sentence
+from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, NamedParts, line_table, mesh_sentence
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
+    from coupling.machine.connectors import GearMesh
+    from coupling.periodic.continuation import ResponseCurve
+    from coupling.periodic.response import PeriodicResponse
+    from coupling.periodic.superposition import SuperposedResponse
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 _TILTS = ("about x", "about y")
@@ -30,32 +34,44 @@ PROOF = (
 )
 """Quantities of a periodic response: its period, stability and accuracy."""
 
+
+class _Pair(NamedTuple):
+    """Row of ``MESH`` with the lines of the mesh's force, and whether figures are of superposed motions."""
+
+    mesh: "GearMesh"
+    figures: "PeriodicResponse | SuperposedResponse"
+    contact: int
+    lines: list[dict[str, Any]]
+    superposed: bool
+
+
 PAIR = (
     *MESH,
-    Quantity("mean_compression_m", lambda row: row[1].mean_compression[row[2]]),
+    Quantity("mean_compression_m", lambda row: row.figures.mean_compression[row.contact]),
     Quantity(
         "rms_compression_m",
-        lambda row: row[1].rms_compression[row[2]],
+        lambda row: row.figures.rms_compression[row.contact],
         heading="a.c. compression [µm rms]",
         shown=".3g",
         scale=1e6,
     ),
-    Quantity("neglected_force_n", lambda row: row[1].neglected_force[row[2]] if row[4] else ABSENT),
-    Quantity("neglected_part", lambda row: row[1].neglected_part[row[2]] if row[4] else ABSENT),
-    Quantity("force_lines", lambda row: row[3]),
+    Quantity("neglected_force_n", lambda row: row.figures.neglected_force[row.contact] if row.superposed else ABSENT),
+    Quantity("neglected_part", lambda row: row.figures.neglected_part[row.contact] if row.superposed else ABSENT),
+    Quantity("force_lines", lambda row: row.lines),
 )
-"""Quantities of a gear mesh; a row adds to that of ``MESH`` the lines of its force, and whether motions superpose."""
+"""Quantities of a gear mesh."""
 
 
-def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[Any]:
+def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[_Pair]:
     """Gear meshes of one motion, or of all that are superposed."""
     figures = solved.superposed if motion is None else motion.response
+    assert figures is not None
     motions = solved.motions if motion is None else (motion,)
     rows = []
     for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
         lines = _lines(motions, [motion.histories.mesh_force[name] for motion in motions], "amplitude_n")
-        rows.append((mesh, figures, number, lines, motion is None))
+        rows.append(_Pair(mesh, figures, number, lines, motion is None))
     return rows
 
 
@@ -85,14 +101,22 @@ def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) ->
     return sorted(lines, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 
 
-def _multipliers(row: Any) -> Any:
-    values = row[1].response.floquet.values
+class _Motion(NamedTuple):
+    """Steady state, one of its periodic motions, and the motion's number from 1."""
+
+    steady: "SolvedSteady"
+    motion: "SteadyMotion"
+    number: int
+
+
+def _multipliers(row: _Motion) -> Any:
+    values = row.motion.response.floquet.values
     return np.stack([values.real, values.imag], axis=-1)
 
 
 def _signals(of: Any, name: str, dimension: str, unit: str, long_name: str) -> Quantity:
     """One period of the signals of a motion."""
-    return Quantity("", lambda row: of(row[1].histories) or None, name, (dimension, "period_time"), unit, long_name)
+    return Quantity("", lambda row: of(row.motion.histories) or None, name, (dimension, "period_time"), unit, long_name)
 
 
 def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
@@ -104,7 +128,7 @@ def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], uni
             Quantity("", lambda row: list(labels), along, (along,), common=True),
             Quantity(
                 "",
-                lambda row: {name: load[:, rows].T for name, load in row[1].histories.bearing_load.items()} or None,
+                lambda row: {name: load[:, rows].T for name, load in row.motion.histories.bearing_load.items()} or None,
                 f"steady_bearing_{kind}",
                 ("bearing", along, "period_time"),
                 unit,
@@ -115,11 +139,17 @@ def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], uni
 
 
 MOTION = (
-    Quantity("", lambda row: row[2], "steady_motion", (), "1", "motion at operation"),
+    Quantity("", lambda row: row.number, "steady_motion", (), "1", "motion at operation"),
     Quantity(
-        "", lambda row: row[1].histories.times, "period_time", ("period_time",), "s", "time in the period", common=True
+        "",
+        lambda row: row.motion.histories.times,
+        "period_time",
+        ("period_time",),
+        "s",
+        "time in the period",
+        common=True,
     ),
-    Quantity("", lambda row: row[1].response.stable, "steady_stable"),
+    Quantity("", lambda row: row.motion.response.stable, "steady_stable"),
     Quantity("", lambda row: ["real", "imaginary"], "part", ("part",), common=True),
     Quantity(
         "",
@@ -145,32 +175,39 @@ MOTION = (
     ),
     _bearing_load("force", slice(0, 3), "direction", "xyz", "N", "force of the shaft on its bearing"),
     _bearing_load("moment", slice(3, 5), "rotation", _TILTS, "N m", "moment of the shaft on its bearing"),
-    Part("", lambda row: row[1].response, PROOF),
-    Rows("gear_pairs", lambda row: _pairs(row[0], row[1]), PAIR),
-    Rows("bearings", lambda row: row[0].bearing_parts(row[1]), BEARING),
-    Quantity("sensors", lambda row: _sensors(row[0], row[1])),
+    Part("", lambda row: row.motion.response, PROOF),
+    Rows("gear_pairs", lambda row: _pairs(row.steady, row.motion), PAIR),
+    Rows("bearings", lambda row: [NamedParts(*each) for each in row.steady.bearing_parts(row.motion)], BEARING),
+    Quantity("sensors", lambda row: _sensors(row.steady, row.motion)),
 )
-"""Quantities of a periodic motion; a row is the solved state, the motion, and its number from 1."""
+"""Quantities of a periodic motion."""
+
+
+class _Excitation(NamedTuple):
+    """Motion of one group of excitations, and its number of samples."""
+
+    motion: "SteadyMotion"
+    samples: int
 
 
 def _resampled(of: Any, name: str, dimension: str, unit: str, quantity: str) -> Quantity:
     """Declare one period of the signals of a motion, resampled to the most samples of any motion."""
 
-    def values(row: Any) -> dict[str, Any] | None:
-        motion, count = row
-        return {label: motion.resampled(signal, count) for label, signal in of(motion.histories).items()} or None
+    def values(row: _Excitation) -> dict[str, Any] | None:
+        motion, samples = row
+        return {label: motion.resampled(signal, samples) for label, signal in of(motion.histories).items()} or None
 
     whole = f"{quantity} in the motion of each group of excitations"
     return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, whole)
 
 
 EXCITATION = (
-    Quantity("name", lambda row: row[0].excitation, "excitation"),
-    Quantity("", lambda row: row[0].response.period, "excitation_period", (), "s", "period of the motion"),
-    Quantity("", lambda row: row[0].response.stable, "excitation_stable"),
+    Quantity("name", lambda row: row.motion.excitation, "excitation"),
+    Quantity("", lambda row: row.motion.response.period, "excitation_period", (), "s", "period of the motion"),
+    Quantity("", lambda row: row.motion.response.stable, "excitation_stable"),
     Quantity(
         "",
-        lambda row: np.arange(row[1]) / row[1],
+        lambda row: np.arange(row.samples) / row.samples,
         "period_part",
         ("period_part",),
         "1",
@@ -187,24 +224,24 @@ EXCITATION = (
         "m/s2",
         "acceleration along the sensor",
     ),
-    Part("", lambda row: row[0].response, PROOF),
+    Part("", lambda row: row.motion.response, PROOF),
 )
-"""Quantities of the motion of one group of excitations; a row is the motion and its number of samples.
+"""Quantities of the motion of one group of excitations.
 
 The sum of these motions has no period.
 """
 
 
-def _excitations(solved: "SolvedSteady") -> list[Any]:
-    count = max(len(motion.histories.times) for motion in solved.motions)
-    return [(motion, count) for motion in solved.motions]
+def _excitations(solved: "SolvedSteady") -> list[_Excitation]:
+    samples = max(len(motion.histories.times) for motion in solved.motions)
+    return [_Excitation(motion, samples) for motion in solved.motions]
 
 
 SUPERPOSED = (
     Quantity("stable", lambda solved: solved.superposed.stable),
     Rows("excitations", _excitations, EXCITATION, "excitation"),
     Rows("gear_pairs", lambda solved: _pairs(solved, None), PAIR),
-    Rows("bearings", lambda solved: solved.bearing_parts(), BEARING),
+    Rows("bearings", lambda solved: [NamedParts(*each) for each in solved.bearing_parts()], BEARING),
     Quantity("sensors", lambda solved: _sensors(solved, None)),
 )
 """Quantities of superposed motions: figures by the contact law at their sum, and the lines of all groups."""
@@ -250,6 +287,15 @@ LOUDEST = (
 )
 """Quantities of the point of a branch at which a sensor is loudest."""
 
+
+class _Branch(NamedTuple):
+    """Gear mesh, the branch over speed, and the number of the loaded contact."""
+
+    mesh: "GearMesh"
+    curve: "ResponseCurve"
+    contact: int
+
+
 CURVE = (
     Quantity(
         "speed_rpm",
@@ -283,15 +329,15 @@ CURVE = (
     Rows(
         "gear_pairs",
         lambda solved: [
-            (mesh, solved.curve, number)
+            _Branch(mesh, solved.curve, number)
             for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True)
         ],
         (
-            Quantity("driver", lambda row: row[0].driver.name),
-            Quantity("driven", lambda row: row[0].driven.name),
-            Quantity("rms_compression_m", lambda row: row[1].rms_compression[:, row[2]]),
-            Quantity("peak_force_n", lambda row: row[1].peak_force[:, row[2]]),
-            Quantity("contact_loss_fraction", lambda row: row[1].contact_loss[:, row[2]]),
+            Quantity("driver", lambda row: row.mesh.driver.name),
+            Quantity("driven", lambda row: row.mesh.driven.name),
+            Quantity("rms_compression_m", lambda row: row.curve.rms_compression[:, row.contact]),
+            Quantity("peak_force_n", lambda row: row.curve.peak_force[:, row.contact]),
+            Quantity("contact_loss_fraction", lambda row: row.curve.contact_loss[:, row.contact]),
         ),
     ),
     Quantity(
@@ -320,7 +366,7 @@ STEADY = (
     Rows(
         "motions",
         lambda solved: (
-            [(solved, motion, number) for number, motion in enumerate(solved.motions, start=1)]
+            [_Motion(solved, motion, number) for number, motion in enumerate(solved.motions, start=1)]
             if solved.superposed is None
             else ABSENT
         ),

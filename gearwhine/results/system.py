@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,18 +14,30 @@ from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_s
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from coupling.linear.campbell import SystemCampbell, SystemCrossing
+    from coupling.linear.frequency_response import FrequencyResponse
+    from coupling.linear.mesh_excitation import ResponseParts
     from gearwhine.solve.coupled_system import SolvedSystem
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 
 
+class _Mode(NamedTuple):
+    """Coupled system, and the number of a mode from 0."""
+
+    system: "SolvedSystem"
+    mode: int
+
+
 def _of_components(name: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every component in a mode, for the file; ``of`` takes the values of all modes."""
 
-    def values(row: Any) -> dict[str, float]:
-        solved, mode = row
-        names = [component.name for component in solved.machine.system.components]
-        return dict(zip(names, of(solved.modes)[mode].tolist(), strict=True))
+    def values(row: _Mode) -> dict[str, float]:
+        system, mode = row
+        names = [component.name for component in system.machine.system.components]
+        return dict(zip(names, of(system.modes)[mode].tolist(), strict=True))
 
     return Quantity("", values, f"system_{name}", ("machine_component",), "1", long_name)
 
@@ -33,39 +45,39 @@ def _of_components(name: str, long_name: str, of: Any) -> Quantity:
 def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every component, connector and contact in a mode, for the file."""
 
-    def values(row: Any) -> dict[str, float]:
-        solved, mode = row
-        names = [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts]
-        return dict(zip(names, of(solved.modes.shares)[mode].tolist(), strict=True))
+    def values(row: _Mode) -> dict[str, float]:
+        system, mode = row
+        names = [f"{part.kind}: {part.name}" for part in system.modes.shares.parts]
+        return dict(zip(names, of(system.modes.shares)[mode].tolist(), strict=True))
 
     return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name)
 
 
-def _strained_most(row: Any) -> Any:
+def _strained_most(row: _Mode) -> Any:
     """Return the part with the most strain energy in a mode; none in a rigid one, which strains nothing."""
-    solved, mode = row
-    if solved.modes.kinds[mode] == "rigid":
+    modes, mode = row.system.modes, row.mode
+    if modes.kinds[mode] == "rigid":
         return None
-    shares = solved.modes.shares
+    shares = modes.shares
     part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda pair: pair[1])
     return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
 
 
-def _sense(row: Any) -> Any:
+def _sense(row: _Mode) -> Any:
     """Return the circularity of the rotor that a mode bends; absent from a mode of something else."""
-    solved, mode = row
-    names = [component.name for component in solved.machine.system.components]
-    if solved.modes.kinds[mode] != "rotor" or solved.modes.where[mode] not in names:
+    modes, mode = row.system.modes, row.mode
+    names = [component.name for component in row.system.machine.system.components]
+    if modes.kinds[mode] != "rotor" or modes.where[mode] not in names:
         return ABSENT
-    whirl = float(solved.modes.whirl[mode][names.index(solved.modes.where[mode])])
+    whirl = float(modes.whirl[mode][names.index(modes.where[mode])])
     return ABSENT if np.isnan(whirl) else whirl
 
 
 MODE = (
-    Quantity("", lambda row: row[1] + 1, "system_mode", unit="1", long_name="number of the coupled mode"),
+    Quantity("", lambda row: row.mode + 1, "system_mode", unit="1", long_name="number of the coupled mode"),
     Quantity(
         "frequency_hz",
-        lambda row: row[0].modes.frequencies_hz[row[1]],
+        lambda row: row.system.modes.frequencies_hz[row.mode],
         "system_frequency",
         (),
         "Hz",
@@ -75,7 +87,7 @@ MODE = (
     ),
     Quantity(
         "damping_ratio",
-        lambda row: row[0].modes.damping_ratios[row[1]],
+        lambda row: row.system.modes.damping_ratios[row.mode],
         "system_damping_ratio",
         (),
         "1",
@@ -83,10 +95,10 @@ MODE = (
         heading="damping ratio",
         shown="z.4f",
     ),
-    Quantity("damped_frequency_hz", lambda row: abs(row[0].modes.eigenvalues[row[1]].imag) / HERTZ),
+    Quantity("damped_frequency_hz", lambda row: abs(row.system.modes.eigenvalues[row.mode].imag) / HERTZ),
     Quantity(
         "kind",
-        lambda row: row[0].modes.kinds[row[1]],
+        lambda row: row.system.modes.kinds[row.mode],
         "system_kind",
         (),
         "",
@@ -94,8 +106,8 @@ MODE = (
         heading="kind",
         shown=lambda row: _named(row),
     ),
-    Quantity("where", lambda row: row[0].modes.where[row[1]], "system_where", (), "", "where it moves most"),
-    Quantity("energy", lambda row: row[0].modes.energy[row[1]]),
+    Quantity("where", lambda row: row.system.modes.where[row.mode], "system_where", (), "", "where it moves most"),
+    Quantity("energy", lambda row: row.system.modes.energy[row.mode]),
     Quantity("strained_most", _strained_most),
     Quantity("whirl", _sense),
     _of_components("kinetic_share", "share of the kinetic energy", lambda modes: modes.shares.kinetic),
@@ -103,7 +115,7 @@ MODE = (
     _of_parts("damping_share", "part of the damping ratio", lambda shares: shares.damping),
     _of_components("whirl", "bending: 1 counter-clockwise, -1 clockwise circles", lambda modes: modes.whirl),
 )
-"""Quantities of a mode; a row is the solved system and the number of the mode."""
+"""Quantities of a mode."""
 
 
 def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
@@ -160,7 +172,7 @@ STABILITY = (
     ),
     Part(
         "least_damped",
-        lambda solved: None if solved.stability.least_damped is None else (solved, solved.stability.least_damped),
+        lambda solved: None if solved.stability.least_damped is None else _Mode(solved, solved.stability.least_damped),
         tuple(
             replace(quantity, name="")
             for quantity in MODE
@@ -168,6 +180,13 @@ STABILITY = (
         ),
     ),
 )
+
+
+class _Response(NamedTuple):
+    """Frequency response, and its abscissa: frequencies [Hz], or absolute speeds of the first driver [rpm]."""
+
+    response: "FrequencyResponse"
+    along: "npt.NDArray[np.float64]"
 
 
 def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
@@ -185,34 +204,36 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
             ("_phase", np.angle, "rad", f"phase of the {quantity}"),
         ):
 
-            def values(row: Any, part: Any = part) -> dict[str, Any] | None:
-                return {label: part(curve) for label, curve in of(row[0]).items()} or None
+            def values(row: _Response, part: Any = part) -> dict[str, Any] | None:
+                return {label: part(curve) for label, curve in of(row.response).items()} or None
 
             yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, long_name)
 
     def loads(columns: Any) -> Any:
         return lambda response: {label: load[:, columns] for label, load in response.bearing_load.items()}
 
-    def peaks(row: Any, curve: Any) -> list[dict[str, float]]:
+    def peaks(row: _Response, curve: Any) -> list[dict[str, float]]:
         response, along = row
         return [{key: along[place], "amplitude": abs(curve[place])} for place in response.peaks(curve)]
 
     def along_axes(first: int, axes: str) -> Any:
         return lambda row: {
             label: {axis: peaks(row, load[:, first + place]) for place, axis in enumerate(axes)}
-            for label, load in row[0].bearing_load.items()
+            for label, load in row.response.bearing_load.items()
         }
 
     force = "force of the shaft on its bearing"
     return (
-        Quantity("excitation", lambda row: row[0].excitation),
-        Quantity("per", lambda row: row[0].unit),
-        Quantity("mesh_force_n", lambda row: {label: peaks(row, force) for label, force in row[0].mesh_force.items()}),
+        Quantity("excitation", lambda row: row.response.excitation),
+        Quantity("per", lambda row: row.response.unit),
+        Quantity(
+            "mesh_force_n", lambda row: {label: peaks(row, force) for label, force in row.response.mesh_force.items()}
+        ),
         Quantity("bearing_force_n", along_axes(0, "xyz")),
         Quantity("bearing_moment_n_m", along_axes(3, "xy")),
         Quantity(
             "sensor_acceleration_m_per_s2",
-            lambda row: {label: peaks(row, signal) for label, signal in row[0].sensor_acceleration.items()},
+            lambda row: {label: peaks(row, signal) for label, signal in row.response.sensor_acceleration.items()},
         ),
         *curves(
             lambda response: response.sensor_acceleration,
@@ -235,16 +256,16 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
         *curves(
             lambda response: response.mesh_force, "mesh", "force", (), "N", "gear-mesh force along the line of action"
         ),
-        Quantity("", lambda row: ["x", "y"] if row[0].bearing_load else None, "plane", ("plane",), common=True),
+        Quantity("", lambda row: ["x", "y"] if row.response.bearing_load else None, "plane", ("plane",), common=True),
     )
 
 
 TRANSMISSIBILITY = (
-    Quantity("", lambda row: row[0].excitation, "mesh_error"),
-    Quantity("", lambda row: row[1], "response_frequency", ("response_frequency",), "Hz", "frequency", common=True),
+    Quantity("", lambda row: row.response.excitation, "mesh_error"),
+    Quantity("", lambda row: row.along, "response_frequency", ("response_frequency",), "Hz", "frequency", common=True),
     *_response("transmissibility", "response_frequency", "frequency_hz", "m-1"),
 )
-"""Quantities of the response to the error of one mesh; a row is the response and its frequencies [Hz]."""
+"""Quantities of the response to the error of one mesh."""
 
 _PARTS = (
     ("by_transmission_error", "by_error", "by transmission error alone"),
@@ -253,29 +274,34 @@ _PARTS = (
 )
 
 
+class _Line(NamedTuple):
+    """Coupled system, and its response at a mesh harmonic."""
+
+    system: "SolvedSystem"
+    line: "ResponseParts"
+
+
 def _line_part(name: str, attribute: str, part: str) -> Quantity:
     """Declare the amplitudes of the sensors by a part of a line's motion."""
 
-    def of(row: Any) -> dict[str, float]:
-        solved, line = row
-        motion = line.frequency**2 * getattr(line, attribute)
-        return {sensor: abs(sensor_row @ motion) for sensor, sensor_row in solved.machine.sensor_rows.items()}
+    def of(row: _Line) -> dict[str, float]:
+        motion = row.line.frequency**2 * getattr(row.line, attribute)
+        return {sensor: abs(sensor_row @ motion) for sensor, sensor_row in row.system.machine.sensor_rows.items()}
 
     long_name = f"amplitude of the sensor's acceleration at a mesh harmonic, {part}"
     return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", long_name)
 
 
-def _line_cause(row: Any) -> str:
+def _line_cause(row: _Line) -> str:
     """Return the mesh harmonics that drive a line, in words."""
-    solved, line = row
-    contacts = solved.machine.system.contacts
-    return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in line.causes)
+    contacts = row.system.machine.system.contacts
+    return " and ".join(f"{harmonic}× {contacts[number].name}" for number, harmonic in row.line.causes)
 
 
 LINE = (
     Quantity(
         "frequency_hz",
-        lambda row: row[1].frequency / HERTZ,
+        lambda row: row.line.frequency / HERTZ,
         "system_line_frequency",
         (),
         "Hz",
@@ -284,33 +310,43 @@ LINE = (
     Quantity("cause", _line_cause, "system_line_cause", (), "", "mesh harmonics that drive the line"),
     Part("sensor_acceleration_m_per_s2", lambda row: row, tuple(_line_part(*part) for part in _PARTS)),
 )
-"""Quantities of a mesh harmonic at operation; a row is the solved system and its response there."""
+"""Quantities of a mesh harmonic at operation."""
 
 UNBALANCE = (
-    Quantity("", lambda row: row[0].excitation, "unbalance_of"),
+    Quantity("", lambda row: row.response.excitation, "unbalance_of"),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
-"""Quantities of the response to one rotor's unbalances; a row is the response and the first driver's speeds [rpm].
+"""Quantities of the response to one rotor's unbalances over absolute speeds of the first driver."""
 
-The speeds are absolute values.
-"""
+
+class _Crossing(NamedTuple):
+    """Crossing of the Campbell diagram, and the speed of operation [rad/s]."""
+
+    crossing: "SystemCrossing"
+    operation: float
+
 
 CROSSING = (
     Quantity(
         "speed_rpm",
-        lambda row: row[0].speed * RPM,
+        lambda row: row.crossing.speed * RPM,
         "system_crossing_speed",
         (),
         "rpm",
         "speed of the first driver at the crossing",
     ),
-    Quantity("line", lambda row: row[0].line.name, "system_crossing_line", (), "", "order"),
+    Quantity("line", lambda row: row.crossing.line.name, "system_crossing_line", (), "", "order"),
     Quantity(
-        "order", lambda row: row[0].line.order, "system_crossing_order", (), "1", "over the speed of the first driver"
+        "order",
+        lambda row: row.crossing.line.order,
+        "system_crossing_order",
+        (),
+        "1",
+        "over the speed of the first driver",
     ),
     Quantity(
         "frequency_hz",
-        lambda row: row[0].eigenvalue.imag / HERTZ,
+        lambda row: row.crossing.eigenvalue.imag / HERTZ,
         "system_crossing_frequency",
         (),
         "Hz",
@@ -318,64 +354,87 @@ CROSSING = (
     ),
     Quantity(
         "damping_ratio",
-        lambda row: row[0].damping_ratio,
+        lambda row: row.crossing.damping_ratio,
         "system_crossing_damping_ratio",
         (),
         "1",
         "damping ratio at the crossing",
     ),
-    Quantity("branch", lambda row: row[0].branch),
-    Quantity("kind", lambda row: row[0].kind),
-    Quantity("where", lambda row: row[0].where),
-    Quantity("teeth", lambda row: row[0].teeth),
-    Quantity("margin", lambda row: row[0].speed / row[1] - 1.0),
+    Quantity("branch", lambda row: row.crossing.branch),
+    Quantity("kind", lambda row: row.crossing.kind),
+    Quantity("where", lambda row: row.crossing.where),
+    Quantity("teeth", lambda row: row.crossing.teeth),
+    Quantity("margin", lambda row: row.crossing.speed / row.operation - 1.0),
 )
-"""Quantities of a crossing of the Campbell diagram; a row is the crossing and the speed of operation [rad/s]."""
+"""Quantities of a crossing of the Campbell diagram."""
 
 
 def _diagram(name: str, of: Any, unit: str, long_name: str) -> Quantity:
     return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name)
 
 
+class _Campbell(NamedTuple):
+    """Campbell diagram, and the speed of operation [rad/s]."""
+
+    diagram: "SystemCampbell"
+    operation: float
+
+
+class _Branch(NamedTuple):
+    """Campbell diagram, and the number of a branch from 0."""
+
+    diagram: "SystemCampbell"
+    branch: int
+
+
 CAMPBELL = (
     Quantity(
         "speeds_rpm",
-        lambda row: row[0].speeds * RPM,
+        lambda row: row.diagram.speeds * RPM,
         "system_campbell_speed",
         ("system_speed",),
         "rpm",
         "speed of the first driver",
     ),
-    _diagram("frequency", lambda row: row[0].frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"),
-    _diagram("damping_ratio", lambda row: row[0].damping_ratios, "1", "damping ratio of the coupled modes over speed"),
-    _diagram("whirl", lambda row: row[0].whirl, "1", "sense of the rotor that bends most, 1 counter-clockwise"),
-    _diagram("teeth", lambda row: row[0].teeth, "1", "share of the gear meshes in the strain energy"),
-    _diagram("kind", lambda row: row[0].kinds.astype(str), "", "kind"),
-    _diagram("where", lambda row: row[0].where.astype(str), "", "where"),
+    _diagram(
+        "frequency", lambda row: row.diagram.frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"
+    ),
+    _diagram(
+        "damping_ratio", lambda row: row.diagram.damping_ratios, "1", "damping ratio of the coupled modes over speed"
+    ),
+    _diagram("whirl", lambda row: row.diagram.whirl, "1", "sense of the rotor that bends most, 1 counter-clockwise"),
+    _diagram("teeth", lambda row: row.diagram.teeth, "1", "share of the gear meshes in the strain energy"),
+    _diagram("kind", lambda row: row.diagram.kinds.astype(str), "", "kind"),
+    _diagram("where", lambda row: row.diagram.where.astype(str), "", "where"),
     Rows(
         "branches",
-        lambda row: [(row[0], branch) for branch in range(row[0].eigenvalues.shape[1])],
+        lambda row: [_Branch(row.diagram, branch) for branch in range(row.diagram.eigenvalues.shape[1])],
         (
-            Quantity("frequency_hz", lambda row: row[0].frequencies_hz[:, row[1]]),
-            Quantity("damping_ratio", lambda row: row[0].damping_ratios[:, row[1]]),
-            Quantity("kind", lambda row: row[0].kinds[:, row[1]]),
-            Quantity("where", lambda row: row[0].where[:, row[1]]),
+            Quantity("frequency_hz", lambda row: row.diagram.frequencies_hz[:, row.branch]),
+            Quantity("damping_ratio", lambda row: row.diagram.damping_ratios[:, row.branch]),
+            Quantity("kind", lambda row: row.diagram.kinds[:, row.branch]),
+            Quantity("where", lambda row: row.diagram.where[:, row.branch]),
         ),
     ),
     Quantity(
-        "lines", lambda row: [{"name": line.name, "kind": line.kind, "order": line.order} for line in row[0].lines]
+        "lines", lambda row: [{"name": line.name, "kind": line.kind, "order": line.order} for line in row.diagram.lines]
     ),
-    Rows("crossings", lambda row: [(crossing, row[1]) for crossing in row[0].crossings], CROSSING, "system_crossing"),
-    Quantity("unsettled", lambda row: row[0].unsettled),
+    Rows(
+        "crossings",
+        lambda row: [_Crossing(crossing, row.operation) for crossing in row.diagram.crossings],
+        CROSSING,
+        "system_crossing",
+    ),
+    Quantity("unsettled", lambda row: row.diagram.unsettled),
 )
-"""Quantities of the Campbell diagram; a row is the diagram and the speed of operation [rad/s]."""
+"""Quantities of the Campbell diagram."""
 
 
 def _unbalance(solved: "SolvedSystem") -> Any:
     if solved.unbalance_speeds is None:
         return ABSENT
     along = np.abs(solved.unbalance_speeds * RPM)
-    return [(response, along) for response in solved.unbalance]
+    return [_Response(response, along) for response in solved.unbalance]
 
 
 SYSTEM = (
@@ -398,19 +457,19 @@ SYSTEM = (
         "",
         "component, connector or contact",
     ),
-    Rows("modes", lambda solved: [(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
+    Rows("modes", lambda solved: [_Mode(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
     Quantity("coordinates", lambda solved: solved.machine.system.size),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
     Part("stability", lambda solved: solved, STABILITY),
     Rows(
         "transmissibility",
-        lambda solved: [(response, response.frequencies / HERTZ) for response in solved.responses],
+        lambda solved: [_Response(response, response.frequencies / HERTZ) for response in solved.responses],
         TRANSMISSIBILITY,
         "mesh_error",
     ),
     Rows(
         "mesh_lines",
-        lambda solved: [(solved, line) for line in solved.lines] if solved.lines else ABSENT,
+        lambda solved: [_Line(solved, line) for line in solved.lines] if solved.lines else ABSENT,
         LINE,
         "system_line",
     ),
@@ -422,7 +481,7 @@ SYSTEM = (
     Part("static_error", lambda solved: static_error(solved.housing), STATIC_ERROR),
     Part(
         "campbell",
-        lambda solved: ABSENT if solved.campbell is None else (solved.campbell, solved.speed),
+        lambda solved: ABSENT if solved.campbell is None else _Campbell(solved.campbell, solved.speed),
         CAMPBELL,
     ),
     Quantity(
