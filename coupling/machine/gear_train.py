@@ -415,14 +415,25 @@ def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]
         Signed speed of each rotor [rad/s].
     """
     senses = {name: turning_sense(speed) for name, speed in speeds.items() if speed != 0.0}
-    left = list(dict.fromkeys(pairs))
-    while left:
-        driver, driven = next((pair for pair in left if not senses.keys().isdisjoint(pair)), left[0])
-        left.remove((driver, driven))
+    for number in connected_order(pairs, senses):
+        driver, driven = pairs[number]
         if driver not in senses:
             senses[driver] = -senses[driven] if driven in senses else turning_sense(speeds[driver])
         senses.setdefault(driven, -senses[driver])
     return [senses[driver] for driver, _ in pairs]
+
+
+def connected_order(pairs: Sequence[tuple[str, str]], known: Iterable[str] = ()) -> Iterator[int]:
+    """Yield indices of all pairs, first those that share a name with a pair before; ``known`` names come before all.
+
+    The first of the others begins a new group of connected pairs.
+    """
+    named, left = set(known), list(range(len(pairs)))
+    while left:
+        number = next((number for number in left if not named.isdisjoint(pairs[number])), left[0])
+        left.remove(number)
+        named.update(pairs[number])
+        yield number
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:
@@ -573,8 +584,10 @@ def mesh_phases(
         Where a loop of gears cannot be assembled.
     """
     angles: dict[str, float] = {}
-    phases = []
-    for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
+    rows = list(zip(drivers, drivens, geometries, centre_lines, senses, strict=True))
+    phases = [0.0] * len(rows)
+    for number in connected_order([row[:2] for row in rows]):
+        driver, driven, pair, line, sense = rows[number]
         at_zero = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
         pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
         if driver in angles:
@@ -593,5 +606,5 @@ def mesh_phases(
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "
                     "axis, or change a number of teeth"
                 )
-        phases.append(phase)
+        phases[number] = phase
     return phases
