@@ -318,19 +318,30 @@ def is_balanced(entering: float, leaving: float) -> bool:
     return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
 
 
+def lacks_input(torque: float, outputs: Sequence[Output]) -> bool:
+    """Whether outputs have torques without an input, even if they balance: they are proportions of an input."""
+    return torque == 0.0 and any(output.torque for output in outputs)
+
+
 def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[Output]) -> None:
     """Refuse outputs whose power is not the input power; see :func:`shared_torques`.
 
     Raises
     ------
     CouplingError
-        Where only some outputs have torques, or their power is off by more than one in a hundred.
+        Where only some outputs have torques, there is no input for them, or their power is off by more than one in a
+        hundred.
     """
     with_torque = [output for output in outputs if output.torque is not None]
     if not with_torque:
         return
     if len(with_torque) < len(outputs):
         raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
+    if lacks_input(torque, outputs):
+        raise CouplingError(
+            "outputs with torques, and an input torque of 0; expected the torque that drives them, as the input: where "
+            "they drive each other, on the shaft that gives the power, a gear of which is the first pair's driver"
+        )
     leaving = output_torque(train, outputs)
     if not is_balanced(torque, leaving):
         raise CouplingError(
