@@ -283,7 +283,7 @@ def unbalance_response(
     rotor: str,
     contact: ContactState | None = None,
 ) -> FrequencyResponse:
-    """Unbalance response of a rotor with its own unbalances, over the speed of the leading rotor.
+    """Unbalance response of a rotor with its own unbalances alone, over the speed of the leading rotor.
 
     The machine is assembled at each speed: gyroscopic terms and bearings with tables follow.
 
@@ -317,9 +317,9 @@ def unbalance_response(
     rows = _rows_of(machine.system, number)
     parts = []
     for at_speed, w in zip(at_speeds, frequencies, strict=True):
-        # Other rotors of the same speed have loads of that frequency too, on other coordinates.
+        # A bow or a ripple of torque may have the same frequency; unbalances of other rotors are on other coordinates.
         load = sum(
-            (each.amplitude for each in at_speed.system.harmonic_loads if each.frequency == w),
+            (each.amplitude for each in at_speed.system.harmonic_loads if each.follows == "unbalance"),
             np.zeros(at_speed.system.size, dtype=np.complex128),
         )
         alone = np.where(rows, load, 0.0)

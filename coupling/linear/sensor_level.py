@@ -24,7 +24,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError
-from coupling.gears import LoadedMesh, ToothContact, loaded_transmission_error
+from coupling.gears import LoadedMesh, ToothContact
 from coupling.linear.mesh_excitation import MeshHarmonicModel
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -69,7 +69,7 @@ class SensorLevel:
             )
 
     def of(self, mesh: LoadedMesh, contact: ToothContact) -> float:
-        """Level with the flanks of ``contact``, all teeth alike [m/s²]."""
+        """Level with the flanks of ``contact``, those that carry, all teeth alike [m/s²]."""
         total = sum((self.weights[n] * abs(a)) ** 2 for n, a in self.accelerations(mesh, contact).items())
         return math.sqrt(0.5 * total)
 
@@ -79,14 +79,12 @@ class SensorLevel:
         Parameters
         ----------
         mesh : LoadedMesh
-            Loaded mesh of the flanks over one mesh period.
+            Loaded mesh of the flanks that carry over one mesh period.
         contact : ToothContact
-            Contact law of the flanks.
+            Contact law of these flanks by their own phase, see
+            :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
-        if model.machine.flanks(number)[1]:
-            contact = contact.back_flanks
-            mesh = loaded_transmission_error(contact, force, mesh.phases)
         stiffness, direction = mesh.mean_mesh_stiffness, model.machine.system.contacts[number].direction
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
         shuttling = model.shuttling_loads(number, contact, force)

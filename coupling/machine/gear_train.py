@@ -318,19 +318,30 @@ def is_balanced(entering: float, leaving: float) -> bool:
     return abs(leaving - entering) <= LARGEST_IMBALANCE * max(abs(entering), abs(leaving))
 
 
+def lacks_input(torque: float, outputs: Sequence[Output]) -> bool:
+    """Whether outputs have torques without an input, even if they balance: they are proportions of an input."""
+    return torque == 0.0 and any(output.torque for output in outputs)
+
+
 def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[Output]) -> None:
     """Refuse outputs whose power is not the input power; see :func:`shared_torques`.
 
     Raises
     ------
     CouplingError
-        Where only some outputs have torques, or their power is off by more than one in a hundred.
+        Where only some outputs have torques, there is no input for them, or their power is off by more than one in a
+        hundred.
     """
     with_torque = [output for output in outputs if output.torque is not None]
     if not with_torque:
         return
     if len(with_torque) < len(outputs):
         raise CouplingError("outputs of which some have a torque and some have none; expected all or none")
+    if lacks_input(torque, outputs):
+        raise CouplingError(
+            "outputs with torques, and an input torque of 0; expected the torque that drives them, as the input: where "
+            "they drive each other, on the shaft that gives the power, a gear of which is the first pair's driver"
+        )
     leaving = output_torque(train, outputs)
     if not is_balanced(torque, leaving):
         raise CouplingError(
@@ -415,14 +426,25 @@ def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]
         Signed speed of each rotor [rad/s].
     """
     senses = {name: turning_sense(speed) for name, speed in speeds.items() if speed != 0.0}
-    left = list(dict.fromkeys(pairs))
-    while left:
-        driver, driven = next((pair for pair in left if not senses.keys().isdisjoint(pair)), left[0])
-        left.remove((driver, driven))
+    for number in connected_order(pairs, senses):
+        driver, driven = pairs[number]
         if driver not in senses:
             senses[driver] = -senses[driven] if driven in senses else turning_sense(speeds[driver])
         senses.setdefault(driven, -senses[driver])
     return [senses[driver] for driver, _ in pairs]
+
+
+def connected_order(pairs: Sequence[tuple[str, str]], known: Iterable[str] = ()) -> Iterator[int]:
+    """Yield indices of all pairs, first those that share a name with a pair before; ``known`` names come before all.
+
+    The first of the others begins a new group of connected pairs.
+    """
+    named, left = set(known), list(range(len(pairs)))
+    while left:
+        number = next((number for number in left if not named.isdisjoint(pairs[number])), left[0])
+        left.remove(number)
+        named.update(pairs[number])
+        yield number
 
 
 def require_meshing(meshes: Sequence[GearMesh], starts: Mapping[str, float], speeds: Mapping[str, float]) -> None:
@@ -590,8 +612,10 @@ def mesh_phases(
         Where a loop of gears cannot be assembled.
     """
     angles: dict[str, float] = {}
-    phases = []
-    for driver, driven, pair, line, sense in zip(drivers, drivens, geometries, centre_lines, senses, strict=True):
+    rows = list(zip(drivers, drivens, geometries, centre_lines, senses, strict=True))
+    phases = [0.0] * len(rows)
+    for number in connected_order([row[:2] for row in rows]):
+        driver, driven, pair, line, sense = rows[number]
         met = meshing_rotations(pair, 0.0, centre_line_angle=line, sense=sense)
         # A pair enters at the middle of the common face; there helical teeth stand turned from the middle of their own.
         at_zero = [
@@ -615,5 +639,5 @@ def mesh_phases(
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "
                     "axis, or change a number of teeth"
                 )
-        phases.append(phase)
+        phases[number] = phase
     return phases

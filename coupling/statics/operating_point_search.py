@@ -177,6 +177,11 @@ class _StaticModel:
                 raise CouplingError(f"{self.housing.name}: expected its participation in rigid motions, for its weight")
             rows = slice(self.housing_first, self.housing_first + self.housing.size)
             load[rows] += self.housing.participation[:, :3] @ np.array(self.gravity)
+        for one in self.bearings:
+            bearing = one.mounted.bearing
+            if bearing.pedestal is not None:
+                first = self.pedestal_first[bearing.name]
+                load[first : first + 2] += bearing.pedestal.mass * np.array(self.gravity[:2])
         return load
 
     def _part(self, shaft: str) -> StaticShaftPart:

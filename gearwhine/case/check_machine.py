@@ -430,6 +430,13 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
                 yield Finding(("operation", "output", place, "rotor"), expected)
     if any(output.rotor not in ratios for output in operation.output):
         return
+    if _lacks_input(operation):
+        expected = (
+            "the torque that drives the outputs; where they drive each other, list first a gear_pair whose driver is "
+            "on the rotor that gives the power"
+        )
+        yield Finding(("operation", "torque"), expected)
+        return
     if not draft.gear_pairs and len(shafts) > 1:
         yield from _check_each_shaft(draft, operation)
         return
@@ -437,6 +444,13 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     yield from imbalances
     if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
         yield from _check_flow(draft, operation)
+
+
+def _lacks_input(operation: Operation) -> bool:
+    """Whether outputs have torques and the input has none."""
+    from coupling.machine.gear_train import lacks_input
+
+    return lacks_input(operation.torque, [output.build() for output in operation.output])
 
 
 def _check_balance(operation: Operation, train: GearTrain) -> Iterator[Finding]:

@@ -341,7 +341,8 @@ class Operation(Table):
     gravity: tuple[Acceleration, Acceleration, Acceleration] | None = None
     """Acceleration of gravity along x, y, z. Default: none."""
     output: tuple[Output, ...] = Field(default=(), max_length=1000)
-    """Torques taken off. Default: the rotors that drive no other share the power equally."""
+    """Torques taken off, in proportion to `torque`, without which none can be given. Default: the rotors that drive no
+    other share the power equally."""
     force: tuple[ShaftForce, ...] = Field(default=(), max_length=1000)
     """Constant forces on the shafts, such as the pull of a belt."""
 

@@ -61,7 +61,7 @@ class MeshPeriodCurves:
     Attributes
     ----------
     phases : ndarray, shape (n,)
-        Parts of the mesh period.
+        Parts of the mesh period of the flanks that carry; back flanks pass through theirs in the opposite order.
     mesh : LoadedMesh
         Loaded mesh under the case's torque.
     stiffness : ndarray, shape (n,)
@@ -135,7 +135,7 @@ class PairAnalysis:
     @cached_property
     def stiffness(self) -> FloatArray:
         """Mesh stiffness of all pairs on the path of contact at the phases of ``solved.static`` [N/m], (n,)."""
-        return mesh_stiffness(self.solved.contact, self.solved.static.phases)
+        return mesh_stiffness(self.solved.carrying_flanks, self.solved.static.phases)
 
     @property
     def flanks(self) -> tuple[FloatArray, FloatArray]:
@@ -157,7 +157,7 @@ class PairAnalysis:
         static = self.solved.static
         if static.force == 0.0 or not self.solved.has_single_pairs:
             return None
-        present = self.solved.contact.pairs(static.phases).present
+        present = self.solved.carrying_flanks.pairs(static.phases).present
         order = np.argsort(static.positions[present], kind="stable")
         return static.positions[present][order], static.load_shares[present][order]
 
@@ -166,7 +166,8 @@ class PairAnalysis:
         """The largest Hertzian pressure on the path of contact [Pa], and the driver's roll angle there [rad]."""
         if self.pressure is None:
             return None
-        geometry, faces, positions = self.solved.geometry, self.solved.contact.faces, self.solved.static.positions
+        geometry, faces = self.solved.geometry, self.solved.carrying_flanks.faces
+        positions = self.solved.static.positions
         if faces is not None:
             positions = positions[..., None] + faces.shift
         pressure = np.nan_to_num(self.pressure, nan=0.0, posinf=np.inf)
@@ -176,7 +177,8 @@ class PairAnalysis:
     def curves(self) -> MeshPeriodCurves:
         """Return the pair's curves at even phases of the mesh period."""
         phases = np.arange(_PHASES) / _PHASES
-        contact, faces = self.solved.contact, self.solved.contact.faces
+        contact = self.solved.carrying_flanks
+        faces = contact.faces
         mesh = loaded_transmission_error(contact, self.solved.static.force, phases)
         absent = ~contact.pairs(phases).present
         pressure = np.full(mesh.positions.shape, np.nan)
@@ -237,7 +239,8 @@ class PairAnalysis:
     @property
     def corner_force(self) -> float:
         """The largest force that a pair's corners carry, outside its path of contact [N]."""
-        static, end, faces = self.solved.static, self.solved.geometry.contact_ratio, self.solved.contact.faces
+        static, end = self.solved.static, self.solved.geometry.contact_ratio
+        faces = self.solved.carrying_flanks.faces
         if faces is None or static.line_loads is None:
             outside = (static.positions < 0.0) | (static.positions > end)
             return float(static.pair_forces[outside].max(initial=0.0))
@@ -263,23 +266,23 @@ def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:
 
 
 def _analysis(case: Case, entry: GivenPair, pair: LoadedGearPair, misalignment: TakenMisalignment) -> PairAnalysis:
-    unloaded = first_touch(pair.contact, pair.static.phases)
+    unloaded = first_touch(pair.carrying_flanks, pair.static.phases)
     driver, driven = case.gear_named(pair.pair.driver), case.gear_named(pair.pair.driven)
     widths_given = driver.face_width is not None, driven.face_width is not None
     if pair.static.force == 0.0 or not pair.has_single_pairs or not all(widths_given):
         return PairAnalysis(entry, pair, misalignment, widths_given, unloaded, None, None)
-    pressure = mesh_pressure(pair.geometry, pair.contact, pair.static)
+    pressure = mesh_pressure(pair.geometry, pair.carrying_flanks, pair.static)
     return PairAnalysis(entry, pair, misalignment, widths_given, unloaded, pressure, _pitch_pressure(pair))
 
 
 def _pitch_pressure(pair: LoadedGearPair) -> float | None:
     """Return the largest pressure as a pair, or a slice of its face, passes the pitch point [Pa]; None off the path."""
-    pitch, faces = pair.geometry.pitch_point_position, pair.contact.faces
+    pitch, contact = pair.geometry.pitch_point_position, pair.carrying_flanks
     if not 0.0 <= pitch < pair.geometry.contact_ratio:
         return None
-    shift = np.zeros(1) if faces is None else faces.shift
-    mesh = loaded_transmission_error(pair.contact, pair.static.force, np.unique((pitch - shift) % 1.0))
-    pressure = mesh_pressure(pair.geometry, pair.contact, mesh).reshape(*mesh.positions.shape, -1)
+    shift = np.zeros(1) if contact.faces is None else contact.faces.shift
+    mesh = loaded_transmission_error(contact, pair.static.force, np.unique((pitch - shift) % 1.0))
+    pressure = mesh_pressure(pair.geometry, contact, mesh).reshape(*mesh.positions.shape, -1)
     passing = np.isclose(mesh.positions[..., None] + shift, pitch, rtol=0.0, atol=1e-9)
     return float(pressure[passing].max())
 
@@ -308,7 +311,7 @@ def solve_over_torques(
 
 
 def _harris_map(pair: LoadedGearPair) -> HarrisMap:
-    contact = pair.contact
+    contact = pair.carrying_flanks
     if contact.hunting_period > 1:
         contact = tooth_contact(
             _alike(pair.geometry), pair.model, corner_contact=contact.has_corner_contact, faces=contact.faces
@@ -318,7 +321,7 @@ def _harris_map(pair: LoadedGearPair) -> HarrisMap:
 
 def _best_relief(pair: LoadedGearPair, aim: ReliefAim) -> ReliefOptimum:
     relief = pair.geometry.driver.tip_relief or pair.geometry.driven.tip_relief
-    geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.contact.faces
+    geometry, force, faces = _alike(pair.geometry), pair.static.force, pair.carrying_flanks.faces
     corners = pair.contact.has_corner_contact
     return optimal_tip_relief(
         geometry,

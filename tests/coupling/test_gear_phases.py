@@ -1,5 +1,6 @@
 """Pairs that share a gear mesh where its teeth put them: its outlines, drawn for either pair, agree."""
 
+import itertools
 import math
 
 import numpy as np
@@ -71,6 +72,29 @@ def test_by_hand() -> None:
         assert phases[1] % 1.0 == pytest.approx(part, abs=1e-9) or phases[1] % 1.0 == pytest.approx(
             1.0 + part, abs=1e-9
         )
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(3))))
+def test_a_chain_is_in_mesh_in_any_order_of_its_pairs(order: tuple[int, ...]) -> None:
+    """An open chain can always be assembled, and both pairs of an idler draw its teeth at the same place."""
+    chain = [gear(name, count) for name, count in (("a", 21), ("b", 26), ("c", 31), ("d", 24))]
+    lines, senses = (0.0, 0.7, -0.4), (1, -1, 1)
+    pairs = [pair(chain[n], chain[n + 1]) for n in order]
+    listed = mesh_phases(
+        [chain[n].name for n in order],
+        [chain[n + 1].name for n in order],
+        pairs,
+        [lines[n] for n in order],
+        [senses[n] for n in order],
+    )
+    drawn = {
+        n: pair_outlines(geometry, phase, centre_line_angle=lines[n], sense=senses[n], points=12)
+        for n, geometry, phase in zip(order, pairs, listed, strict=True)
+    }
+    for n in (0, 1):
+        away = pair(chain[n], chain[n + 1]).working_centre_distance
+        centre = away * np.array([math.cos(lines[n]), math.sin(lines[n])])
+        assert same_outline(drawn[n][1] - centre, drawn[n + 1][0]) < 1e-9
 
 
 @pytest.mark.parametrize("whole", range(9, 26))

@@ -108,6 +108,11 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
     ("one shaft", {"gear_pairs": [GearPair("a", "b"), GearPair("b", "c")]}, "both gears are on shaft 'middle'"),
     ("unknown gear", {"gear_pairs": [GearPair("a", "x")]}, "no gear 'x'; expected one of 'a', 'b', 'c', 'd'"),
     ("output", {"outputs": [Output("slow", 10.0)]}, "expected outputs that balance the input torque of 40 N m"),
+    (
+        "no input",
+        {"torque": 0.0, "outputs": [Output("middle", 100.0), Output("slow", -120.0)]},
+        "an input torque of 0; expected the torque that drives them",
+    ),
     ("some torques", {"outputs": [Output("slow", 96.0), Output("middle")]}, "expected all or none"),
     ("nowhere", {"outputs": [Output("x", 96.0)]}, "an output: no shaft 'x'"),
     ("no shafts", {"shafts": []}, "a machine without shafts"),

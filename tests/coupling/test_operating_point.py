@@ -18,10 +18,11 @@ from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, 
 from coupling.gears.contact.face_slices import face_slices
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.machine.components import HousingComponent
+from coupling.machine.components import HousingComponent, PedestalComponent
+from coupling.machine.parts import Driving
 from coupling.statics.operating_point import CAUSES
 from coupling.statics.static_equilibrium import static_equilibrium
-from rotors import EquilibriumError, Rotor, RotorError, Segment
+from rotors import EquilibriumError, Pedestal, Rotor, RotorError, Segment
 from rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
@@ -292,6 +293,27 @@ def test_forces_move_bearings_of_the_coupled_system_as_the_operating_point() -> 
         assert (ours - none)[:3] == pytest.approx(added, abs=0.005 * 900.0)
     again = machines[0].assembled.at_speed(machines[0].speed).system
     np.testing.assert_allclose(again.load, systems[0].load, rtol=1e-12)
+
+
+@pytest.mark.parametrize("moving", [False, True], ids=["operating point", "coupled system"])
+def test_a_pedestal_sinks_by_its_own_weight_and_that_of_its_shaft(moving: bool) -> None:
+    """By the lever the right bearing, 50 mm from the middle of the shaft, carries 5/12 of it; g lies across, too."""
+    mass, stiffness = 7.0, np.diag([4e6, 3e6])
+    gravity = np.array([2.0, -9.0, 0.0])
+    plain = belt_drive((0.0, 0.0, 0.0))
+    right = plain.bearings[1]
+    on_pedestal = replace(right.bearing, pedestal=Pedestal(stiffness, np.zeros((2, 2)), mass))
+    machine = replace(plain, bearings=[plain.bearings[0], replace(right, bearing=on_pedestal)])
+    carried = 5.0 / 12.0 * math.pi / 4 * 0.03**2 * 0.2 * STEEL.density
+    sunk = np.linalg.solve(stiffness, (mass + carried) * gravity[:2])
+    if moving:
+        parts = machine.assemble(driving=Driving(gravity=tuple(gravity)))
+        (pedestal,) = (one for one in parts.system.components if isinstance(one, PedestalComponent))
+        q = static_equilibrium(parts.system)
+        found = pedestal.motion @ q[-2:]
+    else:
+        found = machine.operating_point(tuple(gravity)).bearings[1].seat_motion[:2]
+    np.testing.assert_allclose(found, sunk, rtol=1e-6)
 
 
 def test_forces_off_the_shafts_or_that_nothing_holds_are_refused() -> None:

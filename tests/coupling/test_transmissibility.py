@@ -30,6 +30,7 @@ from coupling.linear.frequency_response import (
 )
 from coupling.machine.components import Component, HousingComponent, rotor_component
 from coupling.machine.connectors import ContactConnector
+from coupling.machine.loads import BowReactions, TorqueRipple
 from coupling.statics.mean_mesh import contact_at
 from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
 from rotors import Unbalance as RotorUnbalance
@@ -185,12 +186,18 @@ def test_mesh_and_bearing_forces_move_the_rotors() -> None:
             np.testing.assert_allclose(inertia, push - held, rtol=0.0, atol=1e-6 * np.abs(push).max())
 
 
-def test_unbalance_against_the_rotor_alone() -> None:
-    """A mesh that is hardly there: each bearing of the unbalanced shaft carries what the rotor room says."""
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_unbalance_against_the_rotor_alone(sense: float) -> None:
+    """A mesh that is hardly there: each bearing of the unbalanced shaft carries what the rotor room says.
+
+    A bow and a ripple of torque at the speed of the shaft are no unbalances.
+    """
     machine = geared(300.0, housing=False)
     loose = replace(machine.meshes[0], contact=tooth_contact(machine.meshes[0].geometry, ConstantStiffness(1.0)))
-    alone = replace(machine, meshes=(loose,))
-    speeds = np.array([100.0, 350.0, 800.0])
+    bow = BowReactions("fast", np.array([0.05, 0.15, 0.25]), np.array([-500.0, 1000.0 + 200.0j, -500.0 - 200.0j]))
+    loads = replace(machine.loads, bows=[bow], torques=[TorqueRipple("fast", 0.1, 50.0, order=1.0)])
+    alone = replace(machine, meshes=(loose,), loads=loads)
+    speeds = sense * np.array([100.0, 350.0, 800.0])
     found = unbalance_response(alone, speeds, rotor="fast")
     rotor = Rotor("fast", [Segment(0.3, 0.03, 0.0, STEEL)], [Disc(0.1, 2.0, 0.004, 0.002)])
     held = [one.bearing for one in machine.bearings if one.rotor == "fast"]

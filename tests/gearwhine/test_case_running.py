@@ -75,6 +75,15 @@ def test_an_output_of_no_torque_is_an_imbalance_and_nothing_worse() -> None:
     assert "outputs that balance the input torque of 30 N*m" in line
 
 
+def test_outputs_that_drive_each_other_need_their_torque_as_the_input() -> None:
+    """30 N m of c give the 60 N m of b, of twice the teeth, and a idles."""
+    output = [{"rotor": "b", "torque": "60 N*m"}, {"rotor": "c", "torque": "-30 N*m"}]
+    (line,) = problems(gears([("a", "b"), ("b", "c")], output=output, torque=0))
+    assert line.startswith("operation.torque: expected the torque that drives the outputs; where they drive each")
+    idle = parse_case(gears([("c", "b"), ("a", "b")], output=output[:1]))
+    assert pair_torques(idle) == pytest.approx((30.0, 0.0), abs=1e-12)
+
+
 def test_shafts_without_gears_balance_each_for_itself() -> None:
     """The input goes in where the first output is; 15 N m on each of two shafts balance neither."""
     half = [{"rotor": name, "torque": "15 N*m"} for name in ("left", "right")]

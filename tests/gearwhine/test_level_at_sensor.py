@@ -94,8 +94,9 @@ def aim(given: Gearbox) -> SensorLevel:
 
 
 def level(aim: SensorLevel, pair: LoadedGearPair) -> float:
-    phases = mesh_period_phases(pair.contact, 200)
-    return aim.of(loaded_transmission_error(pair.contact, pair.static.force, phases), pair.contact)
+    carrying = pair.carrying_flanks
+    phases = mesh_period_phases(carrying, 200)
+    return aim.of(loaded_transmission_error(carrying, pair.static.force, phases), carrying)
 
 
 def test_the_level_of_the_given_flanks_is_that_of_their_lines(given: Gearbox, aim: SensorLevel) -> None:

@@ -450,6 +450,11 @@ class ToothContact:
             back_pair_variants=self.pair_variants,
         )
 
+    @property
+    def carrying_flanks(self) -> ToothContact:
+        """Contact law of the flanks that carry the mean load, by their own phase; see `back_flanks`."""
+        return self.back_flanks if self.mean_load < 0.0 else self
+
     def with_damping(self, damping: float, depth: float = 0.0) -> ToothContact:
         """Return the same contact with another damping coefficient [N s/m], fading in over a depth [m]."""
         return replace(self, damping=damping, damping_depth=depth)

@@ -206,11 +206,12 @@ class LoadedGearPair:
     model : StiffnessModel
         Stiffness model of the teeth.
     contact : ToothContact
-        Contact law with its damping.
+        Contact law of the drive flanks with its damping.
     static : LoadedMesh
-        Static mesh over the first mesh period.
+        Static mesh of the flanks that carry over the first mesh period, by their own phase.
     hunting : LoadedMesh or None
-        Static mesh over the hunting period, where mesh periods differ by pitch deviations or damaged teeth.
+        Static mesh of these flanks over the hunting period, where mesh periods differ by pitch deviations or damaged
+        teeth.
     mesh_frequency : float or None
         Mesh frequency [Hz]; None where no speed is given.
     """
@@ -227,6 +228,11 @@ class LoadedGearPair:
     def torque(self) -> float:
         """Torque on the driver that the mesh carries [N m]."""
         return self.static.force * self.geometry.driver.base_radius
+
+    @property
+    def carrying_flanks(self) -> ToothContact:
+        """Contact law of the flanks that carry the mean torque, by their own phase: back flanks where it is below 0."""
+        return self.contact.carrying_flanks
 
     @property
     def backlash(self) -> float | None:
@@ -273,14 +279,14 @@ def load_gear_pair(
         model,
         corner_contact=pair.has_corner_contact,
         faces=pair.face_slices(geometry, 1 if speed is None else turning_sense(speed)),
-    )
-    static = loaded_transmission_error(contact, force)
+    ).under_load(math.copysign(force, torque))
+    carrying = contact.carrying_flanks
+    static = loaded_transmission_error(carrying, force)
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
     mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
-    contact = contact.under_load(math.copysign(force, torque))
-    hunting = hunting_period_mesh(contact, force) if contact.hunting_period > 1 else None
+    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 

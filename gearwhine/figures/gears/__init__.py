@@ -38,14 +38,14 @@ def draw_gear_pairs(pairs: Sequence[PairAnalysis], progress: Progress = silent) 
 
 
 def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
-    solved, geometry = pair.solved, pair.solved.geometry
+    solved, geometry, contact = pair.solved, pair.solved.geometry, pair.solved.carrying_flanks
     name = f"{shortened(solved.pair.driver, 16)} → {shortened(solved.pair.driven, 16)}"
     loaded = solved.static.force > 0.0
     yield "teeth", draw_tooth_pair(geometry)
     yield (
         "stiffness",
         draw_mesh_stiffness(
-            f"{name}: mesh stiffness", solved.contact, solved.static, shared=loaded and solved.has_single_pairs
+            f"{name}: mesh stiffness", contact, solved.static, shared=loaded and solved.has_single_pairs
         ),
     )
     harmonics = {"unloaded": pair.unloaded_harmonics}
@@ -66,10 +66,10 @@ def _figures(pair: PairAnalysis) -> Iterator[tuple[str, Figure]]:
         # Over a face it has a picture of its own.
         pressure = pair.pressure if pair.pressure is not None and pair.pressure.ndim == 2 else None
         along = f"{name}: along the path of contact"
-        sheet = draw_contact_path(along, geometry, solved.contact, solved.static, pressure)
+        sheet = draw_contact_path(along, geometry, contact, solved.static, pressure)
         yield "path", sheet
     if solved.static.line_loads is not None and loaded:
-        sheet = draw_contact_pattern(f"{name}: contact pattern", geometry, solved.contact, solved.static)
+        sheet = draw_contact_pattern(f"{name}: contact pattern", geometry, contact, solved.static)
         yield "pattern", sheet
     best = None if pair.optimum is None else pair.optimum.relief
     if best is not None or has_charts(geometry):

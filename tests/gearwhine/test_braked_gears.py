@@ -1,0 +1,76 @@
+"""Gears of a case under a torque that brakes, against those of the exchanged pair, which the same flanks drive."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from coupling.gears import loaded_transmission_error, mesh_stiffness
+from coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.case import Case, case_document, load_case, parse_case
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, first_touch, solve_over_torques
+
+HELICAL = (
+    "gear.*.module=3.066814498467792 mm",  # at 15 degrees the same centre distance
+    "gear.*.face_width=30 mm",
+    "gear.pinion.helix_angle=15 deg",
+    "gear.wheel.helix_angle=-15 deg",
+    # Were both gears alike, drive and back flanks would be, too.
+    "gear.pinion.tip_relief={amount='15 um', length='2.5 mm'}",
+    "gear.wheel.tip_relief=",
+    "gear_pair.0.misalignment=0.3 mrad",
+    "operation.speed=1500 rpm",
+)
+
+
+def braked_case() -> Case:
+    return load_case("small-gearbox", [*HELICAL, "operation.torque=-71.77 N*m"]).case
+
+
+def exchanged_case() -> Case:
+    """Both gears have 28 teeth, so that the torque is the same at either."""
+    document = case_document(load_case("small-gearbox", [*HELICAL, "operation.torque=71.77 N*m"]).case)
+    pair = document["gear_pair"][0]
+    pair["driver"], pair["driven"] = pair["driven"], pair["driver"]
+    document["operation"]["speed"] = "-1500 rpm"
+    document.pop("provenance")
+    return parse_case(document)
+
+
+@cache
+def analysed(*, braked: bool) -> PairAnalysis:
+    case = braked_case() if braked else exchanged_case()
+    (pair,) = analyse_pairs(case, solve_gears(case))
+    return pair
+
+
+def test_stress_and_curves_of_a_braked_pair_are_those_of_its_back_flanks() -> None:
+    """A place of the path is as far from its beginning as it is from the end of the exchanged pair's."""
+    braked, driving = analysed(braked=True), analysed(braked=False).solved
+    phases = driving.geometry.contact_ratio - braked.solved.static.phases
+    mesh = loaded_transmission_error(driving.contact, driving.static.force, phases)
+    pressure = mesh_pressure(driving.geometry, driving.contact, mesh)
+    largest = braked.largest_pressure
+    assert largest is not None
+    assert largest[0] == pytest.approx(float(np.nanmax(pressure)), rel=1e-9)
+    assert braked.pitch_pressure == pytest.approx(analysed(braked=False).pitch_pressure, rel=1e-9)
+    np.testing.assert_allclose(braked.solved.static.transmission_error, mesh.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(braked.stiffness, mesh_stiffness(driving.contact, phases), rtol=1e-9)
+    np.testing.assert_allclose(braked.unloaded, first_touch(driving.contact, phases), rtol=0.0, atol=1e-15)
+    assert braked.shares is not None
+    assert braked.shares[1].max() == pytest.approx(float(mesh.load_shares.max()), rel=1e-9)
+    curves = braked.curves()
+    mesh = loaded_transmission_error(
+        driving.contact, driving.static.force, driving.geometry.contact_ratio - curves.phases
+    )
+    np.testing.assert_allclose(curves.mesh.transmission_error, mesh.transmission_error, rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_harris_map_and_relief_of_a_braked_pair_are_those_of_its_back_flanks() -> None:
+    braked, driving = (solve_over_torques([analysed(braked=way)])[0] for way in (True, False))
+    assert braked.as_given == pytest.approx(driving.as_given, rel=5e-3)
+    assert braked.optimum is not None
+    assert driving.optimum is not None
+    assert braked.optimum.unmodified[0] == pytest.approx(driving.optimum.unmodified[0], rel=5e-3)
