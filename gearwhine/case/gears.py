@@ -315,8 +315,9 @@ class Gear(Table):
     allow_undercut: StrictBool = False
     """Accept undercut teeth, with the remaining flank; else they are an error."""
     bore: LengthFromZero = 0.0
-    """Diameter of the bore, at which the body of the teeth is held; 0 is a gear made from its shaft. A wheel on a shaft
-    has one: its mesh is softer. See `stiffens_shaft` for how firmly it sits."""
+    """Diameter of the bore, at which the body of the teeth is held; 0 is a gear made from its shaft, whose mass is then
+    what lies outside the shaft. A wheel on a shaft has a bore: its mesh is softer. See `stiffens_shaft` for how firmly
+    it sits."""
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
@@ -332,7 +333,7 @@ class Gear(Table):
     material: Name | None = None
     """Name of the material. Default: that of its rotor, else the only one of the case."""
     mass: Mass | None = None
-    """Mass; with both inertias, or none of the three. Default: from the geometry."""
+    """Mass beside the shaft's own; with both inertias, or none of the three. Default: from the geometry."""
     polar_inertia: Inertia | None = None
     """Moment of inertia about the axis. Default: from the geometry."""
     diametral_inertia: Inertia | None = None
@@ -441,12 +442,12 @@ class Gear(Table):
             density=material.density,
         )
 
-    def inertia(self, material: Material | None = None) -> tuple[float, float, float]:
-        """Mass [kg], polar and diametral moment of inertia [kg m²]: as given, else by the geometry."""
-        if self.mass is not None and self.polar_inertia is not None and self.diametral_inertia is not None:
-            return self.mass, self.polar_inertia, self.diametral_inertia
-        built = self.build(material)
-        return built.mass, built.polar_inertia, built.diametral_inertia
+    @property
+    def given_inertia(self) -> tuple[float, float, float] | None:
+        """Mass [kg], polar and diametral moment of inertia [kg m²] as given; None where they are by the geometry."""
+        if self.mass is None or self.polar_inertia is None or self.diametral_inertia is None:
+            return None
+        return self.mass, self.polar_inertia, self.diametral_inertia
 
 
 class ToothStiffness(Table):
