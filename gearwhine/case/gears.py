@@ -208,7 +208,7 @@ class Fault(Table):
     width: PositiveLength | None = None
     """Width of a spall. Default: the face."""
     angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
-    """Angle of a crack to the tooth's axis."""
+    """Angle of a crack to the tooth's axis, like its depth in the normal section."""
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:

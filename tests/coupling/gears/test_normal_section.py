@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry, PotentialEnergyStiffness
-from coupling.gears.stiffness.compliant_teeth import normal_section_gears
 from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from coupling.gears.stiffness.normal_section import normal_section_gears
 
 
 def pair(degrees: float, teeth: int = 40) -> GearPairGeometry:
