@@ -206,7 +206,7 @@ class Fault(Table):
     end_roll_angle: RollAngle | None = None
     """Roll angle at which a spall ends."""
     width: PositiveLength | None = None
-    """Width of a spall. Default: the face."""
+    """Width of a spall across the common face of its pair. Default: all of the face."""
     angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
     """Angle of a crack to the tooth's axis, like its depth in the normal section."""
 

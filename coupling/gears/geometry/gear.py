@@ -80,12 +80,22 @@ class Fault(Protocol):
         """Raise `GearError` where no tooth of this gear can have it."""
         ...
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """Material off the flank [m] at roll angles [rad]; `pitch_roll_angle` is the working pitch point's."""
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
+        """Material off the flank [m] at roll angles [rad].
+
+        `pitch_roll_angle` is the working pitch point's, `face_width` that of the pair's common face [m].
+        """
         ...
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]."""
+        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]; without the contact."""
+        ...
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """Growth of the flattening of the pair's contact at roll angles [rad], over that of sound flanks.
+
+        `face_width` is that of the pair's common face [m].
+        """
         ...
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:

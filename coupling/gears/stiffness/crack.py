@@ -67,7 +67,7 @@ class ToothCrack:
         """See `coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Zero: an unloaded flank does not move."""
         return np.zeros_like(roll_angle)
 
@@ -113,6 +113,10 @@ class ToothCrack:
             stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / remaining - 1.0 / whole)
             total = total + np.sum(climb * (bending + stretching), axis=-1)
         return np.asarray(total, dtype=np.float64)
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """Zero: the flanks are whole."""
+        return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """None."""
