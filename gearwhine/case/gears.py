@@ -294,7 +294,7 @@ class Gear(Table):
     base_radius: PositiveLength | None = None
     """Base radius in the transverse plane. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     face_width: PositiveLength | None = None
-    """Face width; needed unless the size is `base_radius`."""
+    """Face width; needed of helical gears, and unless the size is `base_radius`."""
     pressure_angle: PressureAngle = math.radians(20.0)
     """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
@@ -324,8 +324,8 @@ class Gear(Table):
     """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
-    firmly. `false`, and any `rim`: the gear is a disc on one section of its shaft, as in many published models, or
-    gripped loosely."""
+    firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
+    as in many published models, or gripped loosely."""
     tip_relief: Relief | None = None
     """Tip relief."""
     root_relief: Relief | None = None
@@ -354,6 +354,8 @@ class Gear(Table):
             raise wrong("exactly one of 'module', 'diametral_pitch' and 'base_radius'")
         if self.base_radius is None and self.face_width is None:
             raise wrong("the face width of a gear that is given by the size of its teeth", "face_width")
+        if self.helix_angle != 0.0 and self.face_width is None:
+            raise wrong("the face width of a helical gear, over which its teeth come into mesh", "face_width")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:

@@ -29,7 +29,13 @@ def build_gear(case: Case, entry: GivenGear) -> Gear:
 def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
     """Build the gears on a rotor of the case, in the order of the file."""
     return [
-        ShaftGear(build_gear(case, gear), rotor, gear.at, gear.given_inertia, gear.stiffens_shaft)
+        ShaftGear(
+            build_gear(case, gear),
+            rotor,
+            gear.at,
+            gear.given_inertia,
+            stiffens_shaft=gear.stiffens_shaft and gear.face_width is not None,
+        )
         for gear in case.gear
         if gear.rotor == rotor and gear.at is not None
     ]
