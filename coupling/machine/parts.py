@@ -1,19 +1,20 @@
 """Parts of a machine: shafts, gears on shafts, excitation; and checks of their names, stations and seats."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 from typing import Protocol
 
 from coupling.errors import CouplingError
 from coupling.gears import Gear
+from coupling.gears.geometry.blank import CoreLength, blank_around
 from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
 from coupling.machine.loads import AnyTorque, BaseMotion, Drive, ShaftForce
-from rotors import Disc, Rotor
+from rotors import Disc, Rotor, Segment
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
 from rotors.model.profile import StiffnessDiameter
@@ -72,7 +73,8 @@ class ShaftGear:
         Distance of the middle of the face from the shaft's left end [m].
     inertia : tuple of float, optional
         Mass [kg], polar and diametral moment of inertia [kg m²], in place of those of the gear's geometry; zeros where
-        a disc of the rotor stands for the gear.
+        a disc of the rotor stands for the gear. By default the mass of a gear without a bore is what lies outside its
+        shaft.
     stiffens_shaft : bool
         Whether the shaft bends, twists and stretches under the gear as in one piece with it
         (`coupling.gears.geometry.toothed_section`); else the gear is a disc on one section of it. A gear with a rim is
@@ -96,11 +98,9 @@ class ShaftGear:
         return self.stiffens_shaft and self.gear.rim_thickness is None
 
     @property
-    def mass_and_inertias(self) -> tuple[float, float, float]:
-        """Mass [kg], polar and diametral moment of inertia [kg m²]."""
-        if self.inertia is not None:
-            return self.inertia
-        return self.gear.mass, self.gear.polar_inertia, self.gear.diametral_inertia
+    def body_inertia(self) -> tuple[float, float, float]:
+        """Mass [kg], polar and diametral moment of inertia [kg m²] of the gear's body, its core included."""
+        return self.gear.inertia if self.inertia is None else self.inertia
 
 
 @dataclass(frozen=True)
@@ -172,10 +172,36 @@ class MachineParts(Protocol):
 
 def rotor_with_gears(rotor: Rotor, gears: Sequence[ShaftGear]) -> Rotor:
     """Rotor with the gears on it as discs, which stiffen it over their faces; one without inertias adds no disc."""
-    rigid = [(gear.at, *gear.mass_and_inertias) for gear in gears]
-    discs = [Disc(*disc) for disc in rigid if any(disc[1:])]
+    rigid = [gear_disc(gear, rotor) for gear in gears]
+    discs = [disc for disc in rigid if disc.mass or disc.polar_inertia or disc.diametral_inertia]
     stiff = [diameter for gear in gears for diameter in _stiffness_diameters(gear, rotor)]
     return replace(rotor, discs=[*rotor.discs, *discs], stiffness_diameters=[*rotor.stiffness_diameters, *stiff])
+
+
+def gear_disc(mounted: ShaftGear, rotor: Rotor) -> Disc:
+    """Return the disc that a gear is on its rotor, at its centre of mass.
+
+    A gear without a bore is made from its shaft, which has the mass of the core: unless its inertia is given, the disc
+    is the part of the blank outside the shaft.
+    """
+    if mounted.inertia is not None or mounted.gear.bore > 0.0:
+        return Disc(mounted.at, *mounted.body_inertia)
+    blank = blank_around(mounted.gear, _shaft_under(mounted, rotor))
+    return Disc(mounted.at + blank.centre, *blank.inertia)
+
+
+def _shaft_under(mounted: ShaftGear, rotor: Rotor) -> Iterator[CoreLength]:
+    """Yield the lengths of shaft under a gear's face, without radius beyond the shaft and where it has no mass."""
+    at, half = mounted.at, 0.5 * mounted.gear.face_width
+    joints = rotor.joints.tolist()
+    yield CoreLength(-half, -at, 0.0, 0.0)
+    for part, left, right in zip(rotor.segments, joints[:-1], joints[1:], strict=True):
+        radii = 0.0, 0.0
+        if isinstance(part, Segment) and part.material.density > 0.0:
+            (start, _), (end, _) = part.end_diameters
+            radii = 0.5 * start, 0.5 * end
+        yield CoreLength(left - at, right - at, *radii)
+    yield CoreLength(joints[-1] - at, half, 0.0, 0.0)
 
 
 def carrying_length(mounted: ShaftGear, rotor: Rotor) -> tuple[float, float]:
@@ -215,10 +241,10 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
-    """Polar inertia of a gear with the discs at its station [kg m²], for the damping ratio of its mesh.
+    """Polar inertia of a gear's body with the discs at its station [kg m²], for the damping ratio of its mesh.
 
-    Where gear and discs have no inertia, it is that of the whole rotor; where the rotor has none either, that of the
-    gear's geometry.
+    A gear without a bore counts with its core, which rotates with the teeth. Where gear and discs have no inertia, it
+    is that of the whole rotor; where the rotor has none either, that of the gear's geometry.
 
     Parameters
     ----------
@@ -228,7 +254,7 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     gears : sequence of ShaftGear
         All gears on the rotor.
     """
-    inertia = gear.mass_and_inertias[1]
+    inertia = gear.body_inertia[1]
     inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia

@@ -206,9 +206,9 @@ class Fault(Table):
     end_roll_angle: RollAngle | None = None
     """Roll angle at which a spall ends."""
     width: PositiveLength | None = None
-    """Width of a spall. Default: the face."""
+    """Width of a spall across the common face of its pair. Default: all of the face."""
     angle: Annotated[float, Quantity(units.ANGLE, above=0.0, at_most=math.pi / 2.0)] = math.radians(70.0)
-    """Angle of a crack to the tooth's axis."""
+    """Angle of a crack to the tooth's axis, like its depth in the normal section."""
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Fault:
@@ -294,7 +294,7 @@ class Gear(Table):
     base_radius: PositiveLength | None = None
     """Base radius in the transverse plane. Exactly one of `module`, `diametral_pitch` and `base_radius`."""
     face_width: PositiveLength | None = None
-    """Face width; needed unless the size is `base_radius`."""
+    """Face width; needed of helical gears, and unless the size is `base_radius`."""
     pressure_angle: PressureAngle = math.radians(20.0)
     """Pressure angle of the normal section."""
     helix_angle: HelixAngle = 0.0
@@ -315,16 +315,17 @@ class Gear(Table):
     allow_undercut: StrictBool = False
     """Accept undercut teeth, with the remaining flank; else they are an error."""
     bore: LengthFromZero = 0.0
-    """Diameter of the bore, at which the body of the teeth is held; 0 is a gear made from its shaft. A wheel on a shaft
-    has one: its mesh is softer. See `stiffens_shaft` for how firmly it sits."""
+    """Diameter of the bore, at which the body of the teeth is held; 0 is a gear made from its shaft, whose mass is then
+    what lies outside the shaft. A wheel on a shaft has a bore: its mesh is softer. See `stiffens_shaft` for how firmly
+    it sits."""
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
     """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
-    firmly. `false`, and any `rim`: the gear is a disc on one section of its shaft, as in many published models, or
-    gripped loosely."""
+    firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
+    as in many published models, or gripped loosely."""
     tip_relief: Relief | None = None
     """Tip relief."""
     root_relief: Relief | None = None
@@ -332,7 +333,7 @@ class Gear(Table):
     material: Name | None = None
     """Name of the material. Default: that of its rotor, else the only one of the case."""
     mass: Mass | None = None
-    """Mass; with both inertias, or none of the three. Default: from the geometry."""
+    """Mass beside the shaft's own; with both inertias, or none of the three. Default: from the geometry."""
     polar_inertia: Inertia | None = None
     """Moment of inertia about the axis. Default: from the geometry."""
     diametral_inertia: Inertia | None = None
@@ -353,6 +354,8 @@ class Gear(Table):
             raise wrong("exactly one of 'module', 'diametral_pitch' and 'base_radius'")
         if self.base_radius is None and self.face_width is None:
             raise wrong("the face width of a gear that is given by the size of its teeth", "face_width")
+        if self.helix_angle != 0.0 and self.face_width is None:
+            raise wrong("the face width of a helical gear, over which its teeth come into mesh", "face_width")
         if self.bore >= 2.0 * self.base_circle_radius:
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
@@ -441,12 +444,12 @@ class Gear(Table):
             density=material.density,
         )
 
-    def inertia(self, material: Material | None = None) -> tuple[float, float, float]:
-        """Mass [kg], polar and diametral moment of inertia [kg m²]: as given, else by the geometry."""
-        if self.mass is not None and self.polar_inertia is not None and self.diametral_inertia is not None:
-            return self.mass, self.polar_inertia, self.diametral_inertia
-        built = self.build(material)
-        return built.mass, built.polar_inertia, built.diametral_inertia
+    @property
+    def given_inertia(self) -> tuple[float, float, float] | None:
+        """Mass [kg], polar and diametral moment of inertia [kg m²] as given; None where they are by the geometry."""
+        if self.mass is None or self.polar_inertia is None or self.diametral_inertia is None:
+            return None
+        return self.mass, self.polar_inertia, self.diametral_inertia
 
 
 class ToothStiffness(Table):

@@ -16,7 +16,7 @@ from coupling.machine.parts import inertia_with_discs
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
 from gearwhine.case import GearPair as GivenPair
-from gearwhine.from_case.rotors import build_gear, gear_inertia, shaft_gears
+from gearwhine.from_case.rotors import build_gear, shaft_gears
 from gearwhine.progress import Progress, silent
 
 FloatArray = npt.NDArray[np.float64]
@@ -150,10 +150,10 @@ def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
 
 
 def _inertia(case: Case, name: str) -> float:
-    """Polar inertia that rotates with a gear [kg m²], see :func:`coupling.machine.parts.gear_inertia`."""
+    """Polar inertia that rotates with a gear [kg m²], see :func:`coupling.machine.parts.inertia_with_discs`."""
     entry = case.gear_named(name)
     if entry.rotor is None:
-        return gear_inertia(case, entry)[1] or build_gear(case, entry).polar_inertia
+        return entry.polar_inertia or build_gear(case, entry).polar_inertia
     gears = shaft_gears(case, entry.rotor)
     (gear,) = (shaft_gear for shaft_gear in gears if shaft_gear.name == name)
     return inertia_with_discs(gear, case.rotor_named(entry.rotor).build(case.material), gears)

@@ -26,15 +26,16 @@ def build_gear(case: Case, entry: GivenGear) -> Gear:
     return entry.build(case.material_of_gear(entry))
 
 
-def gear_inertia(case: Case, entry: GivenGear) -> tuple[float, float, float]:
-    """Mass [kg], polar and diametral inertia [kg m²] of a gear of the case: as given, or from the geometry."""
-    return entry.inertia(case.material_of_gear(entry))
-
-
 def shaft_gears(case: Case, rotor: str) -> list[ShaftGear]:
     """Build the gears on a rotor of the case, in the order of the file."""
     return [
-        ShaftGear(build_gear(case, gear), rotor, gear.at, gear_inertia(case, gear), gear.stiffens_shaft)
+        ShaftGear(
+            build_gear(case, gear),
+            rotor,
+            gear.at,
+            gear.given_inertia,
+            stiffens_shaft=gear.stiffens_shaft and gear.face_width is not None,
+        )
         for gear in case.gear
         if gear.rotor == rotor and gear.at is not None
     ]

@@ -206,6 +206,17 @@ class OwnStatics:
         """Sections that carry the stations: the body is rigid beyond the length that bends with it."""
         return np.clip(one.at + self.stations(pair), *self._core(one, 0.243))
 
+    def _blank(self, one: ShaftGear) -> tuple[float, float]:
+        """Mass of a gear made from its shaft, out to the reference circle, and the place of its centre [kg, m]."""
+        low, high = one.at - 0.5 * one.gear.face_width, one.at + 0.5 * one.gear.face_width
+        ends = np.cumsum([0.0, *(part.length for part in self.machine.shaft(one.shaft).rotor.segments)])
+        cuts = np.unique([low, *ends[(ends > low) & (ends < high)], high])
+        middles = 0.5 * (cuts[1:] + cuts[:-1])
+        shaft = np.array([self._part(one.shaft, at).outer_diameter for at in middles])
+        reference = one.gear.module * one.gear.teeth / math.cos(one.gear.helix_angle)
+        masses = one.gear.density * math.pi / 4 * (reference**2 - shaft**2) * np.diff(cuts)
+        return float(masses.sum()), float(masses @ middles / masses.sum())
+
     def _part(self, shaft: str, at: float) -> Segment:
         rotor = self.machine.shaft(shaft).rotor
         part = rotor.segments[int(np.searchsorted(np.cumsum([one.length for one in rotor.segments]), at))]
@@ -218,6 +229,7 @@ class OwnStatics:
         places += [one.bearing.at for one in self.machine.bearings if one.rotor == shaft]
         places += [torque.at for torque in self.machine.constant_torques if torque.rotor == shaft]
         places += [one.at for one in self.machine.forces if one.rotor == shaft]
+        places += [self._blank(one)[1] for one in self.machine.gears if one.shaft == shaft]
         places += [end for low, high, *_ in self.bodies(shaft) for end in (low, high)]
         for pair in self.machine.gear_pairs:
             for name in (pair.driver, pair.driven):
@@ -276,7 +288,8 @@ class OwnStatics:
                     found[first : first + 12] += weight(part, length) @ np.array(gravity)
                 for gear in self.machine.gears:
                     if gear.shaft == shaft.name:
-                        found += gear.mass_and_inertias[0] * np.array(gravity) @ self.section(shaft.name, gear.at)[:3]
+                        mass, centre = self._blank(gear)
+                        found += mass * np.array(gravity) @ self.section(shaft.name, centre)[:3]
         return found
 
     def plane(self, pair: GearPair) -> tuple[FloatArray, float, int, FloatArray]:

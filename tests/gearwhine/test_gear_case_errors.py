@@ -135,6 +135,23 @@ SEVERAL_WRONG: dict[str, tuple[list[tuple[str, Any]], str, str]] = {
         "gear_pair[0].stiffness.model",
         'gear "wheel" has no face_width',
     ),
+    "a helix over no face": (
+        [
+            (
+                "gear.1",
+                {
+                    **WHEEL,
+                    "base_radius": "41.77 mm",
+                    "helix_angle": "10 deg",
+                    "mass": 1,
+                    "polar_inertia": 1,
+                    "diametral_inertia": 1,
+                },
+            )
+        ],
+        "gear[1].face_width",
+        "the face width of a helical gear",
+    ),
     "base radii of other teeth": (
         [("gear.1", {**WHEEL, "base_radius": "45 mm", "face_width": "6.35 mm"})],
         "gear_pair[0].driven",

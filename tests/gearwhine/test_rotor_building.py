@@ -170,3 +170,13 @@ def test_a_stiffness_map_goes_in_equal_ratios_and_ends_where_it_says() -> None:
     stiffnesses = np.array(analysis.stiffness_map.stiffnesses)
     assert stiffnesses[1:] / stiffnesses[:-1] == pytest.approx(np.full(8, math.sqrt(10.0)), rel=1e-12)
     assert stiffnesses[-1] == 1e9
+
+
+def test_a_gear_without_a_face_width_is_a_disc_on_one_section() -> None:
+    inertia = {"mass": "2 kg", "polar_inertia": "3e-3 kg*m^2", "diametral_inertia": "2e-3 kg*m^2"}
+    gear = {"name": "pinion", "rotor": "shaft", "at": "0.5 m", "teeth": 40, "base_radius": "60 mm", **inertia}
+    unknown, wide = (case_of(gear=[gear | width]) for width in ({}, {"face_width": "60 mm"}))
+    rotor = build_rotor(unknown, unknown.rotor[0])
+    assert not rotor.stiffness_diameters
+    assert [(disc.at, disc.mass) for disc in rotor.discs] == [(0.5, 2.0)]
+    assert build_rotor(wide, wide.rotor[0]).stiffness_diameters

@@ -58,7 +58,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -68,6 +68,7 @@ from coupling.gears import piecewise_cubic as piecewise
 from coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, face_equilibrium
 from coupling.gears.contact.lookup_tables import FaceSliceStates, face_force_table, face_slice_states, law_table
 from coupling.gears.contact.tooth_pair import (
+    Flattening,
     ToothPairCurves,
     pair_deviation,
     slope_jumps,
@@ -79,6 +80,7 @@ from coupling.gears.geometry.pair import GearPairGeometry, IntArray
 from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from coupling.gears.stiffness.hertz import hertz_compliance
 from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
@@ -511,6 +513,17 @@ class ToothContact:
         )
 
 
+def contact_flattening(model: StiffnessModel, geometry: GearPairGeometry) -> Flattening:
+    """Compliance of the contact of two flanks in a model [m/N], by position in base pitches.
+
+    Other models than those of teeth have the flattening of Yang and Sun's constant.
+    """
+    if isinstance(model, CompliantTeeth):
+        return partial(model.contact_compliance, geometry)
+    constant = hertz_compliance(geometry.driver, geometry.driven) / math.cos(geometry.driver.base_helix_angle)
+    return lambda position: np.full_like(position, constant)
+
+
 def slices_of_teeth(faces: FaceSlices, model: StiffnessModel, geometry: GearPairGeometry) -> FaceSlices:
     """Return slices with the contact flattening and the shared body compliance of a tooth model.
 
@@ -560,7 +573,8 @@ def tooth_contact(
     """
     variants = pair_variants(geometry)
     stiffness = model.pair_stiffness(geometry)
-    curves = tooth_pair_curves(geometry, stiffness, variants.faults, corner_contact)
+    flattening = contact_flattening(model, geometry)
+    curves = tooth_pair_curves(geometry, stiffness, flattening, variants.faults, corner_contact=corner_contact)
     none = np.zeros(0)
     deviating = any(geometry.driver.pitch_deviations) or any(geometry.driven.pitch_deviations)
     return ToothContact(

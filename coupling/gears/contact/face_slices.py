@@ -253,8 +253,8 @@ def face_slices(
 
 
 def _has_pits(geometry: GearPairGeometry) -> bool:
-    faults = [(gear, fault) for gear in (geometry.driver, geometry.driven) for fault in gear.faults]
-    return any(isinstance(fault, Spall) and fault.across_face(gear) for gear, fault in faults)
+    faults = (*geometry.driver.faults, *geometry.driven.faults)
+    return any(isinstance(fault, Spall) and fault.across_face(geometry.face_width) for fault in faults)
 
 
 def slice_stiffness(slices: FaceSlices, stiffness: FloatArray) -> FloatArray:

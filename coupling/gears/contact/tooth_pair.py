@@ -8,7 +8,7 @@ variant of pair with faulty teeth has curves of its own.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -30,6 +30,8 @@ from coupling.gears.geometry.pitch_deviations import PairFaults
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
+Flattening = Callable[[FloatArray], FloatArray]
+"""Compliance of the contact of two flanks [m/N] by position in base pitches."""
 
 TOLERANCE = 1e-13
 """Largest error of the cubics [m]."""
@@ -85,7 +87,7 @@ def pair_deviation(
         for gear, roll, gear_faults in zip(gears, rolls, faults, strict=True):
             total = total + flank_gap(gear, roll)
             for fault in gear_faults:
-                total = total + fault.gap(gear, roll, pitch_roll)
+                total = total + fault.gap(gear, roll, pitch_roll_angle=pitch_roll, face_width=geometry.face_width)
         return np.asarray(total, dtype=np.float64)
 
     corners = [0.0, geometry.contact_ratio] if corner_contact else []
@@ -130,7 +132,12 @@ class ToothPairCurves:
 
 
 def tooth_pair_curves(
-    geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Sequence[PairFaults], corner_contact: bool
+    geometry: GearPairGeometry,
+    stiffness: PiecewiseCubic,
+    flattening: Flattening,
+    faults: Sequence[PairFaults],
+    *,
+    corner_contact: bool,
 ) -> tuple[ToothPairCurves, ...]:
     """Curves of every variant of pair.
 
@@ -139,6 +146,8 @@ def tooth_pair_curves(
     geometry : GearPairGeometry
     stiffness : PiecewiseCubic
         Stiffness of a pair of sound teeth, from 0 to the contact ratio; or of the whole mesh, from 0 to 1 [N/m].
+    flattening : callable
+        Maps positions to the compliance of the contact of sound flanks, part of the pair's [m/N].
     faults : sequence
         Faults of the driver's and of the driven tooth, for every variant.
     corner_contact : bool
@@ -178,7 +187,7 @@ def tooth_pair_curves(
         stiffness = stiffness.on_knots(np.concatenate([[start], stiffness.knots, [end]]))
     return tuple(
         ToothPairCurves(
-            _weakened(geometry, stiffness, variant_faults),
+            _weakened(geometry, stiffness, flattening, variant_faults),
             piecewise.constant(0.0, length)
             if whole_mesh
             else pair_deviation(geometry, start, end, corner_contact=corner_contact, faults=variant_faults),
@@ -214,7 +223,9 @@ def slope_jumps(curve: PiecewiseCubic) -> FloatArray:
     return np.asarray(curve.knots[1:-1][jumps], dtype=np.float64)
 
 
-def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: PairFaults) -> PiecewiseCubic:
+def _weakened(
+    geometry: GearPairGeometry, stiffness: PiecewiseCubic, flattening: Flattening, faults: PairFaults
+) -> PiecewiseCubic:
     """Stiffness of a pair of teeth with faults, whose compliances add to its own."""
     if not any(faults):
         return stiffness
@@ -225,13 +236,15 @@ def _weakened(geometry: GearPairGeometry, stiffness: PiecewiseCubic, faults: Pai
     pitch_roll = math.tan(geometry.working_pressure_angle)
 
     def weakened(position: FloatArray) -> FloatArray:
-        places = flank_contact_points(geometry, np.clip(position, 0.0, geometry.contact_ratio))
+        on_path = np.clip(position, 0.0, geometry.contact_ratio)
+        places, contact = flank_contact_points(geometry, on_path), flattening(on_path)
         compliance = 1.0 / stiffness(position)
         for (gear, _, gear_faults), roll in zip(
             sides, (places.driver_roll_angle, places.driven_roll_angle), strict=True
         ):
             for fault in gear_faults:
-                compliance = compliance + fault.extra_compliance(gear, roll)
+                more = fault.more_flattening(roll, geometry.face_width)
+                compliance = compliance + fault.extra_compliance(gear, roll) + more * contact
         return np.asarray(1.0 / compliance, dtype=np.float64)
 
     corners = [

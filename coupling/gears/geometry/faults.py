@@ -52,7 +52,7 @@ class Wear:
         """See `coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `coupling.gears.geometry.gear.Fault`."""
         if self.shape == "uniform":
             return np.full_like(roll_angle, self.depth)
@@ -64,6 +64,10 @@ class Wear:
         """Zero: the worn depth is small compared with the tooth."""
         return np.zeros_like(roll_angle)
 
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """Zero: all of the face carries."""
+        return np.zeros_like(roll_angle)
+
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """Return the roll angle of the pitch point [rad], where wear in proportion to the sliding has a corner."""
         return () if self.shape == "uniform" else (pitch_roll_angle,)
@@ -73,9 +77,10 @@ class Wear:
 class Spall:
     """A pit in the flank of one tooth, across all of the face or a part of it.
 
-    Across all of the face the contact drops into it by `depth`. Across a part, the rest of the face carries: the
-    flattening of the contact, inversely proportional to the width, grows by ``1 / (1 - width / face_width)``. Its edges
-    rise over a tenth of its length.
+    Across all of the pair's common face the contact drops into it by `depth`. Across a part, the rest carries: the
+    flattening of the pair's contact, inversely proportional to the width, becomes ``1 / (1 - width / face_width)`` of
+    that of sound flanks. Weber's flattening grows less than that, by some 10 % where half of the face carries, because
+    the strip of contact widens too; this is left out. The spall's edges rise over a tenth of its length.
 
     Parameters
     ----------
@@ -85,7 +90,7 @@ class Spall:
     depth : float
         Depth of the spall [m].
     width : float or None
-        Across the face [m]; None for all of it.
+        Across the common face [m]; None for all of it.
     """
 
     tooth: int
@@ -118,28 +123,31 @@ class Spall:
                 f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
             )
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """See `coupling.gears.geometry.gear.Fault`."""
-        return self.depth * self._inside(roll_angle) if self.across_face(gear) else np.zeros_like(roll_angle)
+        return self.depth * self._inside(roll_angle) if self.across_face(face_width) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Additional flattening of the contact: ``4 (1 - nu^2) / (pi E b)`` over a whole face (Yang and Sun, 1985)."""
-        if self.across_face(gear):
+        """Zero: the depth is small compared with the tooth."""
+        return np.zeros_like(roll_angle)
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """See `coupling.gears.geometry.gear.Fault`."""
+        if self.across_face(face_width):
             return np.zeros_like(roll_angle)
-        part = self._part_of_face(gear)
-        flattening = 4.0 * (1.0 - gear.poisson_ratio**2) / (math.pi * gear.youngs_modulus * gear.face_width)
-        return np.asarray(flattening * part / (1.0 - part) * self._inside(roll_angle), dtype=np.float64)
+        part = self._part_of_face(face_width)
+        return np.asarray(part / (1.0 - part) * self._inside(roll_angle), dtype=np.float64)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """Both ends of both edges."""
         return self._edges
 
-    def across_face(self, gear: Gear) -> bool:
-        """Whether nothing of the face is left to carry."""
-        return self._part_of_face(gear) >= 1.0
+    def across_face(self, face_width: float) -> bool:
+        """Whether nothing of a common face of this width [m] is left to carry."""
+        return self._part_of_face(face_width) >= 1.0
 
-    def _part_of_face(self, gear: Gear) -> float:
-        return 1.0 if self.width is None else self.width / gear.face_width
+    def _part_of_face(self, face_width: float) -> float:
+        return 1.0 if self.width is None else self.width / face_width
 
     def _inside(self, roll_angle: FloatArray) -> FloatArray:
         return np.interp(roll_angle, self._edges, [0.0, 1.0, 1.0, 0.0])
@@ -164,11 +172,15 @@ class MissingTooth:
         """See `coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Gap wider than any load closes."""
         return np.full_like(roll_angle, NO_CONTACT_GAP)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
+        """Zero: such a pair carries nothing."""
+        return np.zeros_like(roll_angle)
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
         """Zero: such a pair carries nothing."""
         return np.zeros_like(roll_angle)
 

@@ -20,7 +20,8 @@ Mass and moments of inertia are those of the gear blank, the body that carries t
 to the reference circle, where they fill half the circumference. A gear without a rim is a disc as wide as its face,
 down to its bore. A gear with a rim is a ring of the full width down to the inside of the rim, and a web of its own
 thickness in the middle of the face from there to the bore; without a web the ring is alone, and its carrier is given as
-a disc of the rotor.
+a disc of the rotor. A disc without a bore reaches down to the axis; on a shaft its core is part of the shaft
+(:mod:`coupling.gears.geometry.blank`).
 """
 
 from __future__ import annotations
@@ -59,6 +60,14 @@ def hollow_disc(density: float, width: float, outer_radius: float, inner_radius:
     return Inertia(mass, polar, 0.5 * polar + mass * width**2 / 12.0)
 
 
+class BlankRing(NamedTuple):
+    """A ring of a gear's blank: width, outer and inner radius [m]."""
+
+    width: float
+    outer_radius: float
+    inner_radius: float
+
+
 class Fault(Protocol):
     """Damage of one tooth, or of all teeth of a gear."""
 
@@ -71,12 +80,22 @@ class Fault(Protocol):
         """Raise `GearError` where no tooth of this gear can have it."""
         ...
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
-        """Material off the flank [m] at roll angles [rad]; `pitch_roll_angle` is the working pitch point's."""
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
+        """Material off the flank [m] at roll angles [rad].
+
+        `pitch_roll_angle` is the working pitch point's, `face_width` that of the pair's common face [m].
+        """
         ...
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
-        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]."""
+        """Additional compliance over a sound tooth [m/N], for loads at roll angles [rad]; without the contact."""
+        ...
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """Growth of the flattening of the pair's contact at roll angles [rad], over that of sound flanks.
+
+        `face_width` is that of the pair's common face [m].
+        """
         ...
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
@@ -109,7 +128,8 @@ class Gear:
         ends the rack's straight flank one addendum below its reference line, ``(dedendum - addendum) m / (1 -
         sin(alpha))``, or the full tip radius where that is smaller.
     bore : float
-        Diameter of the bore [m]; 0 for a gear in one piece with its shaft.
+        Diameter of the bore [m]; 0 for a gear made from its shaft, which then has the mass of the core
+        (:mod:`coupling.gears.geometry.blank`).
     youngs_modulus, poisson_ratio, density : float
         Material [Pa], [-], [kg/m^3]; steel where not given.
     tip_relief : TipRelief or None
@@ -351,16 +371,19 @@ class Gear:
         return None if self.rim_thickness is None else self.root_circle_radius - self.rim_thickness
 
     @property
-    def inertia(self) -> Inertia:
-        """Mass and moments of inertia of the blank."""
+    def blank_rings(self) -> tuple[BlankRing, ...]:
+        """Rings of the blank, one inside the other, their middles in the middle of the face."""
         bore_radius, inside = 0.5 * self.bore, self.rim_inner_radius
         if inside is None:
-            return hollow_disc(self.density, self.face_width, self.pitch_radius, bore_radius)
-        rim = hollow_disc(self.density, self.face_width, self.pitch_radius, inside)
-        if self.web_thickness is None:
-            return rim
-        web = hollow_disc(self.density, self.web_thickness, inside, bore_radius)
-        return Inertia(*(of_rim + of_web for of_rim, of_web in zip(rim, web, strict=True)))
+            return (BlankRing(self.face_width, self.pitch_radius, bore_radius),)
+        rim = BlankRing(self.face_width, self.pitch_radius, inside)
+        return (rim,) if self.web_thickness is None else (rim, BlankRing(self.web_thickness, inside, bore_radius))
+
+    @property
+    def inertia(self) -> Inertia:
+        """Mass and moments of inertia of the blank; of a gear without a bore down to the axis."""
+        rings = [hollow_disc(self.density, *ring) for ring in self.blank_rings]
+        return Inertia(*(sum(of_rings) for of_rings in zip(*rings, strict=True)))
 
     @property
     def mass(self) -> float:

@@ -10,13 +10,15 @@ With the half thickness x at height y, that at the root x_r, at the tip x_a, and
     t(y) = min(2 x, x + x_c + max(0, x_a - x_c) (y - y_r) / (y_a - y_r)),    x_c = x_r - q sin(a),
 
 takes the place of 2 x in the bending, shear and compression of :mod:`coupling.gears.stiffness.beam`. The flanks'
-contact and the body below are as in a sound tooth.
+contact and the body below are as in a sound tooth. The section is the normal one of helical teeth, as for sound teeth
+(:mod:`coupling.gears.stiffness.normal_section`): depth and angle of the crack are measured in it.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +28,7 @@ from coupling.gears.geometry.faults import check_tooth_number, require_tooth
 from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 from coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
+from coupling.gears.stiffness.normal_section import transverse_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +47,7 @@ class ToothCrack:
     tooth : int
         Number of the tooth from 0, in the order in which the teeth come into mesh.
     depth : float
-        Length of the crack [m].
+        Length of the crack in the normal section [m].
     angle : float
         Angle between the crack and the tooth's axis [rad].
     """
@@ -64,7 +67,7 @@ class ToothCrack:
         """See `coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
-    def gap(self, gear: Gear, roll_angle: FloatArray, pitch_roll_angle: float) -> FloatArray:
+    def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
         """Zero: an unloaded flank does not move."""
         return np.zeros_like(roll_angle)
 
@@ -76,6 +79,11 @@ class ToothCrack:
         GearError
             For a crack that leaves less than a tenth of any section of the tooth.
         """
+        radius = gear.base_radius * np.sqrt(1.0 + np.asarray(roll_angle, dtype=np.float64) ** 2)
+        return transverse_compliance(gear, lambda spur: partial(self._in_section, spur))(radius)
+
+    def _in_section(self, gear: Gear, radius: FloatArray) -> FloatArray:
+        """Additional compliance of the tooth of a spur gear [m/N] for loads at radii [m]."""
         low = fillet_points(gear, np.array(ROOT_CIRCLE))
         root = float(low.half_thickness)
         left = root - self.depth * math.sin(self.angle)
@@ -86,7 +94,6 @@ class ToothCrack:
                 f"gear {gear.name!r}: a crack of {self.depth * 1e3:.4g} mm goes through the foot of the tooth; "
                 f"at most {deepest * 1e3:.4g} mm at this angle, or a missing tooth"
             )
-        radius = gear.base_radius * np.sqrt(1.0 + np.asarray(roll_angle, dtype=np.float64) ** 2)
         beta = load_angle(gear, np.clip(radius, gear.form_radius, gear.tip_radius))[..., None]
         load = flank_points(gear, beta)
         sine, cosine = np.sin(beta), np.cos(beta)
@@ -106,6 +113,10 @@ class ToothCrack:
             stretching = (1.2 * cosine**2 / shear + sine**2 / modulus) * (1.0 / remaining - 1.0 / whole)
             total = total + np.sum(climb * (bending + stretching), axis=-1)
         return np.asarray(total, dtype=np.float64)
+
+    def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
+        """Zero: the flanks are whole."""
+        return np.zeros_like(roll_angle)
 
     def corners(self, gear: Gear, pitch_roll_angle: float) -> tuple[float, ...]:
         """None."""

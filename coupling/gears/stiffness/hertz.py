@@ -10,9 +10,9 @@ Mechanics*, section 5.6) by
     delta = 2 F (1 - nu^2) / (pi E b) * (ln(2 t / a) - nu / (2 (1 - nu)))
 
 In plane problems the approach of far points is unbounded: a depth must be chosen.  It is the tooth's axis on the line
-of action, ``t = x / cos(beta)``, because tooth models give the axis' motion; in a finite-element model the two add up
-(tests/validation).  With the load the strip widens: the stiffness ``dF/d delta`` grows with the logarithm of F, from
-nothing at first touch.
+of action, ``t = x / cos(beta)``, in the normal section of helical teeth, because tooth models give the axis' motion; in
+a finite-element model the two add up (tests/validation).  With the load the strip widens: the stiffness ``dF/d delta``
+grows with the logarithm of F, from nothing at first touch.
 
 The constant of Yang & Sun (1985), ``pi E b / (4 (1 - nu^2))`` for equal materials, has neither load nor depth.  It is
 some three times stiffer than Weber's law at common loads.
@@ -21,6 +21,7 @@ some three times stiffer than Weber's law at common loads.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,7 @@ import numpy.typing as npt
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.geometry.profile import flank_points, load_angle
+from coupling.gears.stiffness.normal_section import in_normal_section
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -120,10 +122,7 @@ def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineCon
         1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - gear.base_radius**2, 0.0)), 1e-6 * gear.module)
         for gear, radius in zip(gears, radii, strict=True)
     ]
-    depths = []
-    for gear, radius in zip(gears, radii, strict=True):
-        beta = load_angle(gear, radius)
-        depths.append(flank_points(gear, beta).half_thickness / np.cos(beta))
+    depths = [in_normal_section(gear, _depth)(radius) for gear, radius in zip(gears, radii, strict=True)]
     return LineContact(
         # In the normal section of helical teeth the flanks are flatter.
         curvature_radius=1.0 / (curvatures[0] + curvatures[1]) / math.cos(geometry.driver.base_helix_angle),
@@ -132,6 +131,16 @@ def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineCon
         poisson_ratios=np.array([gear.poisson_ratio for gear in gears]),
         width=geometry.face_width,
     )
+
+
+def _depth(gear: Gear) -> Callable[[FloatArray], FloatArray]:
+    """Depth of a spur gear's tooth axis under its flank, along the line of action [m], by the radius [m]."""
+
+    def depth(radius: FloatArray) -> FloatArray:
+        beta = load_angle(gear, radius)
+        return np.asarray(flank_points(gear, beta).half_thickness / np.cos(beta), dtype=np.float64)
+
+    return depth
 
 
 def _positive(force: npt.ArrayLike) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
+from coupling.machine.parts import gear_disc
 from gearwhine.case import Case, RollingStiffness, Segment
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
@@ -24,11 +25,11 @@ from gearwhine.figures.rotors.responses import (
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
 from gearwhine.figures.style import shortened
-from gearwhine.from_case.rotors import build_gear, gear_inertia
+from gearwhine.from_case.rotors import shaft_gears
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.rotors import SolvedRotor
-from rotors import Bearing, Disc, Rotor
+from rotors import Bearing, Rotor
 from rotors import Segment as RotorSegment
 
 FloatArray = npt.NDArray[np.float64]
@@ -69,20 +70,18 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
     name = rotor.name
     entry = case.rotor_named(name)
     gears = []
-    for gear in case.gear:
-        if gear.rotor != name or gear.at is None:
-            continue
-        built = build_gear(case, gear)
+    for mounted in shaft_gears(case, name):
+        built = mounted.gear
         gears.append(
             DrawnGear(
-                name=gear.name,
-                at=gear.at,
+                name=mounted.name,
+                at=mounted.at,
                 face_width=built.face_width,
                 tip_diameter=2.0 * built.tip_radius,
                 pitch_diameter=2.0 * built.pitch_radius,
                 root_diameter=2.0 * built.root_circle_radius,
-                teeth=gear.teeth,
-                disc=Disc(gear.at, *gear_inertia(case, gear)),
+                teeth=built.teeth,
+                disc=gear_disc(mounted, rotor),
             )
         )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]

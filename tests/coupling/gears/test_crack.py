@@ -2,10 +2,12 @@
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from coupling.gears import (
     Gear,
@@ -22,18 +24,16 @@ GEAR = Gear("cracked", 30, 3e-3, math.radians(20.0), 15e-3)
 ROLLS = np.linspace(GEAR.roll_angle(GEAR.form_radius), GEAR.roll_angle(GEAR.tip_radius), 7)
 
 
-@pytest.mark.parametrize("depth", [0.4e-3, 1.5e-3, 3.5e-3])
-def test_extra_compliance_is_that_of_the_sections_left(depth: float) -> None:
+def of_sections_left(gear: Gear, crack: ToothCrack, radii: Iterable[float]) -> list[float]:
+    """Additional compliance of the tooth of a spur gear [m/N], integrated over the sections of its drawn outline."""
     points = 20000
-    across, along = tooth_outline(GEAR, points)[: 2 * points - 1].T
+    across, along = tooth_outline(gear, points)[: 2 * points - 1].T
     half = -across
-    crack = ToothCrack(2, depth, math.radians(60.0))
-    left = half[0] - depth * math.sin(math.radians(60.0))
-    found = crack.extra_compliance(GEAR, ROLLS)
-    modulus, shear = GEAR.youngs_modulus * GEAR.face_width, GEAR.youngs_modulus / 2.6 * GEAR.face_width
-    for roll, value in zip(ROLLS, found, strict=True):
-        radius = GEAR.base_radius * math.sqrt(1.0 + roll**2)
-        beta = float(load_angle(GEAR, np.array(radius)))
+    left = half[0] - crack.depth * math.sin(crack.angle)
+    modulus, shear = gear.youngs_modulus * gear.face_width, gear.youngs_modulus / 2.6 * gear.face_width
+    found = []
+    for radius in radii:
+        beta = float(load_angle(gear, np.array(radius)))
         height = float(np.interp(radius, np.hypot(across, along), along))
         lever = float(np.interp(height, along, half))
         below = along <= height
@@ -42,7 +42,35 @@ def test_extra_compliance_is_that_of_the_sections_left(depth: float) -> None:
         moment = math.cos(beta) * (height - y) - math.sin(beta) * lever
         more = 12.0 * moment**2 / modulus * (kept**-3 - (2.0 * x) ** -3)
         more += (1.2 * math.cos(beta) ** 2 / shear + math.sin(beta) ** 2 / modulus) * (1.0 / kept - 0.5 / x)
-        assert value == pytest.approx(float(np.trapezoid(more, y)), rel=2e-4, abs=1e-14)
+        found.append(float(np.trapezoid(more, y)))
+    return found
+
+
+@pytest.mark.parametrize("depth", [0.4e-3, 1.5e-3, 3.5e-3])
+def test_extra_compliance_is_that_of_the_sections_left(depth: float) -> None:
+    crack = ToothCrack(2, depth, math.radians(60.0))
+    expected = of_sections_left(GEAR, crack, GEAR.base_radius * np.hypot(1.0, ROLLS))
+    assert crack.extra_compliance(GEAR, ROLLS) == pytest.approx(expected, rel=2e-4, abs=1e-14)
+
+
+@pytest.mark.parametrize(("teeth", "normal"), [(30, 32), (22, 30), (17, 30)])
+def test_a_helical_tooth_is_cracked_in_its_normal_section(teeth: int, normal: int) -> None:
+    """Teeth of z_n = z / (cos² β_b cos β), 1 / cos β_b softer along the transverse line of action."""
+
+    def missing(beta: float) -> float:
+        return teeth / (1.0 - (math.sin(beta) * math.cos(math.radians(20.0))) ** 2) / math.cos(beta) - normal
+
+    beta = float(brentq(missing, 0.01, 1.0))
+    gear, spur = replace(GEAR, teeth=teeth, helix_angle=beta), replace(GEAR, teeth=normal, allow_undercut=True)
+    shares = np.array([0.2, 0.5, 0.9])
+    rolls, spur_rolls = (
+        one.roll_angle(one.form_radius) * (1.0 - shares) + one.roll_angle(one.tip_radius) * shares
+        for one in (gear, spur)
+    )
+    crack = ToothCrack(0, 2e-3)
+    cosine = math.cos(math.asin(math.sin(beta) * math.cos(math.radians(20.0))))
+    expected = np.array(of_sections_left(spur, crack, spur.base_radius * np.hypot(1.0, spur_rolls))) / cosine
+    np.testing.assert_allclose(crack.extra_compliance(gear, rolls), expected, rtol=3e-4)
 
 
 def test_no_crack_no_difference_and_deeper_is_softer() -> None:

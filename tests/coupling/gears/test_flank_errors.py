@@ -17,6 +17,7 @@ from coupling.gears import (
     ProfileDeviation,
     RootRelief,
     Spall,
+    SquareStiffness,
     TipRelief,
     Wear,
     loaded_transmission_error,
@@ -151,6 +152,46 @@ def test_spall_across_a_part_of_the_face_softens_the_contact() -> None:
     more = 1.0 / contact.variants[0].stiffness(position) - 1.0 / contact.stiffness(position)
     # Six tenths of the face carry: the flattening is ten sixths.
     assert more == pytest.approx((10.0 / 6.0 - 1.0) * hertz_compliance(GearPairGeometry(PINION, WHEEL)), rel=1e-7)
+
+
+def test_a_spall_softens_the_contact_of_its_pair() -> None:
+    """Of both materials, on the common face, in the normal section of helical teeth: 2 η / (π b cos β_b)."""
+    beta, alpha = math.radians(20.0), ALPHA
+    spall = Spall(0, MIDDLE - 0.05, MIDDLE + 0.05, 20e-6, width=2e-3)
+    pinion = replace(PINION, helix_angle=beta, faults=(spall,))
+    wheel = replace(WHEEL, helix_angle=-beta, face_width=8e-3, youngs_modulus=70e9, poisson_ratio=0.33)
+    pair = GearPairGeometry(pinion, wheel)
+    position = pair.driver_position(MIDDLE)
+    whole = 2.0 * (0.91 / PINION.youngs_modulus + (1.0 - 0.33**2) / 70e9) / (math.pi * 8e-3)
+    whole /= math.cos(math.asin(math.sin(beta) * math.cos(alpha)))
+    for model in (MODEL, SquareStiffness(1e8)):
+        contact = tooth_contact(pair, model)
+        more = 1.0 / contact.variants[0].stiffness(position) - 1.0 / contact.stiffness(position)
+        assert more == pytest.approx((8.0 / 6.0 - 1.0) * whole, rel=1e-6)
+    # Nothing of the narrower face is left.
+    across = replace(pair, driver=replace(pinion, faults=(replace(spall, width=9e-3),)))
+    assert tooth_contact(across, MODEL).variants[0].deviation(position) == pytest.approx(20e-6)
+
+
+def test_a_spall_softens_webers_contact_as_much_as_it_narrows_it() -> None:
+    """Between a spall's pair and its sound twin stands Weber's δ/F of equal materials, times 2/3."""
+    spall = Spall(0, MIDDLE - 0.05, MIDDLE + 0.05, 20e-6, width=4e-3)
+    pair = GearPairGeometry(replace(PINION, faults=(spall,)), WHEEL)
+    load = 3000.0
+    contact = tooth_contact(pair, PotentialEnergyStiffness(contact="weber", force=load))
+    position = pair.driver_position(MIDDLE)
+    more = 1.0 / contact.variants[0].stiffness(position) - 1.0 / contact.stiffness(position)
+    along = MIDDLE * PINION.base_radius
+    curvature = 1.0 / along + 1.0 / (pair.tangent_distance - along)
+    yielding = 0.91 / PINION.youngs_modulus
+    strip = math.sqrt(8.0 * load * yielding / (math.pi * 10e-3 * curvature))
+    sinking = 0.0
+    for gear, roll in ((PINION, MIDDLE), (WHEEL, (pair.tangent_distance - along) / WHEEL.base_radius)):
+        # Along the normal, at the angle τ to the tooth's width, from the flank to the axis.
+        tilt = roll - gear.base_half_angle
+        depth = gear.base_radius * (roll - math.tan(tilt))
+        sinking += 2.0 * yielding / (math.pi * 10e-3) * (math.log(2.0 * depth / strip) - 0.15 / 0.7)
+    assert more == pytest.approx((10.0 / 6.0 - 1.0) * sinking, rel=1e-6)
 
 
 def test_both_damaged_teeth_meet_once_in_the_hunting_period() -> None:

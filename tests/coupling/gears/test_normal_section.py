@@ -3,11 +3,16 @@
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
+from scipy.optimize import brentq
 
 from coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry, PotentialEnergyStiffness
-from coupling.gears.stiffness.compliant_teeth import normal_section_gears
+from coupling.gears.stiffness.hertz import line_contact
 from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from coupling.gears.stiffness.normal_section import normal_section_gears
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def pair(degrees: float, teeth: int = 40) -> GearPairGeometry:
@@ -45,3 +50,31 @@ def test_stiffness_is_continuous_in_the_helix_angle() -> None:
     angles = np.linspace(10.0, 14.0, 41)
     values = np.array([float(model.pair_stiffness(pair(float(a)))(0.75)) for a in angles])
     assert np.abs(np.diff(values, 2)).max() < 2e-4 * values.mean()
+
+
+@pytest.mark.parametrize("degrees", [0.0, 15.0, 25.0, 35.0])
+@pytest.mark.parametrize("teeth", [20, 60])
+def test_the_depth_under_a_contact_reaches_to_the_middle_of_the_tooth_in_space(degrees: float, teeth: int) -> None:
+    """From the flank along its normal in space to the helicoid in the middle of the tooth.
+
+    The transverse depth would be 4 to 29 % longer.
+    """
+    geometry = pair(degrees, teeth)
+    gear = geometry.driver
+    beta, base_helix = math.radians(degrees), math.asin(math.sin(math.radians(degrees)) * math.cos(math.radians(20.0)))
+    positions = np.array([0.2, 0.5, 0.8]) * geometry.contact_ratio
+    depths = line_contact(geometry, positions).depths[0]
+    for position, depth in zip(positions, depths, strict=True):
+        roll = float(geometry.driver_roll_angle(position))
+        tilt = roll - gear.base_half_angle
+        place = gear.base_radius * np.array(
+            [roll * math.cos(tilt) - math.sin(tilt), roll * math.sin(tilt) + math.cos(tilt), 0.0]
+        )
+        # The normal is tangent to the base cylinder and square to the straight line of the flank there.
+        inward = math.cos(base_helix) * np.array([-math.cos(tilt), -math.sin(tilt), math.tan(base_helix)])
+
+        def beside(length: float, place: FloatArray = place, inward: FloatArray = inward) -> float:
+            x, y, z = place + length * inward
+            return math.atan2(x, y) - z * math.tan(beta) / gear.pitch_radius
+
+        assert depth == pytest.approx(brentq(beside, 0.0, 5.0 * gear.module), rel=4e-3)
