@@ -63,7 +63,7 @@ class SolvedSystem:
     campbell : SystemCampbell or None
         Campbell diagram, where it is asked for.
     unbalance : tuple of FrequencyResponse
-        Responses to the unbalances of each rotor that has any, over the speeds of the diagram.
+        Responses to the unbalances of each rotor that has any, over the speeds of the diagram, at w > 0.
     unbalance_speeds : ndarray, shape (u,)
         Speeds of the leading rotor [rad/s].
     lines : tuple of ResponseParts
@@ -259,5 +259,7 @@ def _over_speed(
         if machine.speeds[rotor] == 0.0:
             continue
         progress(f"response to the unbalance of {rotor}")
-        unbalance.append(unbalance_response(machine, turning, rotor=rotor, contact=mean))
+        response = unbalance_response(machine, turning, rotor=rotor, contact=mean)
+        # A clockwise rotor's phases are those of its signals, not of e^{iwt} at its negative speed.
+        unbalance.append(response.at_positive_frequencies())
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
