@@ -185,6 +185,27 @@ def test_a_clockwise_rotor_lags_as_its_mirror_image(solved_rotor: Any, jeffcott:
 
 
 @pytest.mark.parametrize("sense", [1, -1])
+def test_the_response_over_speed_is_in_the_sense_of_operation(solved_rotor: Any, jeffcott: str, sense: int) -> None:
+    """m e Ω² / (2k − M Ω² + 2i (c Ω − q)): cross-coupling q feeds forward whirl of one sense, and damps the other's."""
+    q = 2e4
+    stiffness = f"{{xx='2e6 N/m', yy='2e6 N/m', xy='{q} N/m', yx='{-q} N/m'}}"
+    (probe,) = solved_rotor(
+        jeffcott,
+        f"operation.speed={5500 * sense} rpm",
+        "bearing.*.speeds=",
+        f"bearing.*.stiffness={stiffness}",
+        "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m'}]",
+        "rotor_analysis.unbalance_response={speed=['5500 rpm', '500 rpm'], "
+        "probes=[{name='x', rotor='shaft', at='50 mm'}]}",
+    )["unbalance_response"]["probes"]
+    speed = sense * 5500.0 * RPM
+    motion = 1e-4 * speed**2 / complex(2 * 2e6 - MASS * speed**2, 2.0 * (200.0 * speed - q))
+    assert probe["operation_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_at_rpm"] == pytest.approx(sense * 5500.0)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
 def test_phase_of_a_clockwise_rotor_in_the_system_is_that_of_its_signal(
     tmp_path: Path, jeffcott: str, sense: int
 ) -> None:
