@@ -25,7 +25,7 @@ that both bases share, such as the one damping ratio of all modes above the limi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,6 +37,7 @@ from coupling.linear.complex_modes import CoupledModes
 from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from rotors.analyses.harmonic_response import at_positive_frequency
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -201,6 +202,21 @@ class FrequencyResponse:
     def bearing_force(self) -> dict[str, ComplexArray]:
         """Force of each shaft on its bearing along x and y [N], shape (f, 2) each."""
         return {name: load[:, :2] for name, load in self.bearing_load.items()}
+
+    def at_positive_frequencies(self) -> "FrequencyResponse":
+        """Return the same signals as real parts of a e^{i|w|t}: conjugate amplitudes where w is negative."""
+
+        def positive(amplitude: ComplexArray) -> ComplexArray:
+            return at_positive_frequency(amplitude, self.frequencies)
+
+        return replace(
+            self,
+            frequencies=np.abs(self.frequencies),
+            coordinates=positive(self.coordinates),
+            sensor_acceleration={name: positive(signal) for name, signal in self.sensor_acceleration.items()},
+            bearing_load={name: positive(load) for name, load in self.bearing_load.items()},
+            mesh_force={name: positive(force) for name, force in self.mesh_force.items()},
+        )
 
     def peaks(self, curve: ComplexArray, count: int = 8) -> npt.NDArray[np.int64]:
         """Return the indices of the highest maxima of a curve's magnitude (f,), the highest first."""

@@ -441,7 +441,7 @@ class Sweep(Table):
     """`[sweep]`: the speeds to go through, as a range or a list."""
 
     speed: Speeds
-    """Speeds of the first driver's rotor: a list or a range."""
+    """Speeds of the first driver's rotor, in the sense of `[operation] speed`: a list or a range."""
 
     @property
     def speeds(self) -> tuple[float, ...]:

@@ -453,7 +453,8 @@ class UnbalanceResponse(Table):
     """Speeds of the response to unbalance and bow (None: over the Campbell diagram's, finer), and what reads it."""
 
     speed: Speeds | None = None
-    """Speeds: a list or a range. Default: the Campbell diagram's range in 300 steps."""
+    """Speeds, in the sense of `[operation] speed`: a list or a range. Default: the Campbell diagram's range in 300
+    steps."""
     probes: tuple[Probe, ...] = Field(default=(), max_length=MOST_PROBES)
     """Probes of the shaft's displacement. Default: one at each bearing and each unbalance, along x."""
 
@@ -539,8 +540,8 @@ class RotorAnalysis(Table):
     """`[rotor_analysis]`: speeds of the first driver's rotor, and what is wanted beside the modes."""
 
     speed: Speeds | None = None
-    """Speeds of the Campbell diagram: a list or a range. Default: those of `[sweep]`, else 50 steps up to 1.5 times the
-    speed of operation."""
+    """Speeds of the Campbell diagram, in the sense of `[operation] speed`: a list or a range. Default: those of
+    `[sweep]`, else 50 steps up to 1.5 times the speed of operation."""
     modes: Annotated[int, Whole(1, 200)] | None = None
     """Number of lateral modes. Default: 12, or all of a small lumped rotor."""
     orders: tuple[Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1000.0)], ...] = Field(

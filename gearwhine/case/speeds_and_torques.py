@@ -7,6 +7,7 @@ default. They are speeds of the rotor itself [rad/s], positive counter-clockwise
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -108,6 +109,17 @@ def _speed(case: Case, speed: float | None = None) -> float:
     return speed
 
 
+def with_sense_of_operation(case: Case, speeds: Iterable[float]) -> tuple[float, ...]:
+    """Return speeds of the first driver's rotor [rad/s] in the sense of the speed of operation, whatever their own.
+
+    Lists and ranges of speeds hold absolute values. Without an operation the speeds stay as they are.
+    """
+    if case.operation is None:
+        return tuple(speeds)
+    sense = case.operation.speed
+    return tuple(math.copysign(speed, sense) for speed in speeds)
+
+
 BEYOND_OPERATION = 1.5
 """Default end of a Campbell diagram over the speed of operation."""
 
@@ -168,9 +180,12 @@ def table_range(case: Case, rotor: str) -> tuple[float, float]:
 
 
 def _turned(case: Case, rotor: str, speeds: tuple[float, ...]) -> tuple[float, ...]:
-    """Return speeds of the first driver's rotor as those of another; a rotor outside the train stands still."""
+    """Return speeds of the first driver's rotor, in the sense of operation, as those of another rotor.
+
+    A rotor outside the train stands still.
+    """
     ratio = float(speed_ratios(case).get(rotor, 0.0))
-    return tuple(ratio * speed for speed in speeds)
+    return tuple(ratio * speed for speed in with_sense_of_operation(case, speeds))
 
 
 def _evenly(first: float, last: float, steps: int) -> tuple[float, ...]:

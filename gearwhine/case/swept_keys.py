@@ -16,6 +16,7 @@ from gearwhine.case.errors import NOTHING, CaseError, Problem, key_of
 from gearwhine.case.fields import MOST_ENTRIES
 from gearwhine.case.model import Case, case_document
 from gearwhine.case.overrides import matching_places, parse_key_path
+from gearwhine.case.speeds_and_torques import with_sense_of_operation
 
 SPEED_KEY = "operation.speed"
 
@@ -86,7 +87,7 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             problems.append(Problem("--over", key.key, "each key once"))
         paths += key_paths
     if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
-        keys.insert(0, _speeds(case.sweep.speeds))
+        keys.insert(0, _speeds(with_sense_of_operation(case, case.sweep.speeds)))
     if not keys and not problems:
         expected = "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }, or --over: "
         problems.append(Problem("sweep", NOTHING, f"{expected}{_EXPECTED}"))
@@ -151,7 +152,7 @@ def _listed(text: str, key: str, entries: list[str]) -> SweptKey:
 
 def _speeds(speeds: Iterable[float]) -> SweptKey:
     """Return the speeds of ``[sweep]`` [rad/s] as a key in rpm, exact as they are in the case."""
-    values = tuple(speeds)
+    values = tuple(speed + 0.0 for speed in speeds)  # no standstill of -0 rpm
     texts = tuple(str(units.format_quantity(speed, units.SPEED)) for speed in values)
     return SweptKey(SPEED_KEY, texts, tuple(float(f"{speed * 30.0 / math.pi:.12g}") for speed in values), "rpm")
 

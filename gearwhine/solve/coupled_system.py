@@ -1,6 +1,5 @@
 """Linear analyses of the coupled system: modes, Campbell diagram, responses at gears and sensors to mesh errors."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +20,7 @@ from coupling.linear.mesh_excitation import MeshHarmonicModel, ResponseParts
 from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
 from gearwhine.case.errors import NOTHING
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, with_sense_of_operation
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 
@@ -63,7 +62,7 @@ class SolvedSystem:
     campbell : SystemCampbell or None
         Campbell diagram, where it is asked for.
     unbalance : tuple of FrequencyResponse
-        Responses to the unbalances of each rotor that has any, over the speeds of the diagram.
+        Responses to the unbalances of each rotor that has any, over the speeds of the diagram, at w > 0.
     unbalance_speeds : ndarray, shape (u,)
         Speeds of the leading rotor [rad/s].
     lines : tuple of ResponseParts
@@ -158,7 +157,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
         speeds = sorted({abs(speed) for speed in case.sweep.speeds})
         if len(speeds) < 2:
             raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
-        return tuple(math.copysign(speed, operation) for speed in speeds)
+        return with_sense_of_operation(case, speeds)
     low, high = 0.0, BEYOND_OPERATION * abs(operation)
     for name, speed in rotor_speeds(case).items():
         least, most = table_range(case, name)
@@ -169,7 +168,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
         raise CaseError(
             [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
         )
-    return tuple(math.copysign(speed, operation) for speed in np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
+    return with_sense_of_operation(case, np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
 
 
 def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
@@ -259,5 +258,7 @@ def _over_speed(
         if machine.speeds[rotor] == 0.0:
             continue
         progress(f"response to the unbalance of {rotor}")
-        unbalance.append(unbalance_response(machine, turning, rotor=rotor, contact=mean))
+        response = unbalance_response(machine, turning, rotor=rotor, contact=mean)
+        # A clockwise rotor's phases are those of its signals, not of e^{iwt} at its negative speed.
+        unbalance.append(response.at_positive_frequencies())
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)

@@ -52,7 +52,7 @@ from rotors import (
 from rotors import campbell as rotor_campbell
 from rotors.analyses.campbell import Crossing
 from rotors.analyses.critical_speeds import CriticalSpeedMap, CriticalSpeeds, critical_speed_map
-from rotors.analyses.harmonic_response import orbit_of
+from rotors.analyses.harmonic_response import at_positive_frequency, orbit_of
 from rotors.analyses.rest_frequencies import RestFrequencies
 from rotors.analyses.statics import StaticDeflection, StaticForce
 from rotors.analyses.torsional_response import Torque, TorsionalDashpot, TorsionalResponse
@@ -118,7 +118,7 @@ class ProbeReading:
     speeds : ndarray, shape (b,)
         Speeds of the rotor [rad/s].
     amplitude : ndarray of complex, shape (b,)
-        Reading Re(amplitude e^{iΩt}) along the probe's angle, run-out included; t from where the mark passes x [m].
+        Reading Re(amplitude e^{i|Ω|t}) along the probe's angle, run-out included; t from where the mark passes x [m].
     major_axis : ndarray, shape (b,)
         Half the length of the orbit that is read there [m].
     """
@@ -206,7 +206,8 @@ def solve_response(
 def _read(response: SynchronousResponse, probe: Probe) -> ProbeReading:
     x, y = (part[:, 0] for part in response.reading([probe.at]))
     along = x * np.cos(probe.angle) + y * np.sin(probe.angle)
-    return ProbeReading(probe, response.speeds, along, orbit_of(x, y, response.frequencies).major)
+    reading = at_positive_frequency(along, response.frequencies)
+    return ProbeReading(probe, response.speeds, reading, orbit_of(x, y, response.frequencies).major)
 
 
 def _probes(case: Case, analysis: RotorAnalysis, table: GivenRotor) -> list[Probe]:

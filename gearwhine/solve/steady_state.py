@@ -24,7 +24,7 @@ from coupling.time.histories import Histories, modal_record, transient_outputs, 
 from coupling.time.histories import histories as coupled_histories
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, with_sense_of_operation
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -264,7 +264,7 @@ def solve_steady(
         response = periodic_response(machine.system)
         return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
     low, high = _speed_range(case)
-    low, high = math.copysign(low, speed), math.copysign(high, speed)
+    low, high = with_sense_of_operation(case, (low, high))
     rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
     def seen(at: float, response: PeriodicResponse) -> None:

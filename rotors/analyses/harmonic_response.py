@@ -68,7 +68,10 @@ class HarmonicResponse:
         return self.motion.evaluate(z)
 
     def probe(self, z: float, angle: float) -> ComplexArray:
-        """Complex amplitude along a direction at ``angle`` [rad] from x, (b,) [m]: abs is it, −angle its phase lag."""
+        """Complex amplitude along a direction at ``angle`` [rad] from x, (b,) [m]: abs is it.
+
+        Its phase lag is −angle of `at_positive_frequency`.
+        """
         x, y = self.motion.evaluate([z])
         return np.asarray(x[:, 0] * np.cos(angle) + y[:, 0] * np.sin(angle))
 
@@ -76,6 +79,20 @@ class HarmonicResponse:
         """Orbits at positions z [m], axes (b, len(z))."""
         x, y = self.motion.evaluate(z)
         return orbit_of(x, y, self.frequencies[:, None])
+
+
+def at_positive_frequency(amplitude: ComplexArray, frequencies: FloatArray) -> ComplexArray:
+    """Amplitude of the same signal at |ω|, whose phase lag is −angle: Re[A e^{iωt}] = Re[conj(A) e^{i|ω|t}] for ω < 0.
+
+    Parameters
+    ----------
+    amplitude : ndarray of complex, shape (b, ...)
+        Amplitude A of the signals Re[A e^{iωt}].
+    frequencies : ndarray, shape (b,)
+        Frequencies ω [rad/s]; −0.0 is the limit of a clockwise rotor that comes to rest.
+    """
+    clockwise = np.signbit(frequencies).reshape(-1, *[1] * (amplitude.ndim - 1))
+    return np.asarray(np.where(clockwise, amplitude.conj(), amplitude))
 
 
 def orbit_of(x: ComplexArray, y: ComplexArray, frequencies: FloatArray) -> Orbit:

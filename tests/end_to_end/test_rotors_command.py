@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import gearwhine as gw
+
 RPM = math.pi / 30.0
 
 # A shaft so short and thick that it is rigid beside its bearings, which makes a Jeffcott rotor of it.
@@ -163,6 +165,65 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(
     along_x = response["probes"][0]
     assert along_x["operation_amplitude_m"] == pytest.approx(abs(expected(2000.0, 2e6)), rel=1e-4)
     assert solved_rotor(jeffcott)["unbalance_response"] is None
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_clockwise_rotor_lags_as_its_mirror_image(solved_rotor: Any, jeffcott: str, sense: int) -> None:
+    """The mirrored disc's unbalance and probe stand at the negative angles: its probe reads the same at all times."""
+    response = solved_rotor(
+        jeffcott,
+        f"operation.speed={2000 * sense} rpm",
+        f"rotor.shaft.unbalance=[{{at='50 mm', moment='1e-4 kg*m', phase='{30 * sense} deg'}}]",
+        "rotor_analysis.unbalance_response={probes=[{name='x', rotor='shaft', at='50 mm'}, "
+        f"{{name='y', rotor='shaft', at='50 mm', angle='{90 * sense} deg'}}]}}",
+    )["unbalance_response"]
+    speed = 2000.0 * RPM
+    motion = 1.0 / complex(2 * 2e6 - MASS * speed**2, 2 * 200.0 * speed)
+    lag = -math.degrees(np.angle(motion)) - 30.0
+    lags = [probe["operation_phase_lag_deg"] for probe in response["probes"]]
+    assert lags == pytest.approx([lag % 360.0, (lag + 90.0) % 360.0], abs=0.01)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_response_over_speed_is_in_the_sense_of_operation(solved_rotor: Any, jeffcott: str, sense: int) -> None:
+    """m e Ω² / (2k − M Ω² + 2i (c Ω − q)): cross-coupling q feeds forward whirl of one sense, and damps the other's."""
+    q = 2e4
+    stiffness = f"{{xx='2e6 N/m', yy='2e6 N/m', xy='{q} N/m', yx='{-q} N/m'}}"
+    (probe,) = solved_rotor(
+        jeffcott,
+        f"operation.speed={5500 * sense} rpm",
+        "bearing.*.speeds=",
+        f"bearing.*.stiffness={stiffness}",
+        "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m'}]",
+        "rotor_analysis.unbalance_response={speed=['5500 rpm', '500 rpm'], "
+        "probes=[{name='x', rotor='shaft', at='50 mm'}]}",
+    )["unbalance_response"]["probes"]
+    speed = sense * 5500.0 * RPM
+    motion = 1e-4 * speed**2 / complex(2 * 2e6 - MASS * speed**2, 2.0 * (200.0 * speed - q))
+    assert probe["operation_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_amplitude_m"] == pytest.approx(abs(motion), rel=1e-3)
+    assert probe["largest_at_rpm"] == pytest.approx(sense * 5500.0)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_phase_of_a_clockwise_rotor_in_the_system_is_that_of_its_signal(
+    tmp_path: Path, jeffcott: str, sense: int
+) -> None:
+    """Bearings carry half of m e w² cos(|w| t + phase) along x each, where the rotor turns slowly."""
+    settings = [
+        f"operation.speed={1000 * sense} rpm",
+        "bearing.*.speeds=",
+        "bearing.*.stiffness={xx='1e8 N/m', yy='1e8 N/m'}",
+        "rotor.shaft.unbalance=[{at='50 mm', moment='1e-4 kg*m', phase='30 deg'}]",
+        "sweep={speed=['100 rpm', '200 rpm']}",
+    ]
+    data = gw.load(tmp_path / jeffcott, settings).system().dataset
+    x, y = np.degrees(data.unbalance_response_bearing_force_phase.values[0, 0, 0])
+    assert x == pytest.approx(30.0 * sense, abs=0.1)
+    # Counter-clockwise y comes a quarter turn after x, clockwise a quarter turn before it.
+    assert y == pytest.approx(30.0 * sense - 90.0 * sense, abs=0.1)
+    found = data.unbalance_response_bearing_force.values[0, 0, 0]
+    assert found == pytest.approx([0.5e-4 * (100.0 * RPM) ** 2] * 2, rel=1e-3)
 
 
 def test_probes_stand_at_bearings_and_unbalances_unless_named(solved_rotor: Any, rotor_curves: Any) -> None:

@@ -146,6 +146,21 @@ def test_a_campbell_diagram_has_its_own_speeds_else_the_sweeps_else_those_around
     assert in_rpm(response_speeds(case, "shaft")) == pytest.approx([5.0])
 
 
+def test_speeds_are_in_the_sense_of_operation() -> None:
+    """A machine that turns clockwise does so at every speed that its case lists."""
+    clockwise = {"speed": "-1000 rpm"}
+    swept = case_of(operation=clockwise, sweep={"speed": ["100 rpm", "700 rpm"]})
+    assert in_rpm(whirl_speeds(swept, "shaft")) == pytest.approx([-1000.0, -100.0, -700.0])
+    assert in_rpm(campbell_speeds(swept, "shaft")) == pytest.approx([-700.0, -100.0])
+    own = {"speed": ["0 rpm", "300 rpm"], "unbalance_response": {"speed": ["20 rpm", "5 rpm"]}}
+    case = case_of(operation=clockwise, rotor_analysis=own)
+    assert in_rpm(campbell_speeds(case, "shaft")) == pytest.approx([-300.0, 0.0])
+    assert in_rpm(response_speeds(case, "shaft")) == pytest.approx([-5.0, -20.0])
+    # Its driven shaft turns the other way.
+    pair = load_case("spur-pair", ["operation.speed=-5500 rpm", "sweep.speed=['1000 rpm']"]).case
+    assert in_rpm(whirl_speeds(pair, "output")) == pytest.approx([5500.0, 1000.0])
+
+
 def test_speeds_that_nobody_named_stay_within_the_tables() -> None:
     table = {"speeds": ["300 rpm", "1200 rpm"], "stiffness": {"xx": [1e7, 2e7], "yy": 1e7}}
     speeds = in_rpm(campbell_speeds(case_of(bearing=table, operation={"speed": "-1000 rpm"}), "shaft"))

@@ -201,7 +201,7 @@ def made_up(number: int) -> PointResult:
     peaks = [{"frequency_hz": 10.0 * number, "amplitude_m_per_s2": 0.5 * number}]
     return PointResult(
         document={
-            "speed_rpm": 60.0 * (number + 1),
+            "speed_rpm": -60.0 * (number + 1),
             "trusted_below_hz": 900.0 + number,
             "energy_error": 1e-5 * number,
             "steps": 1000 + number,
@@ -219,14 +219,15 @@ def made_up(number: int) -> PointResult:
 
 def test_every_figure_of_a_point_stands_at_its_place() -> None:
     """On a square grid, where rows and columns could be taken for each other."""
-    over = ("operation.speed=3000 rpm,6000 rpm", "operation.torque=10 N*m,30 N*m")
+    over = ("operation.speed=-3000 rpm,-6000 rpm", "operation.torque=10 N*m,30 N*m")
     points = points_of(over=over)
     keys = swept_keys(load_case("small-gearbox").case, over)
     swept = [SweptPoint(point, made_up(number), resumed=number == 2) for number, point in enumerate(points)]
     data = collected_sweep(points[0].case, keys, swept)
     for number, (i, j) in enumerate([(0, 0), (0, 1), (1, 0), (1, 1)]):
         at = data.isel(speed=i, operation_torque=j)
-        assert float(at.rotation_speed) == 60.0 * (number + 1)
+        assert float(at.rotation_speed) == -60.0 * (number + 1)
+        # Orders of a machine that turns clockwise have frequencies as well.
         assert at.frequency.values == pytest.approx((number + 1) * np.array([0.0, 1.0, 2.5]))
         assert (float(at.trusted_limit), float(at.steps)) == (900.0 + number, 1000 + number)
         assert at.sensor_spectrum.values.tolist() == [[number + one for one in (0.0, 1.0, 2.0)]]

@@ -77,6 +77,16 @@ def test_speeds_of_the_case_come_first_and_exact() -> None:
     assert tuple(read_back) == case.sweep.speeds
 
 
+def test_a_sweep_turns_in_the_sense_of_operation() -> None:
+    """The thrust of helical teeth changes its direction with the sense of rotation: points would be others."""
+    overrides = ["operation.speed=-3000 rpm", "sweep.speed=['3000 rpm', '0 rpm']"]
+    case = load_case("helical-pair", overrides).case
+    (speed,) = swept_keys(case, [])
+    assert speed.values == (-3000.0, 0.0)
+    assert speed.texts == ("-3000 rpm", "0 rpm")
+    assert load_case("helical-pair", [*overrides, *speed.overrides[0]]).case == case
+
+
 def test_over_the_speed_takes_the_place_of_the_sweep_in_the_case() -> None:
     case = load_case("small-gearbox", ["sweep.speed=['1500 rpm']"]).case
     (speed,) = swept_keys(case, ["operation.speed=1 Hz,2 Hz"])

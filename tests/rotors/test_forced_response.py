@@ -25,7 +25,7 @@ from rotors import (
     torsional_response,
     unbalance_response,
 )
-from rotors.analyses.harmonic_response import frequency_response, harmonic_response
+from rotors.analyses.harmonic_response import at_positive_frequency, frequency_response, harmonic_response
 from rotors.analyses.statics import StaticForce
 from rotors.analyses.torsional_response import Torque, TorsionalDashpot
 from rotors.analyses.unbalance import bow_shape
@@ -77,6 +77,9 @@ def test_jeffcott_rotor_through_resonance(sense: float) -> None:
     np.testing.assert_allclose(orbit.minor[:, 0], sense * np.abs(expected), rtol=1e-10)
     # At resonance the phase lags by a quarter turn, wherever the mark is.
     assert np.angle(found.probe(0.5, 0.0)[3]) - phase == pytest.approx(-sense * math.pi / 2)
+    # The mirrored rotor's probe along x reads the same over time: only the sense of its mark's angles is another.
+    mirrored = moment * speeds**2 * np.exp(1j * sense * phase) / (stiffness - mass * speeds**2 + 300j * np.abs(speeds))
+    np.testing.assert_allclose(at_positive_frequency(found.probe(0.5, 0.0), found.frequencies), mirrored, rtol=1e-10)
     # What the bearings feel: half of the shaft's force each.
     shaft_force = (stiffness * expected)[:, None] / 2.0
     np.testing.assert_allclose(found.bearing_forces[:, :2, 0], np.repeat(shaft_force, 2, axis=1), rtol=1e-8)

@@ -49,7 +49,8 @@ class ProbeResponse:
     name : str
         Name of the probe.
     amplitude : ndarray of complex, shape (s,)
-        The displacement along the probe is Re(amplitude e^{iΩt}), with the unbalance's angle at Ωt from x [m].
+        The displacement along the probe is Re(amplitude e^{i|Ω|t}), with the unbalance's angle at Ωt from x [m]; of a
+        clockwise rotor that is the conjugate of a response at its negative Ω.
     major_axis : ndarray, shape (s,), optional
         Semi-major axis of the orbit there, where known [m].
     """
