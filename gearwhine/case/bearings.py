@@ -182,7 +182,8 @@ class _Mounted(Table):
     axial force; another bearing of the shaft locates it. Not for rows that carry thrust one way only or are pressed
     axially."""
     carries: Literal["+z", "-z"] = "+z"
-    """Direction of the axial force of the shaft that loads the elements."""
+    """Direction of the axial force of the shaft that loads the elements; of elements that carry it both ways, of
+    `axial_offset` and the spring."""
     arrangement: Arrangement = "single"
     """One such row, or two."""
     spacing: PositiveLength | None = None
@@ -266,10 +267,10 @@ class _Mounted(Table):
         rotors.RotorError
             Where there is no such bearing.
         """
-        from rotors.rolling_bearings import RollerRow, RollingBearing, paired, standing_rows
+        from rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
-        changes: dict[str, Any] = {"axial_offset": self.axial_offset}
+        changes: dict[str, Any] = {}
         if self.mounting is not None:
             bore, outer_diameter = self._rings(self.mounting)
             changes["clearance"] = self.mounting.operating_clearance(row, self.clearance, bore, outer_diameter)
@@ -277,15 +278,25 @@ class _Mounted(Table):
             changes["flanges"], changes["flange_stiffness"] = self.flanges, self.flange_stiffness
             changes["axial_clearance"] = self.axial_clearance
         row = replace(row, **changes)
-        rows = standing_rows(self.kind, row, self.width)
-        if len(rows) == 2 or self.arrangement == "single":
-            rows = rows if len(rows) == 2 else (row.facing(sense),)
-            return RollingBearing(rows, sense * self.preload, label, self.floating)
+        rows, spring, pressed = self._rows(row), sense * self.preload, 0.0
+        if len({one.direction for one in rows}) == 2:
+            if self.arrangement != "single":
+                spring, pressed = 0.0, preload_offset(row, self.preload) if self.preload > 0.0 else 0.0
+        else:
+            rows = tuple(one.facing(sense) for one in rows)
+        # The inner ring carries all rows along: its displacement is an offset towards some and away from others.
+        moved = sense * self.axial_offset
+        rows = tuple(replace(one, axial_offset=pressed + one.direction * moved) for one in rows)
+        return RollingBearing(rows, spring, label, self.floating)
+
+    def _rows(self, row: Row) -> tuple[Row, ...]:
+        """All rows in their places, from one of them."""
+        from rotors.rolling_bearings import paired, standing_rows
+
+        if self.arrangement == "single":
+            return standing_rows(self.kind, row, self.width)
         assert self.spacing is not None
-        if self.arrangement == "tandem":
-            pair = paired(row, "tandem", self.spacing)
-            return RollingBearing([row.facing(sense) for row in pair.rows], sense * self.preload, label)
-        return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
+        return tuple(paired(row, self.arrangement, self.spacing).rows)
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:
         """Bore and outer diameter of the bearing [m]."""
