@@ -172,8 +172,9 @@ class _Mounted(Table):
     mounting: Mounting | None = None
     """Fits and temperatures, which change the clearance."""
     preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
-    """Axial preload: of one row a spring's force on the shaft along `carries`, of two rows the force between them.
-    Springs of two opposed bearings cancel on the shaft: their preload is `axial_offset`."""
+    """Axial preload: of one row and of rows in tandem a spring's force on the shaft along `carries`, of two opposed
+    rows, also within one bearing, the force between them. Springs of two opposed bearings cancel on the shaft: their
+    preload is `axial_offset`."""
     axial_offset: Length = 0.0
     """Displacement of the inner ring along `carries` at assembly: rigid preload against another bearing of the shaft,
     whose force `gearwhine load` finds."""
@@ -183,7 +184,7 @@ class _Mounted(Table):
     axially."""
     carries: Literal["+z", "-z"] = "+z"
     """Direction of the axial force of the shaft that loads the elements; of elements that carry it both ways, of
-    `axial_offset` and the spring."""
+    `axial_offset` and a spring."""
     arrangement: Arrangement = "single"
     """One such row, or two."""
     spacing: PositiveLength | None = None
@@ -280,8 +281,8 @@ class _Mounted(Table):
         row = replace(row, **changes)
         rows, spring, pressed = self._rows(row), sense * self.preload, 0.0
         if len({one.direction for one in rows}) == 2:
-            if self.arrangement != "single":
-                spring, pressed = 0.0, preload_offset(row, self.preload) if self.preload > 0.0 else 0.0
+            # Opposed rows hold their preload between them, by equal offsets.
+            spring, pressed = 0.0, preload_offset(row, self.preload) if self.preload > 0.0 else 0.0
         else:
             rows = tuple(one.facing(sense) for one in rows)
         # The inner ring carries all rows along: its displacement is an offset towards some and away from others.

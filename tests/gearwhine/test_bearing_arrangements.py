@@ -213,3 +213,23 @@ def test_an_offset_of_two_rows_presses_an_opposed_bearing() -> None:
     # F L / (E A) of the 200 mm of shaft between them, 40 mm thick, which the pinion stiffens a little.
     shaft = force * 0.2 / (206e9 * np.pi / 4.0 * 0.04**2)
     assert sum(state.displacement[2] for state in deep) + shaft == pytest.approx(20e-6, rel=3e-3)
+
+
+@pytest.mark.parametrize("kind", TWO_ROWS)
+def test_two_rows_of_a_bearing_press_each_other_with_the_preload(kind: str) -> None:
+    """Each row is displaced as far as 500 N displace it alone, and nothing pushes at the shaft."""
+    bearing = two_rows(kind, preload="500 N", clearance="6 um", carries="-z")
+    state = rolling_equilibrium(bearing, np.zeros(5))
+    assert state.row_thrusts == pytest.approx([500.0, 500.0], rel=1e-9)
+    assert state.reaction == pytest.approx(np.zeros(5), abs=1e-6)
+    assert state.displacement[:3] == pytest.approx(np.zeros(3), abs=1e-12)
+    for row in two_rows(kind, clearance="6 um").rows:
+        held = dict.fromkeys(("x", "y", "rx", "ry"), 0.0)
+        alone = rolling_equilibrium(RollingBearing([row]), [0.0, 0.0, 500.0 * row.direction, 0.0, 0.0], held=held)
+        (pressed,) = {one.axial_offset for one in bearing.rows}
+        assert pressed == pytest.approx(row.direction * alone.displacement[2], rel=1e-9)
+    assert bearing.ring_offset == 0.0
+    # An offset of the ring stands beside it: where nothing opposes it, the shaft goes back by as much.
+    both = two_rows(kind, preload="500 N", axial_offset="2 um")
+    assert both.ring_offset == pytest.approx(2e-6)
+    assert rolling_equilibrium(both, np.zeros(5)).displacement[2] == pytest.approx(-2e-6)
