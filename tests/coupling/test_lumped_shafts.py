@@ -13,7 +13,7 @@ from rotors import Bearing, Disc, Rotor, Segment
 
 THICK, LENGTH, LEFT, RIGHT, MIDDLE = 0.03, 0.3, 0.05, 0.25, 0.15
 AXIAL = 1e9, 2e8
-FORCE = np.array([500.0, -900.0, 400.0])
+FORCE = (500.0, -900.0, 400.0)
 GRAVITY = (20.0, -90.0, 0.0)
 
 
