@@ -190,10 +190,8 @@ class _Mounted(Table):
     spacing: PositiveLength | None = None
     """Distance of the centres of two rows; needed for two."""
     dynamic_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
-    """Basic dynamic load rating C of the whole bearing, for the lives of `rotors` and `load`. Default: that of the
-    geometry by ISO 281."""
-    static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
-    """Basic static load rating C0 of the whole bearing; improves an inside that is estimated from a catalogue."""
+    """Basic dynamic load rating C of the whole bearing, of both with `arrangement`, for the lives of `rotors` and
+    `load`. Default: that of the geometry by ISO 281."""
     flanges: Literal["none", "one", "both"] = "none"
     """Flanges of cylindrical rollers, which carry no axial load without: one, along `carries`, or both."""
     flange_stiffness: PositiveStiffness | None = None
@@ -459,6 +457,8 @@ class RollingCatalogue(_Mounted):
 
     catalogue: Catalogue
     """Main dimensions, from which the inside is estimated."""
+    static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    """Basic static load rating C0 of the whole bearing, of both with `arrangement`; improves the estimated inside."""
 
     @model_validator(mode="after")
     def _has_rings(self) -> RollingCatalogue:
@@ -482,8 +482,6 @@ class RollingCatalogue(_Mounted):
         from rotors.rolling_bearings import catalogue_row
 
         size = self.catalogue
-        # The ratings of a pair do not determine those of a single row.
-        single = self.arrangement == "single"
         return catalogue_row(
             size.type,
             size.bore,
@@ -491,8 +489,10 @@ class RollingCatalogue(_Mounted):
             size.width,
             contact_angle=size.angle,
             clearance=self.clearance,
-            dynamic=self.dynamic_rating if single and self.static_rating is not None else None,
-            static=self.static_rating if single else None,
+            # Without C0 it is for the lives alone.
+            dynamic=self.dynamic_rating if self.static_rating is not None else None,
+            static=self.static_rating,
+            bearings=1 if self.arrangement == "single" else 2,
         )
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:

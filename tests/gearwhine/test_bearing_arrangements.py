@@ -11,7 +11,14 @@ from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.cli import run_command
 from gearwhine.results.check import sections as check_sections
 from gearwhine.results.operating_point import sections
-from rotors.rolling_bearings import RollingBearing, catalogue_row, rolling_equilibrium, rolling_state
+from rotors.rolling_bearings import (
+    RollingBearing,
+    Row,
+    catalogue_row,
+    rolling_equilibrium,
+    rolling_state,
+    static_rating,
+)
 
 TWO_ROWS = ("double-row-angular-contact", "spherical-roller", "self-aligning-ball")
 SIZE = {"type": "tapered-roller", "bore": "40 mm", "outer_diameter": "80 mm", "width": "19.75 mm"}
@@ -233,3 +240,16 @@ def test_two_rows_of_a_bearing_press_each_other_with_the_preload(kind: str) -> N
     both = two_rows(kind, preload="500 N", axial_offset="2 um")
     assert both.ring_offset == pytest.approx(2e-6)
     assert rolling_equilibrium(both, np.zeros(5)).displacement[2] == pytest.approx(-2e-6)
+
+
+def test_rows_of_a_pair_share_its_static_rating() -> None:
+    """ISO 76: 40 kN of the pair are 20 kN of either row, as those of a single bearing of 20 kN."""
+    size = {"type": "angular-contact", "bore": "40 mm", "outer_diameter": "80 mm", "width": "18 mm"}
+
+    def rows(**keys: Any) -> tuple[Row, ...]:
+        return tuple(RollingCatalogue.model_validate({"catalogue": size, **keys}).build("pair").rows)
+
+    (single,) = rows(static_rating="20 kN")
+    pair = rows(static_rating="40 kN", arrangement="back to back", spacing="18 mm")
+    assert [static_rating(row) for row in pair] == pytest.approx([20e3, 20e3])
+    assert [row.element_diameter for row in pair] == pytest.approx([single.element_diameter] * 2)
