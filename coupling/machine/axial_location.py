@@ -59,11 +59,8 @@ class AxialSupport:
 
     @property
     def is_set(self) -> bool:
-        """Whether an axial offset of its single row, or a spring, sets it against other bearings at assembly."""
-        if self.rolling is None:
-            return False
-        # Offsets of two rows press them against each other, not against another bearing.
-        return self.spring != 0.0 or (len(self.rolling.rows) == 1 and self.rolling.is_preloaded)
+        """Whether an axial offset of its inner ring, or a spring, sets it against other bearings at assembly."""
+        return self.rolling is not None and (self.spring != 0.0 or self.rolling.ring_offset != 0.0)
 
     @property
     def spring(self) -> float:

@@ -25,7 +25,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
+from scipy import linalg, sparse
 
 from coupling.statics.static_model import ConnectorLaw, LinearLaw
 from rotors.numerics.trust_region import Local, minimise
@@ -100,11 +100,20 @@ class ConnectedStructure:
         return linalg.lu_factor(self._held)
 
     def _answer_to(self, loads: FloatArray) -> FloatArray:
-        """Solve K₀ x = loads with iterative refinement, as short spans are far stiffer than soft bearings."""
+        """Solve K₀ x = loads with iterative refinement, as short spans are far stiffer than soft bearings.
+
+        What is left of the loads is taken in extended precision: its rounding would be that of the elastic forces of
+        the shortest span, and moves the soft bearings.
+        """
         x = linalg.lu_solve(self._factor, loads)
         for _ in range(_REFINEMENTS):
-            x = x + linalg.lu_solve(self._factor, loads - self._held @ x)
+            left = loads - self._extended @ x.astype(np.longdouble)
+            x = x + linalg.lu_solve(self._factor, left.astype(np.float64))
         return np.asarray(x)
+
+    @cached_property
+    def _extended(self) -> sparse.csr_array:
+        return sparse.csr_array(self._held.astype(np.longdouble))
 
     @cached_property
     def _shift(self) -> FloatArray:

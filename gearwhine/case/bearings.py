@@ -172,8 +172,9 @@ class _Mounted(Table):
     mounting: Mounting | None = None
     """Fits and temperatures, which change the clearance."""
     preload: Annotated[float, Quantity(units.FORCE, at_least=0.0)] = 0.0
-    """Axial preload: of one row a spring's force on the shaft along `carries`, of two rows the force between them.
-    Springs of two opposed bearings cancel on the shaft: their preload is `axial_offset`."""
+    """Axial preload: of one row and of rows in tandem a spring's force on the shaft along `carries`, of two opposed
+    rows, also within one bearing, the force between them. Springs of two opposed bearings cancel on the shaft: their
+    preload is `axial_offset`."""
     axial_offset: Length = 0.0
     """Displacement of the inner ring along `carries` at assembly: rigid preload against another bearing of the shaft,
     whose force `gearwhine load` finds."""
@@ -182,16 +183,15 @@ class _Mounted(Table):
     axial force; another bearing of the shaft locates it. Not for rows that carry thrust one way only or are pressed
     axially."""
     carries: Literal["+z", "-z"] = "+z"
-    """Direction of the axial force of the shaft that loads the elements."""
+    """Direction of the axial force of the shaft that loads the elements; of elements that carry it both ways, of
+    `axial_offset` and a spring."""
     arrangement: Arrangement = "single"
     """One such row, or two."""
     spacing: PositiveLength | None = None
     """Distance of the centres of two rows; needed for two."""
     dynamic_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
-    """Basic dynamic load rating C of the whole bearing, for the lives of `rotors` and `load`. Default: that of the
-    geometry by ISO 281."""
-    static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
-    """Basic static load rating C0 of the whole bearing; improves an inside that is estimated from a catalogue."""
+    """Basic dynamic load rating C of the whole bearing, of both with `arrangement`, for the lives of `rotors` and
+    `load`. Default: that of the geometry by ISO 281."""
     flanges: Literal["none", "one", "both"] = "none"
     """Flanges of cylindrical rollers, which carry no axial load without: one, along `carries`, or both."""
     flange_stiffness: PositiveStiffness | None = None
@@ -266,10 +266,10 @@ class _Mounted(Table):
         rotors.RotorError
             Where there is no such bearing.
         """
-        from rotors.rolling_bearings import RollerRow, RollingBearing, paired, standing_rows
+        from rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
-        changes: dict[str, Any] = {"axial_offset": self.axial_offset}
+        changes: dict[str, Any] = {}
         if self.mounting is not None:
             bore, outer_diameter = self._rings(self.mounting)
             changes["clearance"] = self.mounting.operating_clearance(row, self.clearance, bore, outer_diameter)
@@ -277,15 +277,25 @@ class _Mounted(Table):
             changes["flanges"], changes["flange_stiffness"] = self.flanges, self.flange_stiffness
             changes["axial_clearance"] = self.axial_clearance
         row = replace(row, **changes)
-        rows = standing_rows(self.kind, row, self.width)
-        if len(rows) == 2 or self.arrangement == "single":
-            rows = rows if len(rows) == 2 else (row.facing(sense),)
-            return RollingBearing(rows, sense * self.preload, label, self.floating)
+        rows, spring, pressed = self._rows(row), sense * self.preload, 0.0
+        if len({one.direction for one in rows}) == 2:
+            # Opposed rows hold their preload between them, by equal offsets.
+            spring, pressed = 0.0, preload_offset(row, self.preload) if self.preload > 0.0 else 0.0
+        else:
+            rows = tuple(one.facing(sense) for one in rows)
+        # The inner ring carries all rows along: its displacement is an offset towards some and away from others.
+        moved = sense * self.axial_offset
+        rows = tuple(replace(one, axial_offset=pressed + one.direction * moved) for one in rows)
+        return RollingBearing(rows, spring, label, self.floating)
+
+    def _rows(self, row: Row) -> tuple[Row, ...]:
+        """All rows in their places, from one of them."""
+        from rotors.rolling_bearings import paired, standing_rows
+
+        if self.arrangement == "single":
+            return standing_rows(self.kind, row, self.width)
         assert self.spacing is not None
-        if self.arrangement == "tandem":
-            pair = paired(row, "tandem", self.spacing)
-            return RollingBearing([row.facing(sense) for row in pair.rows], sense * self.preload, label)
-        return paired(row, self.arrangement, self.spacing, preload=self.preload, name=label)
+        return tuple(paired(row, self.arrangement, self.spacing).rows)
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:
         """Bore and outer diameter of the bearing [m]."""
@@ -447,6 +457,8 @@ class RollingCatalogue(_Mounted):
 
     catalogue: Catalogue
     """Main dimensions, from which the inside is estimated."""
+    static_rating: Annotated[float, Quantity(units.FORCE, above=0.0)] | None = None
+    """Basic static load rating C0 of the whole bearing, of both with `arrangement`; improves the estimated inside."""
 
     @model_validator(mode="after")
     def _has_rings(self) -> RollingCatalogue:
@@ -470,8 +482,6 @@ class RollingCatalogue(_Mounted):
         from rotors.rolling_bearings import catalogue_row
 
         size = self.catalogue
-        # The ratings of a pair do not determine those of a single row.
-        single = self.arrangement == "single"
         return catalogue_row(
             size.type,
             size.bore,
@@ -479,8 +489,10 @@ class RollingCatalogue(_Mounted):
             size.width,
             contact_angle=size.angle,
             clearance=self.clearance,
-            dynamic=self.dynamic_rating if single and self.static_rating is not None else None,
-            static=self.static_rating if single else None,
+            # Without C0 it is for the lives alone.
+            dynamic=self.dynamic_rating if self.static_rating is not None else None,
+            static=self.static_rating,
+            bearings=1 if self.arrangement == "single" else 2,
         )
 
     def _rings(self, mounting: Mounting) -> tuple[float, float]:

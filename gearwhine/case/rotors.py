@@ -304,7 +304,7 @@ class Rotor(Table):
     material: Name | None = None
     """Name of the material; needed without `file`."""
     mass: Literal["distributed", "lumped"] = "distributed"
-    """Mass of the shaft, distributed or lumped at the ends of the segments."""
+    """Mass of the shaft, distributed or lumped at the ends of the segments, at which its bearings should stand then."""
     damping_ratio: DampingRatio = 0.005
     """Damping ratio of the shaft's own modes, in the coupled system."""
     shear_coefficient: ShearCoefficient = "cowper"

@@ -13,7 +13,8 @@ and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-1044
 enters in the same way with the slopes. The modes are followed by residual attachment modes for every load that a
 bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing
 resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
-modes (Craig 2000), without which the shaft is too stiff at gears and bearings.
+modes (Craig 2000), without which the shaft is too stiff at gears and bearings. Of a lumped rotor they complete the
+motions of its masses: a place between these also bends without any mass, which no mode follows.
 
 The participation factors of the modes belong to rigid motions of the ground. For a ground that moves rigidly,
 u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation of the sections. R is a
@@ -270,15 +271,11 @@ def modal_rotor(
     if frequency_limit is not None and torsional.count < _FEWEST:
         least = min(_FEWEST, rod_shaft(rotor, (), "torsion").available_modes)
         torsional = solve_torsional_modes(rotor, count=int(least))
-    # A lumped rotor has no more motions than its modes.
-    if rotor.mass_model == "distributed":
-        tilted = [
-            bearing.at
-            for bearing in bearings
-            if bearing.spatial_stiffness[3:].any() or bearing.spatial_damping[3:].any()
-        ]
-        lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
-        torsional = add_rod_attachment_modes(torsional, gears_at)
+    tilted = [
+        bearing.at for bearing in bearings if bearing.spatial_stiffness[3:].any() or bearing.spatial_damping[3:].any()
+    ]
+    lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
+    torsional = add_rod_attachment_modes(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
     return ModalRotor(lateral, torsional, axial, tuple(bearings), ports, participation(rotor, lateral, axial))
 
@@ -314,4 +311,4 @@ def _axial(
     if not thrust:
         return None
     modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)
-    return modes if rotor.mass_model == "lumped" else add_rod_attachment_modes(modes, (*thrust, *thrusts_at))
+    return add_rod_attachment_modes(modes, (*thrust, *thrusts_at))

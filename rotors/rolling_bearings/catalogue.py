@@ -82,6 +82,7 @@ def catalogue_row(
     clearance: float = 0.0,
     dynamic: float | None = None,
     static: float | None = None,
+    bearings: int = 1,
 ) -> Row:
     """Estimate one row of a bearing from its main dimensions and ratings; the module gives the sources.
 
@@ -97,7 +98,9 @@ def catalogue_row(
     clearance : float
         Diametral clearance in operation [m]; catalogues print the larger value before mounting.
     dynamic, static : float, optional
-        Ratings C and C₀ of the whole bearing as printed [N].
+        Ratings C and C₀ of the whole bearing as printed [N]; of ``bearings`` equal ones side by side together.
+    bearings : int
+        Number of bearings that the ratings are of: 2 for a pair, whose rows share the load (ISO 76, ISO 281).
 
     Raises
     ------
@@ -107,6 +110,7 @@ def catalogue_row(
     expected = ", ".join(map(repr, get_args(CatalogueType)))
     require(kind in _INSIDES, "type of bearing", kind, f"one of {expected}")
     inside = _INSIDES[kind]
+    rows_rated = inside.rows * bearings
     require_finite("bore", bore, positive=True)
     require_finite("bearing width", width, positive=True)
     require_finite("outer diameter", outer_diameter)
@@ -131,10 +135,10 @@ def catalogue_row(
         return make(usual, diameter, inside.length * width)
     rated: Callable[[Row], float]
     if static is not None:
-        wanted, rated = static, lambda row: inside.rows * static_rating(row)
+        wanted, rated = static, lambda row: rows_rated * static_rating(row)
     else:
         assert dynamic is not None
-        wanted, rated = dynamic, lambda row: dynamic_rating(row, inside.rows)
+        wanted, rated = dynamic, lambda row: dynamic_rating(row, rows_rated)
     rows = []
     choosable = static is not None and dynamic is not None and not inside.length
     for count in range(max(usual - 2, 3), usual + 3) if choosable else (usual,):
@@ -152,7 +156,7 @@ def catalogue_row(
         return rows[0]
 
     def missed(row: Row) -> float:
-        return abs(math.log(dynamic_rating(row, inside.rows) / dynamic))
+        return abs(math.log(dynamic_rating(row, rows_rated) / dynamic))
 
     near = [row for row in rows if missed(row) <= _NEAR]
     return min(near, key=lambda row: abs(row.count - usual)) if near else min(rows, key=missed)

@@ -96,7 +96,8 @@ def equivalent_load(state: RollingState) -> float | None:
     rows = state.bearing.rows
     like = {(type(row), row.count, row.element_diameter, row.pitch_diameter, row.contact_angle) for row in rows}
     opposed = len({row.direction for row in rows}) == 2 and rows[0].contact_angle > 0.0
-    pressed = any(row.axial_offset > 0.0 for row in rows)
+    # Opposite offsets are a displacement of the ring, by which rows do not press each other.
+    pressed = sum(row.axial_offset for row in rows) > 0.0
     if len(like) > 1 or len(rows) > 2 or (opposed and pressed):
         return None
     radial = float(np.hypot(*state.load[:2]))

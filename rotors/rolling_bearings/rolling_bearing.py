@@ -107,6 +107,14 @@ class RollingBearing:
         return self.axial_preload != 0.0 or any(row.axial_offset != 0.0 for row in self.rows)
 
     @property
+    def ring_offset(self) -> float:
+        """Displacement of the inner ring along z at assembly, the mean of its rows', a preload against others [m].
+
+        Equal offsets of two opposed rows, which press each other, have none.
+        """
+        return sum(row.direction * row.axial_offset for row in self.rows) / len(self.rows)
+
+    @property
     def reach(self) -> float:
         """Half the largest pitch diameter, by which rotations are scaled to displacements of the contacts [m]."""
         return 0.5 * max(row.pitch_diameter for row in self.rows)

@@ -353,6 +353,33 @@ def test_tapered_rollers_hold_a_shaft_between_them() -> None:
         assert abs(left + right) == pytest.approx(thrust, rel=1e-6)
 
 
+@pytest.mark.parametrize("beside", [-8e-6, -6e-6, -4e-6, -2e-6, 2e-6, 4e-6, 6e-6, 8e-6, 14e-6, 20e-6])
+def test_a_bearing_may_stand_micrometres_beside_a_force(beside: float) -> None:
+    """A span so short is 1e12 times as stiff as ball bearings in their play, which carry what the force adds."""
+    rollers = TaperedRollerRow(15, 8e-3, 12e-3, 55e-3, angle=0.25)
+    balls = RollingBearing([BallRow(9, 11e-3, 53.5e-3, clearance=8e-6)])
+    elements = [
+        RollingBearing([replace(rollers, axial_offset=20e-6)]),
+        RollingBearing([replace(rollers, direction=-1)]),
+        replace(balls, floating=True),
+        balls,
+    ]
+    pulled, pull = 0.14, (800.0, -1500.0, 0.0)
+    machine = one_stage(forces=[ShaftForce("out", pulled, pull)])
+    held = [
+        MountedBearing(
+            linear_bearing(one.bearing.name, one.bearing.at if place < 3 else pulled + beside, np.zeros((5, 5))),
+            one.rotor,
+            None,
+            rolling=bearing,
+        )
+        for place, (one, bearing) in enumerate(zip(machine.bearings, elements, strict=True))
+    ]
+    point = replace(machine, bearings=held).operating_point()
+    carried = sum(one.force[:3] for one in point.bearings if one.mounted.rotor == "out")
+    assert carried == pytest.approx(point.gear_forces(0)[1][:3] + pull, abs=1e-4)
+
+
 def test_flanks_and_bearings_hold_each_shaft_in_balance() -> None:
     """Forces and moments about the left end, of the gear at its middle and of the bearings at theirs; torque by T."""
     machine = one_stage(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek", backlash=1e-4)])

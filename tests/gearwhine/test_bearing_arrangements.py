@@ -7,11 +7,20 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
+from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.cli import run_command
 from gearwhine.results.check import sections as check_sections
 from gearwhine.results.operating_point import sections
-from rotors.rolling_bearings import catalogue_row
+from rotors.rolling_bearings import (
+    RollingBearing,
+    Row,
+    catalogue_row,
+    rolling_equilibrium,
+    rolling_state,
+    static_rating,
+)
 
+TWO_ROWS = ("double-row-angular-contact", "spherical-roller", "self-aligning-ball")
 SIZE = {"type": "tapered-roller", "bore": "40 mm", "outer_diameter": "80 mm", "width": "19.75 mm"}
 
 
@@ -155,3 +164,92 @@ def test_balls_that_carry_thrust_on_the_wrong_shoulder_are_warned_of() -> None:
     assert {one["bearing"] for one in found} == {"output-left", "output-right"}
     assert sum(one["thrust_n"] for one in found) == pytest.approx(-document["gear_pairs"][0]["thrust_n"], rel=1e-6)
     assert "N towards -z, against their contact angle" in found[0]["message"]
+
+
+def two_rows(kind: str, **keys: Any) -> RollingBearing:
+    size = {"type": kind, "bore": "35 mm", "outer_diameter": "72 mm", "width": "27 mm"}
+    return RollingCatalogue.model_validate({"catalogue": size, **keys}).build("two rows")
+
+
+@pytest.mark.parametrize("carries", ["+z", "-z"])
+@pytest.mark.parametrize("kind", TWO_ROWS)
+def test_an_offset_moves_the_ring_with_both_rows(kind: str, carries: str) -> None:
+    """The forces are those of the same bearing without an offset, its inner ring displaced along `carries`."""
+    sense = 1 if carries == "+z" else -1
+    offset = two_rows(kind, axial_offset="20 um", carries=carries)
+    assert offset.ring_offset == pytest.approx(sense * 20e-6)
+    for place in ([0.0] * 5, [4e-6, -3e-6, 5e-6, 1e-5, -2e-5]):
+        there = rolling_state(offset, place)
+        moved = rolling_state(two_rows(kind), place + np.array([0.0, 0.0, sense * 20e-6, 0.0, 0.0]))
+        # A spherical ring tilts freely: its moments are rounding.
+        np.testing.assert_allclose(there.reaction, moved.reaction, rtol=1e-9, atol=1e-9)
+    # The ring is pressed onto one row and away from the other.
+    thrusts = dict(
+        zip((row.direction for row in offset.rows), rolling_state(offset, [0.0] * 5).row_thrusts, strict=True)
+    )
+    assert thrusts[sense] > 50.0
+    assert thrusts[-sense] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_offset_of_two_rows_presses_an_opposed_bearing() -> None:
+    """Two springs in series, the double row and a single row at the other end, share the offset with the shaft."""
+    changes: dict[str, Any] = {"operation.torque": "0 N*m"}
+    double = {"type": "double-row-angular-contact", "bore": "40 mm", "outer_diameter": "80 mm", "width": "30.2 mm"}
+    single = {"type": "angular-contact", "bore": "40 mm", "outer_diameter": "80 mm", "width": "18 mm"}
+    for number in range(4):
+        left = {"catalogue": double, "axial_offset": "20 um"}
+        changes[f"bearing.{number}.stiffness"] = {
+            "rolling": {"catalogue": single, "carries": "-z"} if number % 2 else left
+        }
+        changes[f"bearing.{number}.damping"] = {"xx": "8e2 N*s/m", "yy": "8e2 N*s/m"}
+    study = gw.load("helical-pair", changes)
+    first, second, *_ = study.operating_point().document["bearings"]
+    force = first["preload_n"]
+    assert second["preload_n"] == pytest.approx(force)
+    assert [first["force_n"][2], second["force_n"][2]] == pytest.approx([force, -force])
+    rows = [
+        catalogue_row("double-row-angular-contact", 0.04, 0.08, 0.0302),
+        catalogue_row("angular-contact", 0.04, 0.08, 0.018),
+    ]
+    deep = [
+        rolling_equilibrium(
+            RollingBearing([row]), [0.0, 0.0, force, 0.0, 0.0], held=dict.fromkeys(("x", "y", "rx", "ry"), 0.0)
+        )
+        for row in rows
+    ]
+    # F L / (E A) of the 200 mm of shaft between them, 40 mm thick, which the pinion stiffens a little.
+    shaft = force * 0.2 / (206e9 * np.pi / 4.0 * 0.04**2)
+    assert sum(state.displacement[2] for state in deep) + shaft == pytest.approx(20e-6, rel=3e-3)
+
+
+@pytest.mark.parametrize("kind", TWO_ROWS)
+def test_two_rows_of_a_bearing_press_each_other_with_the_preload(kind: str) -> None:
+    """Each row is displaced as far as 500 N displace it alone, and nothing pushes at the shaft."""
+    bearing = two_rows(kind, preload="500 N", clearance="6 um", carries="-z")
+    state = rolling_equilibrium(bearing, np.zeros(5))
+    assert state.row_thrusts == pytest.approx([500.0, 500.0], rel=1e-9)
+    assert state.reaction == pytest.approx(np.zeros(5), abs=1e-6)
+    assert state.displacement[:3] == pytest.approx(np.zeros(3), abs=1e-12)
+    for row in two_rows(kind, clearance="6 um").rows:
+        held = dict.fromkeys(("x", "y", "rx", "ry"), 0.0)
+        alone = rolling_equilibrium(RollingBearing([row]), [0.0, 0.0, 500.0 * row.direction, 0.0, 0.0], held=held)
+        (pressed,) = {one.axial_offset for one in bearing.rows}
+        assert pressed == pytest.approx(row.direction * alone.displacement[2], rel=1e-9)
+    assert bearing.ring_offset == 0.0
+    # An offset of the ring stands beside it: where nothing opposes it, the shaft goes back by as much.
+    both = two_rows(kind, preload="500 N", axial_offset="2 um")
+    assert both.ring_offset == pytest.approx(2e-6)
+    assert rolling_equilibrium(both, np.zeros(5)).displacement[2] == pytest.approx(-2e-6)
+
+
+def test_rows_of_a_pair_share_its_static_rating() -> None:
+    """ISO 76: 40 kN of the pair are 20 kN of either row, as those of a single bearing of 20 kN."""
+    size = {"type": "angular-contact", "bore": "40 mm", "outer_diameter": "80 mm", "width": "18 mm"}
+
+    def rows(**keys: Any) -> tuple[Row, ...]:
+        return tuple(RollingCatalogue.model_validate({"catalogue": size, **keys}).build("pair").rows)
+
+    (single,) = rows(static_rating="20 kN")
+    pair = rows(static_rating="40 kN", arrangement="back to back", spacing="18 mm")
+    assert [static_rating(row) for row in pair] == pytest.approx([20e3, 20e3])
+    assert [row.element_diameter for row in pair] == pytest.approx([single.element_diameter] * 2)

@@ -35,6 +35,12 @@ ONE_WRONG = {
         "bearing[2].stiffness.rolling.preload",
         "cylindrical rollers carry no axial load",
     ),
+    "static rating of a geometry": (
+        "bearing.2.stiffness",
+        {"rolling": {**BALLS, "static_rating": "20 kN"}},
+        "bearing[2].stiffness.rolling.static_rating",
+        "it belongs to another form of this table",
+    ),
     "catalogue in inches": (
         "bearing.2.stiffness",
         {"rolling": {"catalogue": {"type": "deep-groove", "bore": "5 cm", "outer_diameter": "2 in", "width": "x"}}},

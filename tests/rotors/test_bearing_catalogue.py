@@ -38,6 +38,17 @@ def test_ratings_that_are_given_are_met(kind: str) -> None:
     assert both.count == usual.count
 
 
+def test_ratings_of_a_pair_are_those_of_its_equal_rows() -> None:
+    """C₀ of two is twice that of one (ISO 76), C of two rows of balls 2^0.7 times that of one (ISO 281)."""
+    usual = catalogue_row("angular-contact", *SIZE)
+    assert isinstance(usual, BallRow)
+    fewer = BallRow(usual.count - 2, 1.2 * usual.ball_diameter, usual.pitch_diameter, usual.contact_angle)
+    ratings = {"static": static_rating(fewer), "dynamic": dynamic_rating(fewer)}
+    one = catalogue_row("angular-contact", *SIZE, **ratings)
+    ratings = {"static": 2.0 * ratings["static"], "dynamic": 2.0**0.7 * ratings["dynamic"]}
+    assert catalogue_row("angular-contact", *SIZE, **ratings, bearings=2) == one
+
+
 def test_balls_are_counted_by_both_ratings() -> None:
     """Built with one ball less and larger, and recovered from its two ratings where they tell it apart."""
     usual = catalogue_row("angular-contact", *SIZE)

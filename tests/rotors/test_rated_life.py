@@ -86,6 +86,14 @@ def test_two_opposed_rows_count_axial_load_from_the_first() -> None:
     assert equivalent_load(state) == pytest.approx(670.0 + 1.41 * 800.0, rel=1e-9)
 
 
+def test_a_displaced_ring_presses_no_rows_against_each_other() -> None:
+    """Offsets of 10 µm towards one row and away from the other: the factors of two opposed rows, as without them."""
+    row = BallRow(**BALLS, contact_angle=math.radians(25.0))
+    rows = [replace(one, axial_offset=one.direction * 1e-5) for one in paired(row, "back to back", 20e-3).rows]
+    state = rolling_equilibrium(RollingBearing(rows), [1000.0, 0.0, 500.0, 0.0, 0.0])
+    assert equivalent_load(state) == pytest.approx(1000.0 + 0.92 * 500.0)
+
+
 def test_two_rows_are_rated_as_one_of_2_to_the_0_7() -> None:
     """Table 3 carries i^0.7 = 1.62 of the second row in its factors: X and Y of two rows are so much those of one."""
     for entries in _LARGE_ANGLES.values():
