@@ -520,7 +520,7 @@ def contact_flattening(model: StiffnessModel, geometry: GearPairGeometry) -> Fla
     """
     if isinstance(model, CompliantTeeth):
         return partial(model.contact_compliance, geometry)
-    constant = hertz_compliance(geometry.driver, geometry.driven) / math.cos(geometry.driver.base_helix_angle)
+    constant = hertz_compliance(geometry) / math.cos(geometry.driver.base_helix_angle)
     return lambda position: np.full_like(position, constant)
 
 

@@ -28,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError
+from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.geometry.profile import flank_points, load_angle
 from coupling.gears.stiffness.normal_section import in_normal_section
