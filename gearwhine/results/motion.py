@@ -107,10 +107,17 @@ LINE_COLUMNS = (
 def mesh_sentence(pair: Document) -> str:
     """Return the forces of a gear mesh in words."""
     side = " on its back flanks" if pair.get("flanks") == "back" else ""
-    return (
+    sentence = (
         f"Gear mesh {pair['driver']} → {pair['driven']}{side}: mean force {pair['mean_force_n']:.0f} N, "
         f"peak {pair['peak_force_n']:.0f} N, apart {percent(pair['contact_loss_fraction'])} of the time"
     )
+    if other := pair.get("other_flanks"):
+        sentence += (
+            f"; its {'drive' if side else 'back'} flanks: mean {other['mean_force_n']:.0f} N, "
+            f"peak {other['peak_force_n']:.0f} N; both together {other['net_mean_force_n']:.0f} N, "
+            f"and apart {percent(other['both_apart_fraction'])} of the time"
+        )
+    return sentence
 
 
 def leading_lines(sensors: Iterable[Document], key: str, most: int = _LINES_OF_A_SENSOR) -> list[dict[str, Any]]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from coupling.signals import LineName
     from coupling.signals.sidebands import Sideband
     from coupling.signals.spectrum import Peak, Spectrum
+    from coupling.time.transient import TransientFigures
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
     from gearwhine.solve.transient import SolvedTransient
@@ -189,6 +190,39 @@ def _mesh_figures(row: _Pair) -> MeshFigures:
     return MeshFigures(row.transient.machine.meshes[row.number], row.transient.result, row.contact)
 
 
+class _OtherFlanks(NamedTuple):
+    """Figures of a motion, and the contacts of the flanks of a pair that the mean load presses and of the others."""
+
+    figures: "TransientFigures"
+    pressed: int
+    other: int
+
+
+def _other_flanks(row: _Pair) -> _OtherFlanks | None:
+    """Return the flanks that the mean load does not press, where they touched."""
+    back, figures = row.transient.back_flanks(row.number), row.transient.result
+    if back is None:
+        return None
+    other = back if row.contact == row.number else row.number
+    return _OtherFlanks(figures, row.contact, other) if figures.peak_force[other] > 0.0 else None
+
+
+OTHER_FLANKS = (
+    Quantity("mean_force_n", lambda row: float(row.figures.mean_force[row.other])),
+    Quantity("peak_force_n", lambda row: float(row.figures.peak_force[row.other])),
+    Quantity("contact_loss_fraction", lambda row: float(row.figures.contact_loss[row.other])),
+    Quantity(
+        "net_mean_force_n", lambda row: float(row.figures.mean_force[row.pressed] - row.figures.mean_force[row.other])
+    ),
+    # The backlash lies between them: they never touch at once.
+    Quantity(
+        "both_apart_fraction",
+        lambda row: float(max(row.figures.contact_loss[row.pressed] + row.figures.contact_loss[row.other] - 1.0, 0.0)),
+    ),
+)
+"""Quantities of the flanks that the mean load does not press; a row is an :class:`_OtherFlanks`."""
+
+
 def _friction(row: _Pair) -> Any:
     """Friction of a mesh over the record: its force and its power."""
     return row.transient.histories.mesh_friction.get(_contact(row))
@@ -226,6 +260,7 @@ PAIR = (
         ),
     ),
     Quantity("back_flank_peak_force_n", lambda row: row.transient.back_flank_peak(row.number)),
+    Part("other_flanks", _other_flanks, OTHER_FLANKS),
     Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _if_named, NAMED))),
     Rows("sidebands", _force_sidebands, _sidebands("n")),
 )
@@ -719,7 +754,7 @@ def report(document: Document) -> Section:
     sentences += _basis_error(document)
     tables = (
         *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
-        *line_table(document.get("sensors", ()), "peaks"),
+        *(() if "run_signature" in document else line_table(document.get("sensors", ()), "peaks")),
         *table_of(columns_of(BEARING), document.get("bearings", ()), "Bearings"),
         *table_of(columns_of(ORDER), document.get("run_signature", {}).get("orders", ()), "Orders along the run"),
     )
@@ -765,14 +800,17 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield mesh_sentence(pair)
         if pair.get("friction"):
             yield f"  friction between its teeth takes {pair['friction']['mean_power_w']:.3g} W"
-    yield from table_of(SENSOR_COLUMNS, document.get("sensors", ()))
+    run = document.get("run_signature")
+    # Over a run whose speed varies a spectrum of the whole record has no lines.
+    yield from table_of(SENSOR_COLUMNS if run is None else SENSOR_COLUMNS[:-1], document.get("sensors", ()))
     if traced := _signature_table(document):
         yield from traced
         yield (
             "Levels of rms values re 1 µm/s². Shares are in phase with the line and add up to it; "
             "of parts that cancel each other some exceed 100 %."
         )
-    if run := document.get("run_signature"):
+    if run is not None:
+        yield from table_of(columns_of(ORDER), _highest_orders(run["orders"]), "Highest of the orders along the run")
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
     if "steps" in document:
         yield (
@@ -786,6 +824,16 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield from sound.brief(document["sound"])
 
 
+def _highest_orders(orders: list[Document]) -> list[Document]:
+    """Return the orders of each signal with the highest amplitudes, in the sequence of the signals."""
+    by_signal: dict[str, list[Document]] = {}
+    for order in sorted(orders, key=lambda row: -float(row["highest_amplitude"])):
+        by_signal.setdefault(order["signal"], []).append(order)
+    signals = dict.fromkeys(order["signal"] for order in orders)
+    return [order for signal in signals for order in by_signal[signal][:_HIGHEST_ORDERS]]
+
+
+_HIGHEST_ORDERS = 3  # of a signal on the terminal
 _SIGNATURE_COLUMNS = (
     Column("sensor", "sensor"),
     Column("Hz", "frequency_hz", ".0f"),

@@ -126,13 +126,17 @@ class SolvedTransient:
         """Return the reported spectral peaks of a gear-mesh force, highest first."""
         return spectrum_peaks(self.force_spectra[contact], count=8)
 
-    def back_flank_peak(self, pair: int) -> float | None:
-        """Largest force on the back flanks of a gear pair [N]; None where they cannot meet."""
+    def back_flanks(self, pair: int) -> int | None:
+        """Return the number of the contact of a gear pair's back flanks; None where they cannot meet."""
         meshes = self.machine.meshes
         if meshes[pair].backlash is None:
             return None
-        before = sum(mesh.backlash is not None for mesh in meshes[:pair])
-        return float(self.result.peak_force[len(meshes) + before])
+        return len(meshes) + sum(mesh.backlash is not None for mesh in meshes[:pair])
+
+    def back_flank_peak(self, pair: int) -> float | None:
+        """Return the largest force on the back flanks of a gear pair [N]; None where they cannot meet."""
+        contact = self.back_flanks(pair)
+        return None if contact is None else float(self.result.peak_force[contact])
 
     def bearing_parts(self) -> list[tuple[str, SignalParts]]:
         """Mean and alternating part of each bearing's load: forces along x, y, z [N], moments about x, y [N m]."""

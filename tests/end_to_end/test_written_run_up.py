@@ -10,6 +10,7 @@ import xarray as xr
 from lopsided_case import FEW_WHIRLS, GEARS, SPEEDS, lopsided
 
 from gearwhine.cli import run_command
+from gearwhine.results.motion import mesh_sentence
 
 
 def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, Any]]:
@@ -118,5 +119,13 @@ def test_back_flanks_are_told_with_their_own_pair(tmp_path: Path) -> None:
         assert peaks[-1] <= 1.5 * sampled + 60.0
         apart = float((data.mesh_force.sel(contact=name) == 0.0).mean())
         assert pair["contact_loss_fraction"] == pytest.approx(apart, abs=0.02)
+        drive, back = (data.mesh_force.sel(contact=f"{name}{side}").values.astype(float) for side in ("", ", back"))
+        if (other := pair["other_flanks"]) is None:
+            assert back.max() == 0.0
+            continue
+        assert other["mean_force_n"] == pytest.approx(back.mean(), rel=0.05, abs=0.1)
+        assert other["net_mean_force_n"] == pytest.approx(drive.mean() - back.mean(), rel=0.05)
+        assert other["both_apart_fraction"] == pytest.approx(((drive == 0.0) & (back == 0.0)).mean(), abs=0.02)
+        assert f"its back flanks: mean {other['mean_force_n']:.0f} N" in mesh_sentence(pair)
     assert peaks[0] != peaks[1]
     assert GEARS["a"].teeth == 23
