@@ -56,7 +56,7 @@ def collected_sweep(
     orders = _orders(grid.results())
     if orders.size:
         coordinates["order"] = ("order", orders, _unit("1", "cycles for each turn of the first driver"))
-        turning = np.asarray(variables["rotation_speed"][1])[..., None] / 60.0
+        turning = np.abs(np.asarray(variables["rotation_speed"][1]))[..., None] / 60.0
         coordinates["frequency"] = ((*names, "order"), turning * orders, _unit("Hz", "frequency of each order"))
     _add_sensors(grid, orders, variables, coordinates)
     _add_meshes(grid, orders, variables, coordinates)

@@ -227,8 +227,10 @@ def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
 
 def _draw_mesh_orders(axes: Any, dataset: xr.Dataset, highest: float) -> None:
     """Draw the low multiples of each mesh frequency over the speed up to a frequency [Hz], numbered where they end."""
-    speeds = _numbers(dataset, "speed")
+    signed = _numbers(dataset, "speed")
+    speeds = np.abs(signed)
     fastest = int(np.argmax(speeds))
+    sense = np.sign(signed[fastest])
     drawn_orders = set[float]()
     for contact in dataset["contact"].values:
         mesh = dataset["mesh_frequency"].sel(contact=contact).transpose("speed").values
@@ -238,13 +240,13 @@ def _draw_mesh_orders(axes: Any, dataset: xr.Dataset, highest: float) -> None:
             if not order > 0.0 or order in drawn_orders or end <= speeds.min():
                 continue
             drawn_orders.add(order)
-            axes.plot([0.0, end], [0.0, order * end], color=INK, lw=0.6, ls=(0, (4, 3)), alpha=0.5, zorder=1)
+            axes.plot([0.0, sense * end], [0.0, order * end], color=INK, lw=0.6, ls=(0, (4, 3)), alpha=0.5, zorder=1)
             axes.annotate(
                 f"{number}×",
-                (end, order * end),
-                xytext=(-2.0, -2.0),
+                (sense * end, order * end),
+                xytext=(-2.0 * sense, -2.0),
                 textcoords="offset points",
-                ha="right",
+                ha="right" if sense > 0.0 else "left",
                 va="top",
                 size=NOTE,
                 color=INK,
