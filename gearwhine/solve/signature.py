@@ -130,11 +130,11 @@ class SolvedSignature:
     lines : dict of str to tuple of TracedLine
         Lines of each sensor, highest first.
     force_lines : dict of str to tuple of coupling.signals.LineName
-        Names of the lines of each mesh's force, in the order of its peaks.
+        Names of the lines of each mesh's force on its loaded flanks, by pair, in the order of its peaks.
     sidebands : dict of str to tuple of ShaftSidebands
         Sidebands of each sensor.
     force_sidebands : dict of str to tuple of ShaftSidebands
-        Sidebands of each mesh's force.
+        Sidebands of each mesh's force on its loaded flanks, by pair.
     bearing_spectra : dict of str to Spectrum
         Spectra of the forces in all directions that a bearing holds, shape (d, m).
     modes : CoupledModes
@@ -210,7 +210,8 @@ def solve_signature(
     housing_frequencies : ndarray, shape (n_modes,), or None
         Natural frequencies of the housing's modes [Hz], where there is one.
     """
-    histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.loaded]
+    histories, contacts = solved.histories, solved.machine.system.contacts
+    pressed = [contacts[number].name for number in solved.machine.loaded_contacts]
     interval = float(histories.times[1] - histories.times[0])
     window, limit = solved.record.sampling.window, solved.trusted_limit
     ties = {
@@ -227,13 +228,14 @@ def solve_signature(
     return SolvedSignature(
         lines=lines,
         force_lines={
-            name: tuple(_named(solved, solved.force_spectra[name], solved.force_peaks(name), modes)) for name in drives
+            name: tuple(_named(solved, solved.force_spectra[name], solved.force_peaks(name), modes)) for name in pressed
         },
         sidebands={
             name: _sidebands(solved, signal, interval, window) for name, signal in histories.sensor_acceleration.items()
         },
         force_sidebands={
-            name: _sidebands(solved, histories.mesh_force[name], interval, window, only=name) for name in drives
+            name: _sidebands(solved, histories.mesh_force[name], interval, window, only=pair)
+            for pair, name in enumerate(pressed)
         },
         bearing_spectra=ties,
         modes=modes,
@@ -296,12 +298,12 @@ def _named(
 
 
 def _sidebands(
-    solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: str | None = None
+    solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: int | None = None
 ) -> tuple[ShaftSidebands, ...]:
     machine, of_shafts = solved.machine, []
     length = signal.size * interval
-    for mesh, contact in zip(machine.meshes, machine.system.contacts, strict=False):
-        if contact.mesh_frequency == 0.0 or only not in (None, contact.name):
+    for pair, (mesh, contact) in enumerate(zip(machine.meshes, machine.system.contacts, strict=False)):
+        if contact.mesh_frequency == 0.0 or only not in (None, pair):
             continue
         carriers = [
             n * contact.mesh_frequency
