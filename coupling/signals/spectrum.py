@@ -179,6 +179,17 @@ def window_weights(count: int, window: Window) -> FloatArray:
     return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count))
 
 
+def line_height(distance: npt.ArrayLike, window: Window) -> FloatArray:
+    """Height of the line some line spacings from a tone of amplitude 1, signed.
+
+    The transform of the window: sinc(x), under Hann's window sinc(x) + sinc(x - 1) / 2 + sinc(x + 1) / 2.
+    """
+    x = np.asarray(distance, dtype=np.float64)
+    if window == "uniform":
+        return np.asarray(np.sinc(x))
+    return np.asarray(np.sinc(x) + 0.5 * (np.sinc(x - 1.0) + np.sinc(x + 1.0)))
+
+
 def lines_at(signal: FloatArray, interval: float, frequencies: FloatArray, window: Window = "uniform") -> ComplexArray:
     """Complex amplitudes at any frequencies, not only those of the record's lines, shape (..., f).
 

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.errors import CouplingError
-from coupling.signals.spectrum import Spectrum
+from coupling.signals.spectrum import Spectrum, line_height
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -103,5 +103,4 @@ def _interpolated(lower: ComplexArray, upper: ComplexArray, weights: FloatArray)
 
 def _hann(distance: FloatArray) -> ComplexArray:
     """Value h(x) of the line x spacings above a tone of amplitude 1."""
-    height = np.sinc(distance) + 0.5 * (np.sinc(distance - 1.0) + np.sinc(distance + 1.0))
-    return np.asarray(height * np.exp(-1j * np.pi * distance))
+    return np.asarray(line_height(distance, "hann") * np.exp(-1j * np.pi * distance))

@@ -109,6 +109,9 @@ class _Unit:
         return tuple(item for item in self.powers if item[0] != "radian")
 
 
+_BASE_UNITS = {"kilogram": "kg", "meter": "m", "second": "s", "radian": "rad", "kelvin": "K"}
+
+
 def _common() -> dict[str, _Unit]:
     """Return the symbols of nearly every case without reading the registry; tests hold them against it."""
     force = (("kilogram", 1), ("meter", 1), ("second", -2))
@@ -281,6 +284,17 @@ def _parse_text(text: str, dimension: Dimension, expected: str) -> float:
         raise QuantityError(expected, note=_name_of(unit))
     turn = 2.0 * math.pi if dimension is SPEED and ("cycle", 1) in unit.powers else 1.0
     return float(number * unit.factor) * turn
+
+
+def si_unit(unit: str) -> str:
+    """Return the SI unit in which :func:`si_amount` gives quantities of a known unit; ``"1"`` for plain numbers."""
+    parsed = _parse_unit(unit) if unit else None
+    if parsed is None or not parsed.powers:
+        return "1"
+    for dimension in _DIMENSIONS:
+        if _parse_unit(dimension.unit) == _Unit(Decimal(1), parsed.powers):
+            return dimension.unit
+    return "*".join(_BASE_UNITS.get(name, name) + (f"^{power}" if power != 1 else "") for name, power in parsed.powers)
 
 
 def split_quantity(text: str) -> tuple[Decimal, str] | None:

@@ -320,11 +320,13 @@ def finite(value: Any) -> Any:
 def file_stems(names: Sequence[str], prefix: str = "") -> list[str]:
     """Return a file stem for each name, after a prefix: distinct, and of letters that any file system takes."""
     stems: list[str] = []
+    taken: set[str] = set()  # in small letters: some file systems take capitals for the same
     for number, name in enumerate(names, start=1):
         plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]
         stem = f"{prefix}{plain or number}"
-        # Some file systems take capitals and small letters for the same.
-        if stem.lower() in (other.lower() for other in stems):
+        # Another name may already end in this one's number.
+        while stem.lower() in taken:
             stem = f"{stem}-{number}"
+        taken.add(stem.lower())
         stems.append(stem)
     return stems

@@ -164,7 +164,8 @@ def _operation(case: Case) -> str:
     speed = f"{case.operation.speed * RPM:.5g} rpm of the first driver"
     if not torques or not case.operation.torque:
         return f"Operation: {speed}."
-    power = case.operation.speed * abs(case.operation.torque)
+    # A torque drives in the sense of rotation, whichever that is; a negative one brakes.
+    power = abs(case.operation.speed) * case.operation.torque
     applied = ", ".join(f"{torque.value:+.4g} N·m on {torque.rotor}" for torque in torques)
     return f"Operation: {speed}, {applied}; {power / 1e3:.4g} kW."
 

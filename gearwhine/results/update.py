@@ -23,14 +23,14 @@ PARAMETER = (
     Quantity("name", lambda row: row.parameter.name, "parameter", (), "", "name of the parameter", heading="parameter"),
     Quantity("keys", lambda row: [key_of(location) for location in row.number.places]),
     Quantity("factor", lambda row: row.number.given.factor),
-    Quantity("unit", lambda row: row.number.given.unit),
-    Quantity("", lambda row: row.number.given.unit or "1", "unit", long_name="unit of the parameter"),
-    Quantity("unit_in_si", lambda row: row.unit_in_si),
+    Quantity("unit", lambda row: row.unit, "unit", long_name="unit of the values before and after"),
+    Quantity("written_unit", lambda row: row.number.given.unit),
+    Quantity("written_unit_in_si", lambda row: row.unit_in_si),
     Quantity(
         "before",
         lambda row: row.number.start,
         "value_before",
-        long_name="value before the fit, in the unit of the parameter",
+        long_name="value before the fit, in its SI unit",
         heading="before (SI)",
         shown=".5g",
     ),
@@ -38,7 +38,7 @@ PARAMETER = (
         "after",
         lambda row: row.value,
         "value_after",
-        long_name="value after the fit, in the unit of the parameter",
+        long_name="value after the fit, in its SI unit",
         heading="after (SI)",
         shown=".5g",
     ),
@@ -46,7 +46,7 @@ PARAMETER = (
         "standard_deviation",
         lambda row: row.deviation,
         "value_deviation",
-        long_name="standard deviation of the value, in the unit of the parameter",
+        long_name="standard deviation of the value, in its SI unit",
         heading="± (SI)",
         shown=".2g",
     ),
@@ -283,8 +283,8 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 
 def _in_unit(heading: str, key: str) -> Column:
-    """Column of a parameter's value in its own unit."""
-    return Column(heading, lambda row: f"{row[key] / row['unit_in_si']:.4g} {row['unit']}".strip())
+    """Column of a parameter's value in the unit that it is written in."""
+    return Column(heading, lambda row: f"{row[key] / row['written_unit_in_si']:.4g} {row['written_unit']}".strip())
 
 
 def _value(heading: str, key: str, form: str, before: str = "", unit: str = "") -> Column:

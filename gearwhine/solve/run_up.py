@@ -37,9 +37,9 @@ class RunSignature:
     spectra : dict of str to coupling.signals.Spectrogram
         Spectra of stretches along the run, up to the trusted limit.
     speeds_rpm : ndarray, shape (t,)
-        Speed of the leading shaft in the middle of each stretch [rpm].
+        Speed of the leading shaft in the middle of each stretch [rpm], of the sign of the speed of operation.
     orders : dict of str to coupling.signals.OrderMap
-        Orders, in cycles each turn of the leading shaft.
+        Orders, in cycles each turn of the leading shaft, over its speeds of that sign.
     named : dict of str to float
         Orders that have names: shafts and harmonics of the meshes.
     """
@@ -68,7 +68,7 @@ class RunSignature:
                         "order": order,
                         "highest_amplitude": float(along[place]),
                         "at_rpm": float(60.0 * orders.speeds[place]),
-                        "frequency_hz": float(order * orders.speeds[place]),
+                        "frequency_hz": float(order * abs(orders.speeds[place])),
                     }
                 )
         return rows
@@ -108,7 +108,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     span, named = cut.span, cut.named
     times = solved.histories.times[span]
     interval = float(times[1] - times[0])
-    turns_per_second = abs(case.operation.speed) / _TWO_PI
+    turns_per_second, sense = abs(case.operation.speed) / _TWO_PI, math.copysign(1.0, case.operation.speed)
     slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * _ABOVE * max(named.values())))
@@ -125,9 +125,9 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         mapped = signature.order_map(
             turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
         )
-        orders[name] = _orders_up_to(mapped, _ABOVE * max(named.values()))
+        orders[name] = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
     middles = next(iter(spectra.values())).times
-    return RunSignature(units, spectra, 60.0 * turns_per_second * turning.at(middles)[1], orders, named)
+    return RunSignature(units, spectra, 60.0 * sense * turns_per_second * turning.at(middles)[1], orders, named)
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:

@@ -1,5 +1,6 @@
 """Signature of a machine in motion: the names of the lines in its spectra, and the transfer paths behind them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from coupling import signals as signature
 from coupling.linear.complex_modes import CoupledModes
 from coupling.signals.spectrum import Peak, Spectrum, Window
 from gearwhine.solve.transient import SolvedTransient
+from gearwhine.solve.transient_record import Signals
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -49,7 +51,8 @@ class TracedLine:
     frequency : float
         Frequency [Hz].
     value : complex
-        Amplitude [m/s²] and phase at the start of the record.
+        Amplitude [m/s²] and phase at the start of the record. Of a long record the root mean square over its stretches,
+        as its parts are averaged over them.
     named : coupling.signals.LineName
     modes : tuple of Contribution
         Contributions of every housing mode and of the local compliance, largest share first; they add up to the line.
@@ -130,17 +133,19 @@ class SolvedSignature:
     lines : dict of str to tuple of TracedLine
         Lines of each sensor, highest first.
     force_lines : dict of str to tuple of coupling.signals.LineName
-        Names of the lines of each mesh's force, in the order of its peaks.
+        Names of the lines of each mesh's force on its loaded flanks, by pair, in the order of its peaks.
     sidebands : dict of str to tuple of ShaftSidebands
-        Sidebands of each sensor.
+        Sidebands of each sensor, of a long record in its last stretch.
     force_sidebands : dict of str to tuple of ShaftSidebands
-        Sidebands of each mesh's force.
+        Sidebands of each mesh's force on its loaded flanks, by pair.
     bearing_spectra : dict of str to Spectrum
-        Spectra of the forces in all directions that a bearing holds, shape (d, m).
+        Spectra of the forces in all directions that a bearing holds, shape (d, m), of a long record of its last
+        stretch.
     modes : CoupledModes
         Coupled modes that names refer to.
     housing : Spectrum or None
-        Spectra of the accelerations of the housing's modes, shape (n_modes, m) [m √kg / s²]; None without a housing.
+        Spectra of the accelerations of the housing's modes, shape (n_modes, m) [m √kg / s²], of a long record of its
+        last stretch; None without a housing.
     """
 
     lines: dict[str, tuple[TracedLine, ...]]
@@ -210,55 +215,132 @@ def solve_signature(
     housing_frequencies : ndarray, shape (n_modes,), or None
         Natural frequencies of the housing's modes [Hz], where there is one.
     """
-    histories, drives = solved.histories, [c.name for c in solved.machine.system.contacts if c.loaded]
+    histories, contacts = solved.histories, solved.machine.system.contacts
+    pressed = [contacts[number].name for number in solved.machine.loaded_contacts]
     interval = float(histories.times[1] - histories.times[0])
-    window, limit = solved.record.sampling.window, solved.trusted_limit
-    ties = {
-        name: solved.record.spectrum(np.ascontiguousarray(force.T), limit)
-        for name, force in histories.bearing_reaction.items()
-    }
+    window = solved.record.sampling.window
     frequencies = np.zeros(0) if housing_frequencies is None else housing_frequencies
-    modal, lines = None, {}
-    if solved.modal.housing_acceleration.shape[1]:
-        modal = solved.record.spectrum(np.ascontiguousarray(solved.modal.housing_acceleration.T), limit)
+    last, lines = _stretch_spectra(solved, solved.signals), {}
     if solved.sensor_spectra:
-        assert modal is not None
-        lines = {name: _traced(solved, name, modal, ties, modes, frequencies) for name in solved.sensor_spectra}
+        peak_lines = _peak_lines(solved, last)
+        lines = {name: _traced(solved, name, at, modes, frequencies) for name, at in peak_lines.items()}
     return SolvedSignature(
         lines=lines,
         force_lines={
-            name: tuple(_named(solved, solved.force_spectra[name], solved.force_peaks(name), modes)) for name in drives
+            name: tuple(_named(solved, solved.force_spectra[name], solved.force_peaks(name), modes)) for name in pressed
         },
         sidebands={
             name: _sidebands(solved, signal, interval, window) for name, signal in histories.sensor_acceleration.items()
         },
         force_sidebands={
-            name: _sidebands(solved, histories.mesh_force[name], interval, window, only=name) for name in drives
+            name: _sidebands(solved, histories.mesh_force[name], interval, window, only=pair)
+            for pair, name in enumerate(pressed)
         },
-        bearing_spectra=ties,
+        bearing_spectra=last.bearings,
         modes=modes,
-        housing=modal,
+        housing=last.housing,
     )
 
 
+@dataclass(frozen=True)
+class _StretchSpectra:
+    """Spectra of one stretch of the record.
+
+    Attributes
+    ----------
+    sensors : dict of str to Spectrum
+    housing : Spectrum or None
+        Accelerations of the housing's modes, shape (n_modes, m).
+    bearings : dict of str to Spectrum
+        Forces in all directions that a bearing holds, shape (d, m).
+    """
+
+    sensors: dict[str, Spectrum]
+    housing: Spectrum | None
+    bearings: dict[str, Spectrum]
+
+
+def _stretch_spectra(solved: SolvedTransient, signals: Signals) -> _StretchSpectra:
+    def of(values: FloatArray) -> Spectrum:
+        return solved.record.spectrum(values, solved.trusted_limit)
+
+    histories, modal = signals.histories, signals.modal.housing_acceleration
+    return _StretchSpectra(
+        {name: of(signal) for name, signal in histories.sensor_acceleration.items()},
+        of(np.ascontiguousarray(modal.T)) if modal.shape[1] else None,
+        {name: of(np.ascontiguousarray(force.T)) for name, force in histories.bearing_reaction.items()},
+    )
+
+
+@dataclass(frozen=True)
+class _PeakLines:
+    """Lines at the peaks of a sensor.
+
+    Attributes
+    ----------
+    places : ndarray of int, shape (p,)
+        Places of the peaks in the spectrum.
+    value : ndarray of complex, shape (p,)
+        Lines of the sensor.
+    housing : ndarray of complex, shape (p, n_modes)
+        Lines of the housing's modes.
+    bearings : dict of str to ndarray of complex, shape (p, d)
+        Lines of the bearings' forces.
+    """
+
+    places: npt.NDArray[np.int64]
+    value: ComplexArray
+    housing: ComplexArray
+    bearings: dict[str, ComplexArray]
+
+
+def _peak_lines(solved: SolvedTransient, last: _StretchSpectra) -> dict[str, _PeakLines]:
+    """Lines of each sensor at its peaks, and of modes and bearing forces there, of all stretches together.
+
+    A sensor's line a has the root mean square amplitude A over the stretches, and the phase φ of its mean. A line x of
+    another signal counts with its part in the line: by the cross-spectrum with the line, averaged over the stretches,
+
+        x = <x_s a_s*> / A e^{iφ},
+
+    which is linear in x. So parts of the line that add up in each stretch add up to A e^{iφ}, and their shares are
+    Re <x_s a_s*> / A². Of a single stretch x is its own line.
+    """
+    assert last.housing is not None
+    places, sums = dict[str, npt.NDArray[np.int64]](), dict[str, ComplexArray]()
+    counts = [len(last.housing.amplitude), *(len(spectrum.amplitude) for spectrum in last.bearings.values())]
+    for name, spectrum in solved.sensor_spectra.items():
+        peaks = [peak.frequency for peak in solved.sensor_peaks(name)]
+        places[name] = np.searchsorted(spectrum.frequencies, peaks).astype(np.int64)
+        sums[name] = np.zeros((sum(counts), len(peaks)), dtype=np.complex128)
+    stretches: Iterable[_StretchSpectra] = (last,)
+    if solved.record.sampling.is_long:
+        stretches = (_stretch_spectra(solved, signals) for signals in solved.record.stretches())
+    count = 0
+    for stretch in stretches:
+        assert stretch.housing is not None
+        others = np.concatenate([stretch.housing.lines, *(forces.lines for forces in stretch.bearings.values())])
+        for name, at in places.items():
+            sums[name] += others[:, at] * stretch.sensors[name].lines[at].conj()
+        count += 1
+    found = {}
+    for name, at in places.items():
+        value = solved.sensor_spectra[name].lines[at]
+        housing, *bearings = np.split(
+            (sums[name] / count * value / np.abs(value) ** 2).T, np.cumsum(counts[:-1]), axis=1
+        )
+        found[name] = _PeakLines(at, value, housing, dict(zip(last.bearings, bearings, strict=True)))
+    return found
+
+
 def _traced(
-    solved: SolvedTransient,
-    sensor: str,
-    modal: Spectrum,
-    ties: dict[str, Spectrum],
-    modes: CoupledModes,
-    frequencies: FloatArray,
+    solved: SolvedTransient, sensor: str, lines: _PeakLines, modes: CoupledModes, frequencies: FloatArray
 ) -> tuple[TracedLine, ...]:
     spectrum, machine = solved.sensor_spectra[sensor], solved.machine
     assert machine.housing is not None
-    peaks = solved.sensor_peaks(sensor)
-    places = np.searchsorted(spectrum.frequencies, [peak.frequency for peak in peaks]).astype(int)
-    at = spectrum.frequencies[places]
-    # The peaks of a long record come from its averaged spectrum, their parts from its last stretch.
-    values = solved.record.spectrum(solved.histories.sensor_acceleration[sensor], solved.trusted_limit).lines[places]
-    by_mode = signature.mode_parts(machine.housing, sensor, modal.lines[:, places].T, values)
-    forces = {name: tie.lines[:, places].T for name, tie in ties.items()}
-    paths = signature.housing_paths(machine, _TWO_PI * at, forces).at(sensor)
+    peaks, values = solved.sensor_peaks(sensor), lines.value
+    by_mode = signature.mode_parts(machine.housing, sensor, lines.housing, values)
+    angular = _TWO_PI * spectrum.frequencies[lines.places]
+    paths = signature.housing_paths(machine, angular, lines.bearings).at(sensor)
     free = values - paths.total
     mode_names = [f"housing mode {i} ({hz:.0f} Hz)" for i, hz in enumerate(frequencies.tolist(), start=1)]
     mode_names.append("local compliance")
@@ -296,12 +378,12 @@ def _named(
 
 
 def _sidebands(
-    solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: str | None = None
+    solved: SolvedTransient, signal: FloatArray, interval: float, window: Window, *, only: int | None = None
 ) -> tuple[ShaftSidebands, ...]:
     machine, of_shafts = solved.machine, []
     length = signal.size * interval
-    for mesh, contact in zip(machine.meshes, machine.system.contacts, strict=False):
-        if contact.mesh_frequency == 0.0 or only not in (None, contact.name):
+    for pair, (mesh, contact) in enumerate(zip(machine.meshes, machine.system.contacts, strict=False)):
+        if contact.mesh_frequency == 0.0 or only not in (None, pair):
             continue
         carriers = [
             n * contact.mesh_frequency

@@ -31,6 +31,7 @@ from scipy import sparse
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
 from gearwhine.case.checks import without_changed
 from gearwhine.case.errors import UNSAID, Location, key_of
+from gearwhine.case.units import si_unit
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import (
     FittedCase,
@@ -303,6 +304,12 @@ class FoundNumber:
     def unit_in_si(self) -> float:
         """Unit of the parameter in the case [SI]."""
         return unit_in_si(self.number.given)
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the value, ``"1"`` of a factor; plain numbers in the case's range have that of their keys."""
+        given = self.number.given
+        return si_unit(given.unit) if given.unit or given.factor else "SI"
 
     @property
     def is_at_end(self) -> bool:

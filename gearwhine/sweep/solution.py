@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.signals.line_names import LineName
+from coupling.signals.spectrum import Window
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
 from gearwhine.failures import explain
@@ -58,7 +59,7 @@ class PointResult:
         Mean loads along x, y, z [N] and about x, y [N m], and their rms values without the mean.
     housing_frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of the housing [Hz]; empty without a housing.
-    window : str
+    window : {"uniform", "hann"}
         Window of the spectra.
     line_frequencies : ndarray, shape (l,)
         Frequencies of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
@@ -77,7 +78,7 @@ class PointResult:
     bearing_force_mean: dict[str, FloatArray] = field(default_factory=dict)
     bearing_force_rms: dict[str, FloatArray] = field(default_factory=dict)
     housing_frequencies_hz: FloatArray = field(default_factory=lambda: np.empty(0))
-    window: str = "uniform"
+    window: Window = "uniform"
     line_frequencies: FloatArray = field(default_factory=lambda: np.empty(0))
     line_rates: FloatArray = field(default_factory=lambda: np.empty((0, 0, 2)))
     line_names: tuple[str, ...] = ()

@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gearwhine.cli import run_command
+from gearwhine.output import file_stems
 from gearwhine.output.export import full_scale, periods, repeated, resampled
 
 
@@ -74,3 +75,11 @@ def test_the_number_of_periods_closes_the_loop_best() -> None:
     # 480.25 samples a period: four of them are whole, and 52 the first multiple of four that lasts 0.5 s.
     assert periods(480.25 / 48_000, 0.5, 48_000) == 52
     assert periods(480.0 / 48_000, 0.5, 48_000) == 50
+
+
+@given(st.lists(st.text("aB3- /", max_size=6), max_size=8))
+@example(["a b", "a-b-3", "a/b"])
+@example(["a b", "a-b-3", "a-b-3-3", "a/b"])
+def test_every_name_has_a_file_of_its_own(names: list[str]) -> None:
+    stems = file_stems(names, "signal-")
+    assert len({stem.lower() for stem in stems}) == len(names)

@@ -256,6 +256,16 @@ def test_the_first_page_tells_the_hardest_loaded_parts(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(("speed", "torque", "power"), [(1, 1, "41.34"), (-1, 1, "41.34"), (1, -1, "-41.34")])
+def test_a_machine_that_turns_the_other_way_drives_with_the_same_power(speed: int, torque: int, power: str) -> None:
+    """71.77 N·m in the sense of rotation at 5500 rpm are 71.77 · 5500 π/30 = 41.34 kW; a torque against it brakes."""
+    changes = [f"operation.speed={speed * 5500} rpm", f"operation.torque={torque * 71.77} N*m"]
+    case = load_case("spur-pair", changes).case
+    (sentence,) = [text for text in machine_section(case).content if isinstance(text, str) and "rpm" in text]
+    assert sentence.endswith(f"; {power} kW.")
+    assert f"{speed * torque * 71.77:+.4g} N·m on input" in sentence
+
+
 @pytest.mark.parametrize(("hours", "said"), [(None, ""), (9.1234e5, "9.12e+05"), (2e44, "> 1e6"), (40.0, "40")])
 def test_a_life_of_a_bearing_without_load_is_no_number(hours: float | None, said: str) -> None:
     assert life_in_words(hours) == said

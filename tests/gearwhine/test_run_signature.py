@@ -10,7 +10,8 @@ from coupling import SpeedProfile
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.figures.machine.transient import _speed
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.results.run import run_signature_document
+from gearwhine.output.quantity import document_of
+from gearwhine.results.run import RUN, run_signature_document
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
@@ -18,7 +19,7 @@ from gearwhine.solve.transient import SolvedTransient, solve_transient
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=1e-2", "transient.discard=0")
 
 
-def run_up(teeth: tuple[int, int], seconds: float) -> tuple[Case, SolvedTransient]:
+def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, SolvedTransient]:
     """The spur pair with other tooth numbers, of the same sum, along a run-up to 4500 rpm."""
     changes = (
         *FEW,
@@ -26,6 +27,7 @@ def run_up(teeth: tuple[int, int], seconds: float) -> tuple[Case, SolvedTransien
         f"gear.1.teeth={teeth[1]}",
         f"transient.run={{ from = '1500 rpm', to = '4500 rpm', time = '{seconds} s' }}",
         "transient.revolutions=",
+        *more,
     )
     case = load_case("spur-pair", changes).case
     machine = build_machine(case, None, solve_gears(case))
@@ -86,3 +88,26 @@ def test_a_long_run_has_every_order_at_its_amplitude(teeth: tuple[int, int], wit
         (row,) = [row for row in rows if abs(row["order"] - order) < 1e-9]
         assert row["highest_amplitude"] == pytest.approx(size, rel=within)
     assert run_signature_warnings(case, run) == []
+
+
+def test_a_run_in_the_other_sense_has_its_speeds_below_zero() -> None:
+    """As those of the run itself are; frequencies are none the less positive, and lines stand where they did."""
+    case, solved = run_up((26, 30), 0.06, "operation.speed=-5500 rpm")
+    run = long_run(solved, {26.0: 200.0})
+    found = solve_run_signature(case, run)
+    assert found is not None
+    document = run_signature_document(found)
+    whole = document_of(RUN, run)
+    assert whole["from_rpm"] == pytest.approx(-600.0)
+    assert whole["to_rpm"] == pytest.approx(-6000.0)
+    # The first and last stretch lie within the run.
+    assert -1000.0 < document["from_rpm"] < whole["from_rpm"]
+    assert whole["to_rpm"] < document["to_rpm"] < -5500.0
+    (row,) = [row for row in document["orders"] if row["order"] == 26.0]
+    assert row["highest_amplitude"] == pytest.approx(200.0, rel=1e-4)
+    assert -6000.0 < row["at_rpm"] < -600.0
+    assert row["frequency_hz"] == pytest.approx(26.0 * -row["at_rpm"] / 60.0)
+    (spectra,) = found.spectra.values()
+    for speed, amplitude in zip(found.speeds_rpm, spectra.amplitude, strict=True):
+        peak = spectra.frequencies[1 + int(np.argmax(amplitude[1:]))]
+        assert peak == pytest.approx(26.0 * -speed / 60.0, rel=0.05)

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
+from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.housing_modes import solve_housing
@@ -255,6 +257,27 @@ def test_every_figure_of_a_point_stands_at_its_place() -> None:
     assert (document["done"], document["failed"], document["resumed"]) == (4, 0, 1)
     assert [row["resumed"] for row in document["points"]] == [False, False, True, False]
     assert [row["values"]["operation_torque"] for row in document["points"]] == [10.0, 30.0, 10.0, 30.0]
+
+
+def test_frequencies_of_a_machine_that_turns_the_other_way_are_positive() -> None:
+    """An order of 2.5 at 6000 rpm is a line at 250 Hz, in either sense."""
+    over = ("operation.speed=-3000 rpm,-6000 rpm",)
+    points = points_of(over=over)
+    keys = swept_keys(load_case("small-gearbox").case, over)
+    results = [made_up(1), made_up(2)]
+    for result, rpm in zip(results, (-3000.0, -6000.0), strict=True):
+        result.document["speed_rpm"] = rpm
+        for pair in result.document["gear_pairs"]:
+            pair["mesh_frequency_hz"] = 28.0 * abs(rpm) / 60.0
+    swept = [SweptPoint(point, result, False) for point, result in zip(points, results, strict=True)]
+    data = collected_sweep(points[0].case, keys, swept)
+    assert data.rotation_speed.values.tolist() == [-3000.0, -6000.0]
+    assert data.frequency.values == pytest.approx(np.outer([50.0, 100.0], [0.0, 1.0, 2.5]))
+    # The multiples of the mesh frequency are straight lines from standstill to the fastest point.
+    axes = Figure().subplots()
+    _draw_mesh_orders(axes, data, 3000.0)
+    ends = np.array([line.get_xydata()[1] for line in axes.get_lines()])
+    assert ends[:2] == pytest.approx(np.array([[-6000.0, 2800.0], [-3000.0 * 60.0 / 56.0, 3000.0]]))
 
 
 def test_points_of_other_code_are_not_taken_up(monkeypatch: pytest.MonkeyPatch) -> None:

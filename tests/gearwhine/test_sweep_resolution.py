@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
+from coupling import amplitude_spectrum
 from gearwhine.case import SweptKey
 from gearwhine.output.sections import Table
 from gearwhine.results.sweep import sections
@@ -119,6 +120,29 @@ def test_without_sound_a_sensor_misses_its_peak() -> None:
     assert peak.output == "roof"
     assert peak.level_db == pytest.approx(90.0, abs=0.05)
     assert peak.rise_db == pytest.approx(16.9, abs=0.1)
+
+
+@pytest.mark.parametrize(("window", "order"), [("uniform", ORDER), ("hann", ORDER), ("hann", 28.05)])
+def test_levels_of_a_sensor_are_the_same_under_either_window(window: Any, order: float) -> None:
+    """A sine as high as the resonance asks for, in a record of ten turns: all of it is this line.
+
+    Under Hann's window it stands in three or four lines, none of which is as high as it where it lies between two.
+    """
+    keys, points = swept(1400.0, 1650.0)
+    turns = np.arange(4000) / 400.0
+    for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
+        one.outcome.document.pop("sound")
+        object.__setattr__(one.outcome.resonances, "outputs", ("roof",))
+        object.__setattr__(one.outcome.resonances, "mesh_orders", np.array([order]))
+        signal = 1e-2 * np.sqrt(size(order * rpm / 60.0)) * np.sin(2.0 * np.pi * order * turns)
+        spectrum = amplitude_spectrum(signal, 1.0 / 400.0, window)
+        object.__setattr__(one.outcome, "orders", spectrum.frequencies)
+        object.__setattr__(one.outcome, "sensor_spectra", {"roof": spectrum.amplitude})
+        object.__setattr__(one.outcome, "window", window)
+    (peak,) = missed_peaks(keys, points)
+    assert peak.level_db == pytest.approx(-40.0, abs=0.05)
+    louder = max(float(size(order * rpm / 60.0)) for rpm in (1400.0, 1650.0))
+    assert peak.rise_db == pytest.approx(-10.0 * np.log10(louder), abs=0.05)
 
 
 def test_a_machine_that_turns_the_other_way_meets_the_same_mode() -> None:

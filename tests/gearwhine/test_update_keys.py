@@ -2,11 +2,16 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
-from gearwhine.case.units import amount, kind_of, si_amount
+from gearwhine.case.units import amount, kind_of, si_amount, si_unit
 from gearwhine.from_case.parametric_housing import FittedCase, fitted_case
+from gearwhine.output.dataset import arrays_of
+from gearwhine.output.quantity import Rows, document_of
+from gearwhine.results.update import PARAMETER
+from gearwhine.solve.updating import FoundNumber
 
 RIG = "nasa-gear-noise-rig-nominal"
 
@@ -128,3 +133,40 @@ def test_amounts_of_any_kind(text: object, value: float | None) -> None:
 def test_kinds_tell_lengths_from_stiffnesses() -> None:
     assert kind_of("12 mm") == kind_of("1 in") != kind_of("5 N/m")
     assert amount("1 in") == pytest.approx(0.0254)
+
+
+def test_results_are_in_the_unit_that_they_name() -> None:
+    """A wall of 12 mm is 0.012 m, a modulus of 207 GPa 207e9 Pa, a factor 1: in JSON and in labelled arrays."""
+    made = fitted(
+        {"keys": ["housing.box.wall.top"], "range": ["5 mm", "20 mm"]},
+        {"keys": ["material.steel.youngs_modulus"], "range": ["190 GPa", "215 GPa"]},
+        {"keys": ["housing.support.*.stiffness.y"], "range": ["1e3 N/mm", "1e8 N/mm"]},
+        {"keys": ["housing.box.size[2]"], "range": [0.9, 1.1], "factor": True},
+    )
+    found = [FoundNumber(number, 1.1 * number.start, 0.01 * number.start, 0.5) for number in made.numbers]
+    rows = document_of((Rows("parameters", lambda found: found, PARAMETER),), found)["parameters"]
+    arrays = arrays_of((Rows("parameters", lambda found: found, PARAMETER, "parameter"),), found)
+    stiffness = rows[2]["before"]
+    assert [(row["before"], row["unit"]) for row in rows] == [
+        (pytest.approx(0.012), "m"),
+        (pytest.approx(207e9), "Pa"),
+        (pytest.approx(stiffness), "N/m"),
+        (pytest.approx(1.0), "1"),
+    ]
+    assert list(arrays["unit"][1]) == [row["unit"] for row in rows]
+    for key in ("before", "after"):
+        assert arrays[f"value_{key}"][1] == pytest.approx(np.array([row[key] for row in rows]))
+    # Back to what is written: the unit beside its size in SI.
+    written = [(row["before"] / row["written_unit_in_si"], row["written_unit"]) for row in rows[:2]]
+    assert written == [(pytest.approx(12.0), "mm"), (pytest.approx(207.0), "GPa")]
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [("mm", "m"), ("1/in", "1/m"), ("N/mm", "N/m"), ("g/cm^3", "kg/m^3"), ("deg", "rad"), ("%", "1"), ("", "1"),
+     ("kHz", "Hz"), ("kg*mm^2", "kg*m^2"), ("lbf/s", "kg*m*s^-3")],
+)  # fmt: skip
+def test_the_si_unit_of_a_unit_is_that_of_its_amounts(unit: str, expected: str) -> None:
+    assert si_unit(unit) == expected
+    if unit and expected != "1":
+        assert si_amount(f"1 {expected}") == 1.0

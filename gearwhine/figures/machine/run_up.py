@@ -130,7 +130,7 @@ def draw_run_up_waterfall(
         unit=unit,
         note=note,
         mesh_names=mesh_names,
-        mesh_frequencies=np.outer(speeds_rpm / 60.0, mesh_orders) if mesh_orders else (),
+        mesh_frequencies=np.outer(np.abs(speeds_rpm) / 60.0, mesh_orders) if mesh_orders else (),
         housing_frequencies=np.tile(modes, (rows, 1)) if modes.size else (),
     )
 

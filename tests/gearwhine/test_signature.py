@@ -1,0 +1,140 @@
+"""Signature of a motion: sidebands of forces on back flanks, and lines of records of several stretches."""
+
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coupling import coupled_modes
+from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.results.run import transient_document
+from gearwhine.solve import transient_record
+from gearwhine.solve.machine import solve_machine
+from gearwhine.solve.signature import solve_signature
+from gearwhine.solve.transient import solve_transient
+
+TURNING = 5500.0 / 60.0  # of all shafts [Hz]
+SHAFT = """
+[[rotor]]
+name = "third"
+axis = ["120.65 mm", "0 mm"]
+start = "-100 mm"
+material = "steel"
+segments = [{ length = "200 mm", diameter = "30 mm" }]
+"""
+BEARING = """
+[[bearing]]
+name = "third {at}"
+rotor = "third"
+at = "{at} mm"
+stiffness = {{ xx = "1.2e8 N/m", yy = "1.2e8 N/m" }}
+damping = {{ xx = "500 N*s/m", yy = "500 N*s/m" }}
+"""
+GEAR = """
+[[gear]]
+name = "{name}"
+rotor = "{rotor}"
+at = "60 mm"
+teeth = 24
+module = "3.175 mm"
+face_width = "6.35 mm"
+pressure_angle = "20 deg"
+bore = "30 mm"
+errors = {{ runout = "20 um" }}
+"""
+STAGE = """
+[[gear_pair]]
+driver = "second pinion"
+driven = "second wheel"
+stiffness = { model = "potential-energy" }
+damping_ratio = 0.05
+backlash = "0.1 mm"
+"""
+BRAKED = [
+    "gear.pinion.errors={ runout = '20 um' }",
+    "operation.torque=-20 N*m",
+    "rotor.*.modes=2",
+    "transient.revolutions=2",
+    "transient.discard=0",
+    "transient.tolerance=1e-2",
+]
+
+
+def two_stages(folder: Path) -> str:
+    """The spur pair with a second stage behind it, of other tooth numbers; all shafts turn at one speed."""
+    spur_pair = files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8")
+    gears = GEAR.format(name="second pinion", rotor="output") + GEAR.format(name="second wheel", rotor="third")
+    bearings = BEARING.format(at=20) + BEARING.format(at=180)
+    path = folder / "two-stages.toml"
+    path.write_text(spur_pair + SHAFT + bearings + gears + STAGE, encoding="utf-8")
+    return str(path)
+
+
+def test_sidebands_are_of_the_pressed_flanks_of_their_own_pair(tmp_path: Path) -> None:
+    """The machine brakes, so that back flanks press; every pinion's runout modulates its mesh once a turn.
+
+    Its lines are found again in a Fourier sum over the history of each force.
+    """
+    case = load_case(two_stages(tmp_path), BRAKED).case
+    _, _, machine = solve_machine(case)
+    solved = solve_transient(case, machine, mesh_frequencies(case))
+    signature = solve_signature(solved, coupled_modes(machine.system), None)
+    pairs = transient_document(solved, signature)["gear_pairs"]
+    assert [pair["flanks"] for pair in pairs] == ["back", "back"]
+    times = solved.histories.times
+    pressed = "pinion -> wheel, back", "second pinion -> second wheel, back"
+    for pair, teeth, flanks in zip(pairs, (28, 24), pressed, strict=True):
+        own = f"{pair['driver']} -> {pair['driven']}"
+        force = solved.histories.mesh_force[flanks]
+        assert pair["mean_force_n"] == pytest.approx(force.mean(), rel=1e-3)
+        assert {band["gear_pair"] for band in pair["sidebands"]} == {own}
+        first = next(band for band in pair["sidebands"] if band["number"] == 1)
+        assert first["carrier_hz"] == pytest.approx(teeth * TURNING)
+        for key, frequency in (("carrier", teeth), ("lower", teeth - 1), ("upper", teeth + 1)):
+            wave = np.exp(-2j * np.pi * frequency * TURNING * times)
+            assert first[f"{key}_amplitude_n"] == pytest.approx(2.0 * abs((force * wave).mean()), rel=1e-6)
+
+
+@pytest.mark.slow
+def test_lines_of_a_long_record_and_their_parts_are_of_all_its_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A free vibration that dies away in the first of seven stretches, so that the last one knows nothing of it.
+
+    Over the stretches a part x of the line a has the share Σ Re x a* / Σ |a|²: its part of the line's power.
+    """
+    monkeypatch.setattr(transient_record, "_LONGEST_STRETCH", 700)
+    settings = ["housing.box.mesh_size=40 mm", "transient.revolutions=17", "transient.discard=1"]
+    case = load_case("small-gearbox", [*settings, "transient.tolerance=1e-3"]).case
+    housing, _, machine = solve_machine(case)
+    assert housing is not None
+    solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing, record_bytes=1 << 16)
+    assert solved.averages > 5
+    signature = solve_signature(solved, coupled_modes(machine.system), housing.modes.frequencies_hz)
+    stretches = list(solved.record.stretches())
+    assert machine.housing is not None
+    faded = 0
+    for sensor in transient_document(solved, signature)["sensors"]:
+        row = machine.housing.sensors[sensor["name"]]
+        lines = fourier([stretch.histories.sensor_acceleration[sensor["name"]] for stretch in stretches])
+        modes = fourier([stretch.modal.housing_acceleration.T for stretch in stretches])
+        spacing = 1.0 / (len(stretches[0].times) * solved.record.sampling.interval)
+        for peak, traced in zip(sensor["peaks"], signature.lines[sensor["name"]], strict=True):
+            a, x = (spectra[..., round(peak["frequency_hz"] / spacing)] for spectra in (lines, modes))
+            power = (np.abs(a) ** 2).mean()
+            assert peak["amplitude_m_per_s2"] == pytest.approx(np.sqrt(power))
+            assert peak["level_db"] == pytest.approx(10.0 * np.log10(0.5 * power / 1e-12))
+            shares = {part.mode: part.share for part in traced.modes}
+            for mode in range(x.shape[1]):
+                share = row[mode] * (x[:, mode] * a.conj()).real.mean() / power
+                assert shares[mode + 1] == pytest.approx(share, rel=1e-6, abs=1e-9)
+            for parts in (traced.modes, (*traced.bearings, traced.free)):
+                assert abs(sum(part.value for part in parts) - traced.value) < 1e-9 * abs(traced.value)
+                assert sum(part.share for part in parts) == pytest.approx(1.0)
+            faded += bool(abs(a[-1]) < 1e-2 * np.sqrt(power))
+    assert faded > 0
+
+
+def fourier(signals: Sequence[np.ndarray]) -> np.ndarray:
+    """Lines of stretches of whole periods, shape (stretches, ..., lines)."""
+    return 2.0 * np.fft.rfft(np.array(signals), axis=-1) / signals[0].shape[-1]
