@@ -2,24 +2,25 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from coupling.machine.axial_location import ARRANGEMENTS
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
-from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
 from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
-from gearwhine.results.mesh import BORE, bore_line, kinds_of_elements
+from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.operating_point import misalignment_words
 from gearwhine.solve.case_summary import check_case
 
 if TYPE_CHECKING:
+    from coupling.machine.loads import Torque
     from gearwhine.case import Joint, Mount
+    from gearwhine.case.rotors import Rotor as CaseRotor
     from housing import Joint as BuiltJoint
 
 
@@ -108,7 +109,7 @@ HOUSING = (
     Quantity("size_m", lambda checked: checked.mesh.size),
     _optional("mesh_size_m", lambda checked: checked.mesh.mesh_size),
     _optional("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
-    Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores_along_axes(checked.mesh.mesh), BORE),
+    Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores(checked.mesh.mesh), BORE),
     _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
     _of_mesh("volumes", lambda mesh: sorted(mesh.volumes)),
     _optional_part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE),
@@ -134,24 +135,31 @@ def _span(speeds: Sequence[float]) -> list[float] | None:
     return [min(speeds) * RPM, max(speeds) * RPM, len(speeds)] if speeds else None
 
 
-def _response_speeds(row: tuple[Case, Any]) -> Sequence[float]:
+class _Analysis(NamedTuple):
+    """Case, and one of its rotors."""
+
+    case: Case
+    rotor: "CaseRotor"
+
+
+def _response_speeds(row: _Analysis) -> Sequence[float]:
     case, rotor = row
     return response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
 
 
-def _swinging_torques(row: tuple[Case, Any]) -> int:
+def _swinging_torques(row: _Analysis) -> int:
     case, rotor = row
     torsion = None if case.rotor_analysis is None else case.rotor_analysis.torsional_response
     return 0 if torsion is None else sum(torque.rotor == rotor.name for torque in torsion.torques)
 
 
 ANALYSIS = (
-    Quantity("rotor", lambda row: row[1].name),
-    Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row[0], row[1].name))),
+    Quantity("rotor", lambda row: row.rotor.name),
+    Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row.case, row.rotor.name))),
     Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
     Quantity("torques", _swinging_torques),
 )
-"""Quantities of the analyses that ``gearwhine rotors`` makes of a rotor; a row is the case and the rotor."""
+"""Quantities of the analyses that ``gearwhine rotors`` makes of a rotor."""
 
 BEARING = (
     Quantity("name", lambda bearing: bearing.name),
@@ -209,17 +217,25 @@ _TORQUE_LINE = (
     Quantity("speed_rpm", lambda line: np.array(line.speed) * RPM),
     Quantity("torque_n_m", lambda line: line.torque),
 )
+
+
+class _AppliedTorque(NamedTuple):
+    """Torque from outside, and its place on the rotor [m]; without rotors torques have no place."""
+
+    torque: "Torque"
+    at: float | None
+
+
 OPERATION = (
     Quantity("speed_rpm", lambda case: case.operation.speed * RPM),
     Quantity("torque_n_m", lambda case: case.operation.torque),
     Rows(
         "torques",
-        # Without rotors torques have no station.
-        lambda case: [(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
+        lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
         (
-            Quantity("rotor", lambda torque: torque[0].rotor),
-            Quantity("at_m", lambda torque: torque[1]),
-            Quantity("torque_n_m", lambda torque: torque[0].value),
+            Quantity("rotor", lambda row: row.torque.rotor),
+            Quantity("at_m", lambda row: row.at),
+            Quantity("torque_n_m", lambda row: row.torque.value),
         ),
     ),
     _optional("gravity_m_per_s2", lambda case: case.operation.gravity),
@@ -312,7 +328,7 @@ CHECK = (
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows(
         "rotor_analysis",
-        lambda checked: [(checked.case, analysis) for analysis in checked.case.rotor] or ABSENT,
+        lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
         ANALYSIS,
     ),
     _optional("bearings", lambda checked: _bearings(checked.case) or None),

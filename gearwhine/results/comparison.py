@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -77,6 +77,13 @@ def _numbers(frequencies: "npt.NDArray[np.float64]") -> Any:
     return np.arange(1, 1 + len(frequencies))
 
 
+class _Mode(NamedTuple):
+    """Correlation of mode shapes, and the number of a measured mode or of one of the model, from 1."""
+
+    shapes: "ShapeCorrelation"
+    number: int
+
+
 SHAPES = (
     Quantity(
         "",
@@ -96,20 +103,20 @@ SHAPES = (
     ),
     Rows(
         "unpaired_measured",
-        lambda shapes: [(shapes, number) for number in shapes.unpaired_measured],
+        lambda shapes: [_Mode(shapes, number) for number in shapes.unpaired_measured],
         (
-            Quantity("measured_mode", lambda row: row[1]),
-            Quantity("measured_hz", lambda row: row[0].measured_frequencies[row[1] - 1] / HERTZ),
-            Quantity("most_like", lambda row: np.argmax(row[0].mac[:, row[1] - 1]) + 1),
-            Quantity("mac", lambda row: row[0].mac[:, row[1] - 1].max()),
+            Quantity("measured_mode", lambda row: row.number),
+            Quantity("measured_hz", lambda row: row.shapes.measured_frequencies[row.number - 1] / HERTZ),
+            Quantity("most_like", lambda row: np.argmax(row.shapes.mac[:, row.number - 1]) + 1),
+            Quantity("mac", lambda row: row.shapes.mac[:, row.number - 1].max()),
         ),
     ),
     Rows(
         "unpaired_model",
-        lambda shapes: [(shapes, number) for number in shapes.unpaired_model],
+        lambda shapes: [_Mode(shapes, number) for number in shapes.unpaired_model],
         (
-            Quantity("mode", lambda row: row[1]),
-            Quantity("model_hz", lambda row: row[0].model_frequencies[row[1] - 1] / HERTZ),
+            Quantity("mode", lambda row: row.number),
+            Quantity("model_hz", lambda row: row.shapes.model_frequencies[row.number - 1] / HERTZ),
         ),
     ),
     _alike("duplicates", lambda shapes: shapes.measured_look_alikes, one_frequency=True),

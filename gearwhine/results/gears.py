@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from gearwhine.output.sections import Column, Document, Picture, Section, Table,
 from gearwhine.results.operating_point import misalignment_words
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from gearwhine.solve.gear_pairs import PairAnalysis
 
 _MOST_YIELDING = 0.1
@@ -30,23 +32,31 @@ def _start(gear: Gear, relief: TipRelief) -> float:
     return relief.start(gear.roll_angle(gear.tip_radius), gear.base_radius)
 
 
-def _span(row: Any) -> dict[str, Any] | None:
+class _Gear(NamedTuple):
+    """Geometry of a gear pair, one of its gears, and whether the case gives the width of its face."""
+
+    geometry: GearPairGeometry
+    gear: Gear
+    width_given: bool
+
+
+def _span(row: _Gear) -> dict[str, Any] | None:
     # Some measurements are impossible on some gears: the face is too narrow or the teeth are too short.
     with suppress(GearError):
-        span = span_measurement(row[1])
+        span = span_measurement(row.gear)
         return {"teeth": span.teeth, "length_m": span.length}
     return None
 
 
-def _over_balls(row: Any) -> dict[str, Any] | None:
+def _over_balls(row: _Gear) -> dict[str, Any] | None:
     with suppress(GearError):
-        balls = over_balls(row[1])
+        balls = over_balls(row.gear)
         return {"ball_diameter_m": balls.diameter, "length_m": balls.length}
     return None
 
 
-def _relief(row: Any) -> dict[str, Any] | None:
-    gear = row[1]
+def _relief(row: _Gear) -> dict[str, Any] | None:
+    gear = row.gear
     relief = gear.tip_relief
     if relief is None:
         return None
@@ -56,35 +66,43 @@ def _relief(row: Any) -> dict[str, Any] | None:
 _MM, _MICRO, _MEGA = 1e3, 1e6, 1e-6
 
 GEAR = (
-    Quantity("name", lambda row: row[1].name, heading="[mm]"),
-    Quantity("teeth", lambda row: row[1].teeth, heading="teeth", shown="d"),
-    Quantity("virtual_teeth", lambda row: row[1].virtual_teeth),
-    Quantity("module_m", lambda row: row[1].module),
-    Quantity("pressure_angle_rad", lambda row: row[1].pressure_angle),
-    Quantity("helix_angle_rad", lambda row: row[1].helix_angle),
-    Quantity("lead_m", lambda row: None if row[1].helix_angle == 0.0 else row[1].lead),
-    Quantity("profile_shift", lambda row: row[1].profile_shift, heading="shift [modules]"),
-    Quantity("rack_tip_radius_m", lambda row: row[1].rack_tip_radius),
-    Quantity("undercut", lambda row: row[1].is_undercut),
-    Quantity("face_width_m", lambda row: row[1].face_width if row[2] else None, heading="face", shown=".5g", scale=_MM),
+    Quantity("name", lambda row: row.gear.name, heading="[mm]"),
+    Quantity("teeth", lambda row: row.gear.teeth, heading="teeth", shown="d"),
+    Quantity("virtual_teeth", lambda row: row.gear.virtual_teeth),
+    Quantity("module_m", lambda row: row.gear.module),
+    Quantity("pressure_angle_rad", lambda row: row.gear.pressure_angle),
+    Quantity("helix_angle_rad", lambda row: row.gear.helix_angle),
+    Quantity("lead_m", lambda row: None if row.gear.helix_angle == 0.0 else row.gear.lead),
+    Quantity("profile_shift", lambda row: row.gear.profile_shift, heading="shift [modules]"),
+    Quantity("rack_tip_radius_m", lambda row: row.gear.rack_tip_radius),
+    Quantity("undercut", lambda row: row.gear.is_undercut),
+    Quantity(
+        "face_width_m",
+        lambda row: row.gear.face_width if row.width_given else None,
+        heading="face",
+        shown=".5g",
+        scale=_MM,
+    ),
     Quantity(
         "diameters_m",
         lambda row: {
-            "tip": 2.0 * row[1].tip_radius,
-            "reference": 2.0 * row[1].pitch_radius,
-            "base": 2.0 * row[1].base_radius,
-            "form": 2.0 * row[1].form_radius,
-            "root": 2.0 * row[1].root_circle_radius,
+            "tip": 2.0 * row.gear.tip_radius,
+            "reference": 2.0 * row.gear.pitch_radius,
+            "base": 2.0 * row.gear.base_radius,
+            "form": 2.0 * row.gear.form_radius,
+            "root": 2.0 * row.gear.root_circle_radius,
         },
     ),
     Quantity(
         "normal_thickness_m",
         lambda row: {
-            "reference": normal_tooth_thickness(row[1], row[1].pitch_radius),
-            "tip": normal_tooth_thickness(row[1], row[1].tip_radius),
+            "reference": normal_tooth_thickness(row.gear, row.gear.pitch_radius),
+            "tip": normal_tooth_thickness(row.gear, row.gear.tip_radius),
         },
     ),
-    Quantity("tip_clearance_m", lambda row: row[0].tip_clearance(row[1]), heading="clearance", shown=".3f", scale=_MM),
+    Quantity(
+        "tip_clearance_m", lambda row: row.geometry.tip_clearance(row.gear), heading="clearance", shown=".3f", scale=_MM
+    ),
     Quantity(
         "span",
         _span,
@@ -96,7 +114,7 @@ GEAR = (
     Quantity("over_balls", _over_balls),
     Quantity("tip_relief", _relief),
 )
-"""Proportions and measures of a gear; a row is the pair's geometry, the gear, and whether the case gives its width."""
+"""Proportions and measures of a gear."""
 
 _CIRCLES = (
     *(Column(f"{head} ⌀", f"diameters_m.{key}", ".3f", _MM) for head, key in (("tip", "tip"), ("pitch", "reference"))),
@@ -160,9 +178,9 @@ PATH = (
 """Quantities of the named points of a path of contact, on both gears."""
 
 
-def _gears(geometry: GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[Any]:
+def _gears(geometry: GearPairGeometry, widths_given: tuple[bool, bool] = (True, True)) -> list[_Gear]:
     gears = (geometry.driver, geometry.driven)
-    return [(geometry, gear, wide) for gear, wide in zip(gears, widths_given, strict=True)]
+    return [_Gear(geometry, gear, given) for gear, given in zip(gears, widths_given, strict=True)]
 
 
 GEOMETRY = (
@@ -382,6 +400,13 @@ def _where(present: Any, pair: "PairAnalysis") -> "PairAnalysis | None":
     return None if present is None else pair
 
 
+class _Flanks(NamedTuple):
+    """Roll angles of driver and driven gear [rad], and the material over the involute there [m], shape (2, n)."""
+
+    roll_angle: "npt.NDArray[np.float64]"
+    deviation: "npt.NDArray[np.float64]"
+
+
 PAIR = (
     Quantity("", lambda pair: pair.label.replace("→", "->"), "gear_pair"),
     Quantity("driver", lambda pair: pair.solved.pair.driver, heading="driver"),
@@ -411,11 +436,11 @@ PAIR = (
     Part("", lambda pair: pair.curves(), CURVES),
     Part(
         "",
-        lambda pair: pair.flanks,
+        lambda pair: _Flanks(*pair.flanks),
         (
             Quantity(
                 "",
-                lambda flanks: flanks[0],
+                lambda flanks: flanks.roll_angle,
                 "flank_roll_angle",
                 ("side", "flank_place"),
                 "rad",
@@ -423,7 +448,7 @@ PAIR = (
             ),
             Quantity(
                 "",
-                lambda flanks: flanks[1],
+                lambda flanks: flanks.deviation,
                 "flank_deviation",
                 ("side", "flank_place"),
                 "m",

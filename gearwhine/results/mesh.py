@@ -1,21 +1,35 @@
 """Mesh of the housing: quantities of its size, quality and bores, and how the terminal shows them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section
 from gearwhine.results.housing import MESH_SIZE
 from meshes import Mesh, mesh_quality
+from meshes.bores import CylindricalBore
+
+
+class BoreAlongAxis(NamedTuple):
+    """Name of an axis, and a bore along it."""
+
+    axis: str
+    bore: CylindricalBore
+
+
+def bores(mesh: Mesh) -> list[BoreAlongAxis]:
+    """Return the mesh's bores along each axis: first along z, where shafts are, then others, the widest first."""
+    return [BoreAlongAxis(*each) for each in bores_along_axes(mesh)]
+
 
 BORE = (
-    Quantity("center_m", lambda row: row[1].center),
-    Quantity("diameter_m", lambda row: row[1].diameter),
-    Quantity("length_m", lambda row: row[1].length),
-    Quantity("axis", lambda row: row[0]),
+    Quantity("center_m", lambda row: row.bore.center),
+    Quantity("diameter_m", lambda row: row.bore.diameter),
+    Quantity("length_m", lambda row: row.bore.length),
+    Quantity("axis", lambda row: row.axis),
 )
-"""Quantities of a bore; a row is its axis and the bore."""
+"""Quantities of a bore; a row is a :class:`BoreAlongAxis`."""
 
 QUALITY = (
     Quantity("volume_m3", lambda quality: quality.volume),
@@ -31,7 +45,7 @@ MESH = (
     Quantity("surfaces", lambda mesh: {name: sum(map(len, facets)) for name, facets in sorted(mesh.surfaces.items())}),
     Quantity("volumes", lambda mesh: {name: len(members) for name, members in sorted(mesh.volumes.items())}),
     Part("", mesh_quality, QUALITY),
-    Rows("bores", bores_along_axes, BORE),
+    Rows("bores", bores, BORE),
 )
 """Quantities of a mesh: elements by kind, facets of each surface, elements of each volume, quality and bores."""
 

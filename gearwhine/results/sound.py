@@ -1,7 +1,7 @@
 """Sound: quantities of the housing's radiation and of the sound of a motion's lines, and how they are shown."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from gearwhine.results.line_columns import line_frequency
 from housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
 
 if TYPE_CHECKING:
-    from gearwhine.solve.sound.solution import SolvedSound
+    from gearwhine.solve.sound.solution import SolvedSound, SoundLine
     from housing.acoustics.known_source import SourceError
 
 _METHODS = {
@@ -101,7 +101,14 @@ MODE_COLUMNS = (
 )
 
 
-def _contributions(row: Any) -> dict[str, list[dict[str, Any]]]:
+class _Entry(NamedTuple):
+    """Sound, and one of its lines."""
+
+    solved: "SolvedSound"
+    line: "SoundLine"
+
+
+def _contributions(row: _Entry) -> dict[str, list[dict[str, Any]]]:
     solved, line = row
     power = line.sound.power
     alone = dict(zip(solved.bearings, power_level(line.sound.power_alone).tolist(), strict=True))
@@ -149,27 +156,28 @@ def _of_lines(name: str, of: Any, unit: str, long_name: str) -> Quantity:
 
 
 ENTRY = (
-    Quantity("frequency_hz", lambda row: row[1].frequency_hz),
-    Quantity("order", lambda row: row[1].order),
-    Quantity("name", lambda row: row[1].name),
-    Quantity("sound_power_db", lambda row: row[1].level_db),
-    Quantity("sound_power_db_a", lambda row: row[1].level_db_a),
-    Quantity("equivalent_power_db", lambda row: row[1].equivalent_db),
-    Quantity("radiation_efficiency", lambda row: row[1].sound.radiation_efficiency),
-    Quantity("surface_power_db", lambda row: float(power_level(row[1].sound.surface_power))),
-    Quantity("power_balance_db", lambda row: row[1].power_balance_db),
-    Quantity("interior_pressure", lambda row: row[1].interior_pressure),
-    Quantity("known_source_error", lambda row: _largest_error(row[1].known_source)),
-    Quantity("known_source_rms", lambda row: _rms_error(row[1].known_source)),
+    Quantity("frequency_hz", lambda row: row.line.frequency_hz),
+    Quantity("order", lambda row: row.line.order),
+    Quantity("name", lambda row: row.line.name),
+    Quantity("sound_power_db", lambda row: row.line.level_db),
+    Quantity("sound_power_db_a", lambda row: row.line.level_db_a),
+    Quantity("equivalent_power_db", lambda row: row.line.equivalent_db),
+    Quantity("radiation_efficiency", lambda row: row.line.sound.radiation_efficiency),
+    Quantity("surface_power_db", lambda row: float(power_level(row.line.sound.surface_power))),
+    Quantity("power_balance_db", lambda row: row.line.power_balance_db),
+    Quantity("interior_pressure", lambda row: row.line.interior_pressure),
+    Quantity("known_source_error", lambda row: _largest_error(row.line.known_source)),
+    Quantity("known_source_rms", lambda row: _rms_error(row.line.known_source)),
     Quantity("contributions", _contributions),
     Quantity(
         "microphones_db",
         lambda row: {
-            name: float(pressure_level(row[1].microphones[place])) for place, name in enumerate(row[0].microphones)
+            name: float(pressure_level(row.line.microphones[place]))
+            for place, name in enumerate(row.solved.microphones)
         },
     ),
 )
-"""Quantities of a line; a row is the solved sound and the line."""
+"""Quantities of a line."""
 
 
 def _picture_of(row: Document) -> tuple[str, ...]:
@@ -236,10 +244,17 @@ def _mode_text(row: Mapping[str, Any]) -> str:
     return f"{name}, {100.0 * row['mode_share']:.0f} %"
 
 
+class SweptLine(NamedTuple):
+    """Entry of a line in the document of a sweep's point, and the natural frequencies of the housing there [Hz]."""
+
+    line: Mapping[str, Any]
+    housing_frequencies_hz: npt.NDArray[np.float64]
+
+
 SWEPT_LINE = (
     Quantity(
         "name",
-        lambda row: row[0]["name"],
+        lambda row: row.line["name"],
         name="sound_line_name",
         long_name="name of the loudest lines",
         heading="loudest line",
@@ -247,7 +262,7 @@ SWEPT_LINE = (
     ),
     Quantity(
         "frequency_hz",
-        lambda row: row[0]["frequency_hz"],
+        lambda row: row.line["frequency_hz"],
         name="sound_line_frequency",
         unit="Hz",
         long_name="frequency of the loudest lines",
@@ -256,14 +271,14 @@ SWEPT_LINE = (
     ),
     Quantity(
         "order",
-        lambda row: row[0]["order"],
+        lambda row: row.line["order"],
         name="sound_line_order",
         unit="1",
         long_name="order of the loudest lines over the speed of the first driver",
     ),
     Quantity(
         "sound_power_db",
-        lambda row: row[0]["sound_power_db"],
+        lambda row: row.line["sound_power_db"],
         name="sound_line_level",
         unit="dB",
         long_name="sound power level of the loudest lines re 1 pW",
@@ -272,7 +287,7 @@ SWEPT_LINE = (
     ),
     Quantity(
         "mode",
-        lambda row: _mode_number(row[0]),
+        lambda row: _mode_number(row.line),
         name="sound_line_mode",
         unit="1",
         long_name="number of the housing mode with the largest part of the line's power",
@@ -281,20 +296,20 @@ SWEPT_LINE = (
     ),
     Quantity(
         "mode_frequency_hz",
-        lambda row: None if (number := _mode_number(row[0])) is None else row[1][number - 1],
+        lambda row: None if (number := _mode_number(row.line)) is None else row.housing_frequencies_hz[number - 1],
         name="sound_line_mode_frequency",
         unit="Hz",
         long_name="natural frequency of that mode",
     ),
     Quantity(
         "mode_share",
-        lambda row: None if (mode := _leading_mode(row[0])) is None else mode["share"],
+        lambda row: None if (mode := _leading_mode(row.line)) is None else mode["share"],
         name="sound_line_mode_share",
         unit="1",
         long_name="part of that mode in the line's power",
     ),
 )
-"""Quantities of a line of a sweep's point; a row is its entry in the document and the housing's frequencies [Hz]."""
+"""Quantities of a line of a sweep's point; a row is a :class:`SweptLine`."""
 
 PARTS = (
     "Parts are shares of the line's power with phase: the motions by all bearings add up as complex amplitudes, and "
@@ -309,20 +324,31 @@ LEFT_OUT = (
 )
 """Quantities of a line whose sound is not solved; the share is None where the modes are not complete."""
 
+
+class _Microphone(NamedTuple):
+    """Microphone: its name, position [m], level and A-weighted level [dB], and the error of a known source there."""
+
+    name: str
+    position: npt.NDArray[np.float64]
+    level: float | None
+    level_a: float | None
+    known_source_error: float | None
+
+
 MICROPHONE = (
-    Quantity("name", lambda row: row[0], heading="microphone"),
-    Quantity("position_m", lambda row: row[1]),
-    Quantity("level_db", lambda row: row[2], heading="sound pressure [dB re 20 µPa]", shown=".1f"),
-    Quantity("level_db_a", lambda row: row[3], heading="A-weighted [dB]", shown=".1f"),
+    Quantity("name", lambda row: row.name, heading="microphone"),
+    Quantity("position_m", lambda row: row.position),
+    Quantity("level_db", lambda row: row.level, heading="sound pressure [dB re 20 µPa]", shown=".1f"),
+    Quantity("level_db_a", lambda row: row.level_a, heading="A-weighted [dB]", shown=".1f"),
     Quantity(
         "known_source_error",
-        lambda row: row[4],
+        lambda row: row.known_source_error,
         name="microphone_known_source_error",
         unit="1",
         long_name="largest error of a known source's pressure at the microphone",
     ),
 )
-"""Quantities of a microphone; a row is its name, position, level, A-weighted level, and error of a known source."""
+"""Quantities of a microphone."""
 
 
 HEARD_COLUMNS = (
@@ -344,11 +370,11 @@ def _heard(document: Document) -> list[Document]:
     return rows
 
 
-def _microphones(solved: "SolvedSound") -> list[Any]:
+def _microphones(solved: "SolvedSound") -> list[_Microphone]:
     levels, weighted = solved.microphone_levels(), solved.microphone_levels(weighted=True)
     errors = solved.microphone_errors
     return [
-        (
+        _Microphone(
             name,
             place,
             levels[name] if solved.lines else None,
@@ -371,7 +397,7 @@ SOUND = (
     Quantity("method", lambda solved: solved.radiation.method),
     Quantity("highest_frequency_hz", lambda solved: solved.limit_hz),
     Part("surface", lambda solved: solved.radiation, SURFACE),
-    Rows("lines", lambda solved: [(solved, line) for line in solved.lines], ENTRY),
+    Rows("lines", lambda solved: [_Entry(solved, line) for line in solved.lines], ENTRY),
     Quantity("covered", lambda solved: solved.covered if solved.lines else None),
     Rows("left_out", lambda solved: solved.left_out, LEFT_OUT),
     Quantity("total_db", lambda solved: solved.total_db if solved.lines else None),

@@ -2,42 +2,63 @@
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Section, columns_of, counted, table_of
 from gearwhine.results.housing import ORIGIN
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.housing_modes import SolvedHousing
 
+
+class _Sensor(NamedTuple):
+    """Sensor of the plan: its label, position [m], direction, and share in the independence of the modes."""
+
+    point: str
+    position: "npt.NDArray[np.float64]"
+    direction: "npt.NDArray[np.float64]"
+    independence: float
+
+
+class _Hammer(NamedTuple):
+    """Place for the hammer: its position [m], its direction, and the least residue of a mode there."""
+
+    position: "npt.NDArray[np.float64]"
+    direction: "npt.NDArray[np.float64]"
+    least_residue: float
+
+
 SENSOR = (
-    Quantity("point", lambda row: row[0], heading="point"),
-    Quantity("position_m", lambda row: row[1]),
-    Quantity("direction", lambda row: row[2], heading="direction", shown=lambda row: _axis(row["direction"])),
-    Quantity("independence", lambda row: row[3], heading="independence", shown=".3f"),
+    Quantity("point", lambda row: row.point, heading="point"),
+    Quantity("position_m", lambda row: row.position),
+    Quantity("direction", lambda row: row.direction, heading="direction", shown=lambda row: _axis(row["direction"])),
+    Quantity("independence", lambda row: row.independence, heading="independence", shown=".3f"),
 )
-"""Quantities of a sensor; a row is its label, position, direction and share in the independence of the modes."""
+"""Quantities of a sensor."""
 
 HAMMER = (
-    Quantity("position_m", lambda row: row[0]),
-    Quantity("direction", lambda row: row[1]),
-    Quantity("least_residue", lambda row: row[2]),
+    Quantity("position_m", lambda row: row.position),
+    Quantity("direction", lambda row: row.direction),
+    Quantity("least_residue", lambda row: row.least_residue),
 )
 """Quantities of a place for the hammer."""
 
 
-def _sensors(planned: "PlannedSurvey") -> list[Any]:
+def _sensors(planned: "PlannedSurvey") -> list[_Sensor]:
     geometry = planned.geometry
     columns = (geometry.labels, geometry.positions, geometry.directions, planned.plan.independence)
-    return list(zip(*columns, strict=True))
+    return [_Sensor(*row) for row in zip(*columns, strict=True)]
 
 
-def _hammer(planned: "PlannedSurvey") -> list[Any]:
+def _hammer(planned: "PlannedSurvey") -> list[_Hammer]:
     places = planned.plan.driving_points
     columns = (planned.candidates.positions[places], planned.candidates.directions[places], planned.plan.residues)
-    return list(zip(*columns, strict=True))
+    return [_Hammer(*row) for row in zip(*columns, strict=True)]
 
 
 PLAN = (

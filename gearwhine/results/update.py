@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.case.errors import key_of
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
@@ -125,21 +125,36 @@ STEP = (
 )
 """Quantities of a step of the search."""
 
+
+class _Combination(NamedTuple):
+    """Information of the data on a combination of parameters, and its leading parts by name."""
+
+    information: float
+    parts: dict[str, float]
+
+
+class _Confounded(NamedTuple):
+    """Names of two parameters, and their correlation."""
+
+    parameters: list[str]
+    correlation: float
+
+
 IDENTIFIABILITY = (
     Quantity("parameters", lambda solved: len(solved.fitted.numbers)),
     Quantity("learned_combinations", lambda solved: solved.posterior.n_learned),
     Rows(
         "combinations",
-        lambda solved: solved.combinations,
-        (Quantity("information", lambda row: row[0]), Quantity("parts", lambda row: row[1])),
+        lambda solved: [_Combination(*each) for each in solved.combinations],
+        (Quantity("information", lambda row: row.information), Quantity("parts", lambda row: row.parts)),
     ),
     Rows(
         "confounded",
         lambda solved: [
-            ([solved.found[first].parameter.name, solved.found[second].parameter.name], correlation)
+            _Confounded([solved.found[first].parameter.name, solved.found[second].parameter.name], correlation)
             for first, second, correlation in solved.posterior.confounded
         ],
-        (Quantity("parameters", lambda row: row[0]), Quantity("correlation", lambda row: row[1])),
+        (Quantity("parameters", lambda row: row.parameters), Quantity("correlation", lambda row: row.correlation)),
     ),
 )
 """Combinations of parameters that the data determine, and pairs that they cannot tell apart."""

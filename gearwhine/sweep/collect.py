@@ -11,7 +11,7 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.output.quantity import document_of
-from gearwhine.results.sound import SWEPT_LINE
+from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
 from gearwhine.sweep.points import axis_name
 from gearwhine.sweep.resolution import MissedPeak, over_with, peak_warnings, speeds_to_add
@@ -306,7 +306,7 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
 
     def rows(result: PointResult) -> list[dict[str, Any]]:
         lines = result.document.get("sound", {}).get("lines", ())[:count]
-        return [document_of(SWEPT_LINE, (line, result.housing_frequencies_hz)) for line in lines]
+        return [document_of(SWEPT_LINE, SweptLine(line, result.housing_frequencies_hz)) for line in lines]
 
     for name, key, unit, long_name in (
         ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),

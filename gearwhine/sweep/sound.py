@@ -18,7 +18,7 @@ import numpy.typing as npt
 from gearwhine.case.speeds_and_torques import mesh_frequencies
 from gearwhine.output.quantity import document_of, warning
 from gearwhine.progress import Progress, in_order, silent
-from gearwhine.results.sound import SWEPT_LINE, parts_of_modes
+from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
 from gearwhine.solve.sound.proofs import (
     doubts,
     gathered,
@@ -155,7 +155,7 @@ def add_sound(
             "power_balance_db": max((value for value in balances if value is not None), key=abs, default=None),
             "interior_pressure": max((value for value in leaks if value is not None), default=None),
             **{key: worst_source[key] for key in _UNPROVED},
-            "loudest": document_of(SWEPT_LINE, (entries[0], housing.modes.frequencies_hz)),
+            "loudest": document_of(SWEPT_LINE, SweptLine(entries[0], housing.modes.frequencies_hz)),
             "lines": entries,
         }
     if failures and len(failures) == len(lines):
