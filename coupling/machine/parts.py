@@ -10,6 +10,7 @@ from coupling.gears import Gear
 from coupling.gears.geometry.blank import CoreLength, blank_around
 from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.beam import shear_modulus
 from coupling.machine.components import HousingComponent
 from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
@@ -226,7 +227,10 @@ def _core(mounted: ShaftGear, rotor: Rotor) -> tuple[tuple[float, float], tuple[
 
 
 def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiameter]:
-    """Stiffness diameters of a gear on its shaft: root circle, and section with teeth, over their parts of the face."""
+    """Stiffness diameters of a gear on its shaft: root circle, and section with teeth, over their parts of the face.
+
+    They have the gear's own moduli; of another material it is a sleeve that the shaft goes through.
+    """
     if not mounted.in_one_piece:
         return []
     root, section = 2.0 * mounted.gear.root_circle_radius, toothed_section(mounted.gear)
@@ -237,7 +241,8 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
         (bending[0] + section.end_length, bending[1] - section.end_length, section.bending_diameter, 0.0),
         (torsion[0] + section.end_length, torsion[1] - section.end_length, 0.0, section.torsion_diameter),
     ]
-    return [StiffnessDiameter(*one) for one in lengths if one[0] < one[1]]
+    moduli = mounted.gear.youngs_modulus, shear_modulus(mounted.gear)
+    return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:

@@ -14,6 +14,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -52,8 +53,9 @@ INERTIAS = [2, 3, 7, 9]
 class StiffnessDiameter:
     """A length of shaft that is at least this thick against deformation, while its mass is that of its segments.
 
-    It stands for a body in one piece with the shaft whose mass is elsewhere, such as a pinion given as a disc. Where
-    several overlap, the thickest applies; one thinner than its segment, or over a coupling, has no effect.
+    It stands for a body in one piece with the shaft whose mass is elsewhere, such as a pinion given as a disc. A body
+    of another material is a sleeve around the segments, whose stiffnesses it adds to. Where several overlap, the
+    stiffest applies; one thinner than its segment, or over a coupling, has no effect.
 
     Parameters
     ----------
@@ -61,18 +63,49 @@ class StiffnessDiameter:
         Distances of the ends from the rotor's left end [m].
     bending, torsion : float
         Outer diameter in bending, shear and tension, and in torsion [m]; 0 leaves the shaft as it is.
+    youngs_modulus, shear_modulus : float, optional
+        Moduli of the body [Pa]; by default those of the segments under it.
     """
 
     left: float
     right: float
     bending: float
     torsion: float
+    youngs_modulus: float | None = None
+    shear_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the order of the ends and the diameters."""
+        """Check the order of the ends, the diameters and the moduli."""
         require(self.left < self.right, "stiffness diameter", (self.left, self.right), "its left end before its right")
         require_finite("stiffness diameter in bending", self.bending, minimum=0.0)
         require_finite("stiffness diameter in torsion", self.torsion, minimum=0.0)
+        for name in ("youngs_modulus", "shear_modulus"):
+            modulus = getattr(self, name)
+            if modulus is not None:
+                require_finite(f"{name} of a stiffness diameter", modulus)
+                require(modulus > 0.0, f"{name} of a stiffness diameter", modulus, "a positive number")
+
+
+class _Deformation(NamedTuple):
+    """How stiffness diameters stiffen a shaft against one deformation.
+
+    Its stiffness is modulus times diameter to the power; ``rows`` of the coefficients and ``bounds`` depend on it.
+    """
+
+    diameter: str
+    modulus: str
+    power: int
+    rows: list[int]
+    bounds: list[int]
+
+
+_DEFORMATIONS = (
+    _Deformation("bending", "youngs_modulus", 4, [1], [1]),
+    _Deformation("bending", "shear_modulus", 2, [0, 4, 5], [0]),
+    _Deformation("torsion", "shear_modulus", 4, [6], []),
+    _Deformation("bending", "youngs_modulus", 2, [8], []),
+)
+"""Bending, shear, torsion and tension."""
 
 
 @dataclass(frozen=True)
@@ -128,29 +161,24 @@ def shaft_profile(
     unstiffened = _profile_of(parts, joints)
     if not stiff:
         return unstiffened
-    bent = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.bending) for one in stiff]))
-    twisted = _profile_of(*_thickened(parts, joints, [(one.left, one.right, one.torsion) for one in stiff]))
+    profiles = [unstiffened, *(_profile_of(*_thickened(parts, joints, stiff, against)) for against in _DEFORMATIONS)]
 
-    edges = merged_positions(unstiffened.edges, [*bent.edges.tolist(), *twisted.edges.tolist()])
-    spans = np.column_stack([profile.spans(edges) for profile in (unstiffened, bent, twisted)])
-    sections = np.column_stack(
-        [profile.section_of_span[span] for profile, span in zip((unstiffened, bent, twisted), spans.T, strict=True)]
-    )
-    uniform = unstiffened.uniform[sections[:, 0]] & bent.uniform[sections[:, 1]] & twisted.uniform[sections[:, 2]]
+    edges = merged_positions(unstiffened.edges, [edge for profile in profiles[1:] for edge in profile.edges.tolist()])
+    spans = np.column_stack([profile.spans(edges) for profile in profiles])
+    sections = np.column_stack([profile.section_of_span[span] for profile, span in zip(profiles, spans.T, strict=True)])
+    uniform = np.all([profile.uniform[section] for profile, section in zip(profiles, sections.T, strict=True)], axis=0)
     # Every tapering interval is a separate section.
     keys = np.column_stack([sections, np.where(uniform, -1, np.arange(uniform.size))])
     _, first, section_of_span = np.unique(keys, axis=0, return_index=True, return_inverse=True)
 
-    coefficients = np.zeros(
-        (edges.size - 1, 10, max(one.coefficients.shape[2] for one in (unstiffened, bent, twisted)))
-    )
-    # Inertias are rows of bending, torsion and rod too: at last, those of the unstiffened shaft replace those of
-    # thicker ones.
-    for profile, rows in ((bent, BENDING), (bent, AXIAL), (twisted, TORSION), (unstiffened, INERTIAS)):
+    coefficients = np.zeros((edges.size - 1, 10, max(profile.coefficients.shape[2] for profile in profiles)))
+    bounds = unstiffened.bounds[sections[:, 0]]
+    rows_of = [INERTIAS, *(against.rows for against in _DEFORMATIONS)]
+    for profile, rows in zip(profiles, rows_of, strict=True):
         restricted_coefficients = profile.between(edges)[:, rows]
         coefficients[:, rows, : restricted_coefficients.shape[2]] = restricted_coefficients
-        coefficients[:, rows, restricted_coefficients.shape[2] :] = 0.0
-    bounds = np.column_stack([bent.bounds[sections[:, 1], :2], unstiffened.bounds[sections[:, 0], 2:]])
+    for profile, section, against in zip(profiles[1:], sections.T[1:], _DEFORMATIONS, strict=True):
+        bounds[:, against.bounds] = profile.bounds[section][:, against.bounds]
     whole = (edges[:-1] == unstiffened.edges[spans[:, 0]]) & (edges[1:] == unstiffened.edges[spans[:, 0] + 1])
     return Profile(
         edges=edges,
@@ -163,14 +191,18 @@ def shaft_profile(
 
 
 def _thickened(
-    parts: Sequence[Segment | Coupling], joints: FloatArray, stiff: Sequence[tuple[float, float, float]]
+    parts: Sequence[Segment | Coupling],
+    joints: FloatArray,
+    stiff: Sequence[StiffnessDiameter],
+    against: _Deformation,
 ) -> tuple[list[Segment | Coupling], FloatArray]:
-    """Parts and joints of the shaft with at least the outer diameters given over intervals (left, right, outer)."""
-    places = [end for left, right, _ in stiff for end in (left, right)]
+    """Parts and joints of a shaft of the segments' materials that is as stiff against one deformation."""
+    bodies = [(one.left, one.right, getattr(one, against.diameter), getattr(one, against.modulus)) for one in stiff]
+    places = [end for left, right, *_ in bodies for end in (left, right)]
     for part, start in zip(parts, joints[:-1].tolist(), strict=True):
         if isinstance(part, Segment):
             (first, _), (last, _) = part.end_diameters
-            crossed = [outer for *_, outer in stiff if min(first, last) < outer < max(first, last)]
+            crossed = [outer for *_, outer, _ in bodies if min(first, last) < outer < max(first, last)]
             places += [start + part.length * (outer - first) / (last - first) for outer in crossed]
     ends = merged_positions(joints, places)
     pieces: list[Segment | Coupling] = []
@@ -178,11 +210,16 @@ def _thickened(
         middle = 0.5 * (start + end)
         index = int(np.searchsorted(joints, middle)) - 1
         part, origin = parts[index], float(joints[index])
-        thickest = max((outer for left, right, outer in stiff if left < middle < right), default=0.0)
         if isinstance(part, Segment):
             sections = [part.section((place - origin) / part.length) for place in (start, end)]
-            thicker = thickest > 0.5 * (sections[0].outer_diameter + sections[1].outer_diameter)
-            outers = [thickest if thicker else section.outer_diameter for section in sections]
+            outers = [section.outer_diameter for section in sections]
+            own = getattr(part.material, against.modulus)
+            thicker = [
+                [_as_stiff(bare, outer, 1.0 if modulus is None else modulus / own, against.power) for bare in outers]
+                for left, right, outer, modulus in bodies
+                if left < middle < right and outer > 0.5 * sum(outers)
+            ]
+            outers = max(thicker, key=sum, default=outers)
             part = replace(
                 part,
                 length=end - start,
@@ -193,6 +230,13 @@ def _thickened(
             )
         pieces.append(part)
     return pieces, ends
+
+
+def _as_stiff(bare: float, outer: float, ratio: float, power: int) -> float:
+    """Diameter of a shaft as stiff as one of a ``bare`` diameter in a sleeve of ``ratio`` times its modulus."""
+    if ratio == 1.0:
+        return outer
+    return float((bare**power + ratio * (outer**power - bare**power)) ** (1.0 / power))
 
 
 def _profile_of(parts: Sequence[Segment | Coupling], joints: FloatArray) -> Profile:

@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 
 SLICES, PHASES, STATIONS = 61, 48, 5
 
-STEEL = ShaftMaterial(2.06e11, 7.92e10, 7850.0)
+STEEL = ShaftMaterial.from_poisson_ratio(2.07e11, 0.3, 7850.0)  # that of gears by default
 MODULE, PRESSURE, HELIX, WIDTH = 3e-3, math.radians(20.0), math.radians(15.0), 25e-3
 TEETH = 23, 41
 STIFFNESS = 4e8

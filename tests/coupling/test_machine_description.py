@@ -16,7 +16,9 @@ from coupling.gears.loaded.gear_pair import GearPair
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
 from coupling.machine.gear_train import GearedShafts, gear_train
-from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial
+from coupling.machine.parts import rotor_with_gears
+from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial, static_deflection
+from rotors.analyses.statics import StaticForce
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 MODULE, LENGTH = 3e-3, 0.25
@@ -394,18 +396,19 @@ def test_material_damping_of_a_shaft_is_that_of_its_free_twist() -> None:
     assert modes.damping_ratios[twist] == pytest.approx(0.03, rel=1e-9)
 
 
+@pytest.mark.parametrize("young", [206e9, 3e9])
 @pytest.mark.parametrize("stiffens", [False, True])
-def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens: bool) -> None:
+def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens: bool, young: float) -> None:
     """1/k of the bearing and ∫ dz/EA of the shaft between it and the gear, however few modes are kept.
 
     A gear in one piece thickens half of its face from where stress has spread into it: to the root circle, and 1.9
-    modules on to the section with teeth.
+    modules on to the section with teeth. The gear is a sleeve of its own modulus around the shaft.
     """
     at, axial = 0.1, 5e7
     stiffness = np.diag([1e8, 1e8, axial, 0.0, 0.0])
     held = [MountedBearing(Bearing("front", 0.0, stiffness, np.zeros((5, 5))), "fast", None)]
     held.append(MountedBearing(Bearing("back", LENGTH, 1e8 * np.eye(2), np.zeros((2, 2))), "fast", None))
-    helical = ShaftGear(gear("a", 20, helix_angle=0.3), "fast", at, stiffens_shaft=stiffens)
+    helical = ShaftGear(gear("a", 20, helix_angle=0.3, youngs_modulus=young), "fast", at, stiffens_shaft=stiffens)
     machine = Machine([replace(shaft("fast", 0.0), mode_count=1)], held, [helical], speed=10.0)
     (component,) = machine.rotor_components()
     along = component.motions(at)[2]
@@ -419,5 +422,34 @@ def test_a_shaft_gives_way_to_the_thrust_of_a_helical_gear_as_a_bar(*, stiffens:
     diameters = [0.03, root, toothed_section(body).bending_diameter]
     if not stiffens:
         diameters = [0.03] * 3
-    stretch = sum(length / (211e9 * math.pi / 4.0 * outer**2) for length, outer in zip(lengths, diameters, strict=True))
+    stretch = sum(
+        length / (math.pi / 4.0 * (211e9 * 0.03**2 + young * (outer**2 - 0.03**2)))
+        for length, outer in zip(lengths, diameters, strict=True)
+    )
     assert moved == pytest.approx(1.0 / axial + stretch, rel=1e-6)
+
+
+@pytest.mark.parametrize("young", [206e9, 110e9, 3e9])
+def test_a_gear_stiffens_its_shaft_by_its_own_modulus(young: float) -> None:
+    """Sag under a force F in the middle: F ∫ z²/4EI + 1/4κGA dz to either side, EI and GA those of shaft and gear.
+
+    The gear is a sleeve around the shaft, from where stress has spread into it.
+    """
+    outer, length, force = 0.02, 0.2, 1000.0
+    body = Gear("g", 40, 2e-3, math.radians(20.0), 0.06, youngs_modulus=young, poisson_ratio=0.3)
+    steel = ShaftMaterial.from_poisson_ratio(206e9, 0.3, 7850.0)
+    bare = Rotor("r", [Segment(length, outer, 0.0, steel, 0.9)])
+    held = [Bearing.isotropic("left", 0.0, 1e13), Bearing.isotropic("right", length, 1e13)]
+    loaded = rotor_with_gears(bare, [ShaftGear(body, "r", 0.5 * length)])
+    middle = [StaticForce(0.5 * length, y=-force)]
+    sag = -static_deflection(loaded, held, middle, gravity=(0.0, 0.0, 0.0)).evaluate([0.5 * length])[1, 0]
+
+    root, section = 2.0 * body.root_circle_radius, toothed_section(body)
+    core = 0.5 * length - 0.5 * body.face_width + bare_lengths(outer, root, body.face_width)[0]
+    places = [0.0, core, core + section.end_length, 0.5 * length]
+    expected = 0.5 * force / 1e13  # of the bearings
+    for left, right, sleeve in zip(places, places[1:], (outer, root, section.bending_diameter), strict=False):
+        bending = math.pi / 64.0 * (206e9 * outer**4 + young * (sleeve**4 - outer**4))
+        shear = 0.9 * math.pi / 4.0 * (206e9 * outer**2 + young * (sleeve**2 - outer**2)) / 2.6
+        expected += 2.0 * force * ((right**3 - left**3) / (12.0 * bending) + (right - left) / (4.0 * shear))
+    assert sag == pytest.approx(expected, rel=1e-6)

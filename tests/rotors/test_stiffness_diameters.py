@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -115,6 +116,40 @@ def test_a_rod_stretches_with_the_diameter_of_bending() -> None:
     np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=1e-11, atol=1e-9)
 
 
+@pytest.mark.parametrize("young", [3e9, 6.3e11])
+def test_a_body_of_another_material_is_a_sleeve_around_the_shaft(young: float) -> None:
+    """EI, GJ, κGA and EA of core and sleeve add up; a soft sleeve hardly stiffens."""
+    shear, bore, bare, outer = young / 2.6, 0.01, 0.03, 0.045
+
+    def together(modulus: float, sleeve: float, power: int) -> float:
+        """Stiffness of both over that of the core."""
+        core = modulus * (bare**power - bore**power)
+        return (core + sleeve * (outer**power - bare**power)) / core
+
+    bent, twisted = together(2.1e11, young, 4), together(8e10, shear, 4)
+    sheared = together(8e10, shear, 2)
+    spread = ShaftMaterial(2.1e11 * bent, 8e10 * twisted, 7850.0)
+    by_hand = Segment(0.15, bare, bore, spread, 0.85 * sheared / twisted)
+    stretched_by_hand = replace(
+        UNIFORM, length=0.15, material=ShaftMaterial(2.1e11 * together(2.1e11, young, 2), 8e10, 7850.0)
+    )
+    stiff = [StiffnessDiameter(0.1, 0.25, outer, outer, young, shear)]
+    # One thinner than the shaft, and one softer than the other, have no effect.
+    stiff += [
+        StiffnessDiameter(0.3, 0.35, 0.02, 0.02, 1e13, 1e13),
+        StiffnessDiameter(0.12, 0.2, outer, outer, 1e9, 1e9),
+    ]
+    rotor = Rotor("shaft", STEPS, DISCS, stiffness_diameters=stiff)
+    ends = [replace(UNIFORM, length=0.1), replace(UNIFORM, length=0.15), *STEPS[1:]]
+    written, rod = (Rotor("shaft", [ends[0], part, *ends[1:]], DISCS) for part in (by_hand, stretched_by_hand))
+    for found, expected in (
+        (solve_lateral_modes(rotor, SUPPORTS, count=5), solve_lateral_modes(written, SUPPORTS, count=5)),
+        (solve_torsional_modes(rotor, count=4), solve_torsional_modes(written, count=4)),
+        (solve_axial_modes(rotor, count=4), solve_axial_modes(rod, count=4)),
+    ):
+        np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=1e-10, atol=1e-9)
+
+
 def test_the_thickest_of_overlapping_diameters_counts() -> None:
     over = [StiffnessDiameter(0.1, 0.25, 0.035, 0.035), StiffnessDiameter(0.15, 0.2, 0.045, 0.032)]
     apart = [
@@ -197,9 +232,11 @@ def test_a_file_for_ross_says_that_the_stiffness_is_left_out(tmp_path: Path) -> 
         ((0.3, 0.2, 0.05, 0.05), "its left end before its right"),
         ((0.2, 0.3, -0.05, 0.05), "stiffness diameter in bending is -0.05"),
         ((0.2, 0.3, 0.05, math.nan), "stiffness diameter in torsion is nan"),
+        ((0.2, 0.3, 0.05, 0.05, 0.0, None), "youngs_modulus of a stiffness diameter is 0"),
+        ((0.2, 0.3, 0.05, 0.05, None, math.inf), "shear_modulus of a stiffness diameter is inf"),
     ],
 )
-def test_bad_input_is_refused(given: tuple[float, float, float, float], message: str) -> None:
+def test_bad_input_is_refused(given: tuple[Any, ...], message: str) -> None:
     with pytest.raises(RotorError, match=message):
         Rotor("shaft", STEPS, stiffness_diameters=[StiffnessDiameter(*given)])
 
