@@ -37,6 +37,8 @@ from gearwhine.case.fields import (
 from gearwhine.case.units import Dimension
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import numpy as np
     import numpy.typing as npt
 
@@ -201,8 +203,8 @@ class _Mounted(Table):
 
     @property
     def pressed(self) -> bool:
-        """Whether its elements are pressed without any load of the shaft."""
-        return self.preload > 0.0 or self.clearance < 0.0 or self.axial_offset > 0.0
+        """Whether its elements are pressed without any load of the shaft and without another bearing."""
+        return self.preload > 0.0 or self.clearance < 0.0
 
     @model_validator(mode="after")
     def _arranged(self) -> _Mounted:
@@ -704,7 +706,8 @@ class Bearing(Table):
     """Damping, in one of two forms."""
     load: BearingLoad | None = None
     """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
-    equilibrium, in a case with gear pairs and a torque; of a stop none."""
+    equilibrium, in a case with an operation where gear pairs or an `axial_offset` on its rotor load it; of a stop
+    none."""
 
     @property
     def follows_own_law(self) -> bool:
@@ -745,6 +748,19 @@ class Bearing(Table):
         return self
 
     @property
+    def is_offset(self) -> bool:
+        """Whether an axial offset of its inner ring presses it and other bearings of its rotor."""
+        return isinstance(self.stiffness, RollingStiffness) and self.stiffness.rolling.axial_offset != 0.0
+
+    @property
     def grounded(self) -> bool:
         """Whether the bearing stands on the ground rather than in a seat."""
         return self.seat == "ground"
+
+
+def operation_loads(bearing: Bearing, bearings: Iterable[Bearing], *, geared: bool) -> bool:
+    """Whether the static equilibrium of a case with an operation has the load of a bearing, which is not given.
+
+    It does where the case has gear pairs (``geared``), or where one of its ``bearings`` is set against this one.
+    """
+    return bearing.lacks_load and (geared or any(one.is_offset and one.rotor == bearing.rotor for one in bearings))

@@ -15,7 +15,7 @@ from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING
 
-from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness
+from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
@@ -135,7 +135,8 @@ _RPM = 30.0 / pi
 def check_bearings(draft: Draft) -> Iterator[Finding]:
     """Yield tables that do not fit their speeds or end too early, pedestals in the housing, and loads that lack."""
     ratios = _ratios(draft)
-    loaded = bool(draft.document.get("operation")) and bool(draft.document.get("gear_pair"))
+    operated, geared = (bool(draft.document.get(key)) for key in ("operation", "gear_pair"))
+    bearings = [bearing for _, bearing in draft.bearings]
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:
@@ -145,8 +146,8 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
             yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
-        # With gear pairs and a torque the operating point gives the load.
         rolling = bearing.stiffness.rolling if isinstance(bearing.stiffness, RollingStiffness) else None
+        loaded = operated and operation_loads(bearing, bearings, geared=geared)
         if rolling is not None and bearing.lacks_load and not rolling.pressed and not loaded:
             expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
             yield Finding(("bearing", index, "load"), expected, NOTHING)

@@ -17,7 +17,7 @@ import tomli_w
 from pydantic import Field, ValidationError
 
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.bearings import Bearing, RollingStiffness
+from gearwhine.case.bearings import Bearing, RollingStiffness, operation_loads
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
@@ -117,7 +117,8 @@ class Case(Table):
 
     def finds_load(self, bearing: Bearing) -> bool:
         """Whether the load of a rolling bearing follows from the machine's operating point."""
-        return bearing.lacks_load and bool(self.gear_pair) and self.operation is not None
+        geared = bool(self.gear_pair)
+        return self.operation is not None and operation_loads(bearing, self.bearing, geared=geared)
 
     @property
     def needs_operating_point(self) -> bool:
@@ -146,6 +147,7 @@ class Case(Table):
             bearing.stiffness.rolling for bearing in self.bearing if isinstance(bearing.stiffness, RollingStiffness)
         ]
         preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
+        preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
+from rotors.rolling_bearings import RollingBearing, rolling_equilibrium
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -303,3 +305,34 @@ def test_a_misalignment_is_an_angle_or_found() -> None:
     """Another word is refused with what would do."""
     with pytest.raises(CaseError, match=r"misalignment.*or \"found\""):
         parse_case(document(misalignment="some"))
+
+
+def set_against_each_other(**more: Any) -> dict[str, Any]:
+    """One shaft without gears on two rows in angular contact, the left one's ring displaced by 20 um."""
+    size = {"type": "angular-contact", "bore": "35 mm", "outer_diameter": "72 mm", "width": "17 mm"}
+    rolling = {"catalogue": size, "axial_offset": "20 um"}, {"catalogue": size, "carries": "-z"}
+    return {
+        "material": {"steel": {"youngs_modulus": "206 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}},
+        "rotor": [{"name": "shaft", "material": "steel", "segments": [{"length": "200 mm", "diameter": "35 mm"}]}],
+        "bearing": [
+            {"name": name, "rotor": "shaft", "at": at, "stiffness": {"rolling": one}}
+            for name, at, one in zip(("left", "right"), ("20 mm", "180 mm"), rolling, strict=True)
+        ],
+        **more,
+    }
+
+
+def test_an_offset_loads_both_bearings_of_a_shaft_without_gears() -> None:
+    """Rows and shaft in series, all of 20 um; neither row has a load of its own in the case."""
+    still = {"operation": {"speed": "1000 rpm", "torque": "0 N*m"}}
+    (solved,) = solve_rotors(parse_case(set_against_each_other(**still)))
+    left, right = (solved.rolling[name] for name in ("left", "right"))
+    force = left.reaction[2]
+    assert right.reaction[2] == pytest.approx(-force)
+    row, held = left.bearing.rows[0], dict.fromkeys(("x", "y", "rx", "ry"), 0.0)
+    alone = RollingBearing([replace(row, axial_offset=0.0)])
+    deep = rolling_equilibrium(alone, [0.0, 0.0, force, 0.0, 0.0], held=held).displacement[2]
+    shaft = force * 0.16 / (206e9 * math.pi / 4.0 * 0.035**2)
+    assert 2.0 * deep + shaft == pytest.approx(20e-6, rel=1e-6)
+    with pytest.raises(CaseError, match="a rolling bearing without preload has no stiffness"):
+        parse_case(set_against_each_other())
