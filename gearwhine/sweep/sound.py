@@ -192,8 +192,8 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
         yield warning(
             "sound_left_out",
             f"at {len(beyond)} of {len(swept)} points, such as {_where(keys, point)}, a mesh frequency of up to "
-            f"{highest:.0f} Hz is above {limit:.0f} Hz, where the sound ends: its lines are left out, so that these points cannot be "
-            "compared with the others; raise housing.frequency_limit and acoustics.highest_frequency",
+            f"{highest:.0f} Hz is above {limit:.0f} Hz, where the sound ends: its lines are left out, so that these "
+            "points cannot be compared with the others; raise housing.frequency_limit and acoustics.highest_frequency",
         )
 
 
