@@ -1,31 +1,34 @@
-"""Excitation orders of a machine: shafts, mesh harmonics, sidebands, passing of rolling elements."""
+"""Excitation orders of a machine: shafts, mesh harmonics, sidebands, passing of rolling elements, harmonic loads."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError
-from coupling.machine.connectors import RollingLaw
-from rotors.rolling_bearings import characteristic_frequencies
+from coupling.machine.driving_frequencies import element_passes as passing_frequencies
+from coupling.machine.loads import BaseHarmonic, TorqueRipple
+
+_TWO_PI = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
 class ExcitationLine:
-    """An excitation whose frequency is proportional to the speed.
+    """An excitation by its order: a frequency that is proportional to the speed, or a constant one at nominal speed.
 
     Attributes
     ----------
     name : str
         Name such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
     kind : str
-        ``shaft``, ``mesh``, ``sideband`` or ``bearing``.
+        ``shaft``, ``mesh``, ``sideband``, ``bearing`` or ``load``.
     order : float
         Frequency over the speed of the leading rotor, positive.
     """
 
     name: str
-    kind: Literal["shaft", "mesh", "sideband", "bearing"]
+    kind: Literal["shaft", "mesh", "sideband", "bearing", "load"]
     order: float
 
 
@@ -36,6 +39,7 @@ def excitation_lines(
     mesh_harmonics: Sequence[int] = (1, 2, 3),
     sidebands: int = 0,
     element_passes: Sequence[int] = (),
+    load_multiples: Sequence[int] = (),
 ) -> tuple[ExcitationLine, ...]:
     """Orders of all shafts, meshes and rolling elements in motion; shafts of equal speed share a line.
 
@@ -47,9 +51,12 @@ def excitation_lines(
     mesh_harmonics : sequence of int
         Multiples of each mesh frequency.
     sidebands : int
-        Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft.
+        Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft, or by the
+        frequency of a load where loads count.
     element_passes : sequence of int
         Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
+    load_multiples : sequence of int
+        Multiples of harmonic torques and of harmonic motions of the base, whose frequency may be constant.
 
     Raises
     ------
@@ -69,29 +76,43 @@ def excitation_lines(
         for names in together.values()
         for multiple in shaft_orders
     ]
+    loads = tuple(_harmonic_loads(machine, leading)) if load_multiples else ()
+    lines += [
+        ExcitationLine(f"{multiple}× {name}", "load", multiple * order)
+        for name, order in loads
+        for multiple in load_multiples
+    ]
     for mesh in machine.meshes:
         teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
         name = mesh.name
         shafts = {round(ratios[rotor], 12): rotor for rotor in (mesh.driven.rotor, mesh.driver.rotor)}
+        modulations = [*((rotor, ratios[rotor]) for rotor in shafts.values()), *loads]
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
-            for rotor in shafts.values():
+            for source, ratio in modulations:
                 for number in range(1, sidebands + 1):
                     for sign, word in ((-1, "-"), (1, "+")):
-                        order = harmonic * teeth + sign * number * ratios[rotor]
-                        text = f"{harmonic}× {name} {word} {number}× {rotor}"
+                        order = harmonic * teeth + sign * number * ratio
+                        text = f"{harmonic}× {name} {word} {number}× {source}"
                         lines.append(ExcitationLine(text, "sideband", order))
-    for connector in machine.system.nonlinear:
-        if isinstance(connector.law, RollingLaw) and connector.speed != 0.0:
-            # Rows of one bearing are mostly alike.
-            for order in sorted(
-                {
-                    round(characteristic_frequencies(row, connector.speed).outer_pass / leading, 12)
-                    for row in connector.law.state.bearing.rows
-                }
-            ):
-                lines += [
-                    ExcitationLine(f"{multiple}× elements of {connector.name}", "bearing", multiple * order)
-                    for multiple in element_passes
-                ]
+    lines += [
+        ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
+        for name, frequencies in passing_frequencies(machine.system).items()
+        for frequency in frequencies
+        for multiple in element_passes
+    ]
     return tuple(lines)
+
+
+def _harmonic_loads(machine: CoupledMachine, leading: float) -> Iterator[tuple[str, float]]:
+    """Yield the name of each harmonic torque and motion of the base, and its order at the nominal speed."""
+    for torque in machine.loads.torques:
+        if isinstance(torque, TorqueRipple) and torque.amplitude != 0.0:
+            if torque.frequency is not None:
+                yield f"ripple of {torque.frequency / _TWO_PI:.6g} Hz on {torque.rotor}", torque.frequency / leading
+            elif torque.order is not None and machine.speeds[torque.rotor] != 0.0:
+                order = torque.order * abs(machine.speeds[torque.rotor]) / leading
+                yield f"ripple of order {torque.order:g} on {torque.rotor}", order
+    for part in () if machine.loads.base is None else machine.loads.base.parts:
+        if isinstance(part, BaseHarmonic):
+            yield f"base of {part.frequency / _TWO_PI:.6g} Hz", part.frequency / leading

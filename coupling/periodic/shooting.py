@@ -26,8 +26,8 @@ import numpy.typing as npt
 from coupling.collocation.linear_part import LinearPart, linear_part
 from coupling.connector_forces.kernel_arrays import Contacts
 from coupling.errors import CouplingError, PeriodicError
-from coupling.gears import ToothContact
 from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.driving_frequencies import driving_frequencies
 from coupling.periodic.orbit import Elements, PeriodMotion, coarsest_element, cut_period, integrate_period
 from coupling.periodic.response import BranchMotion, PeriodicResponse, multipliers
 from coupling.time.condensation import Condensed, condensed
@@ -45,24 +45,6 @@ _ROUNDING = 1e-11  # closure error of a closed motion, relative
 _FINEST = 12  # largest number of halvings of the coarsest element
 _ROUNDS = 6  # rounds of time integration before the search fails
 _PERIODS = 8  # periods of the first round, doubled in every further one
-
-
-def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
-    """Frequency [Hz] of every excitation, by its name.
-
-    A contact whose pairs of teeth differ repeats after its hunting period alone.
-    """
-    frequencies = {}
-    for contact in system.contacts:
-        if contact.mesh_frequency != 0.0 and _varies(contact.contact):
-            frequencies[f"contact {contact.name!r}"] = abs(contact.mesh_frequency) / contact.contact.hunting_period
-        for number, (amplitude, frequency, _) in enumerate(contact.errors):
-            if amplitude != 0.0 and frequency != 0.0:
-                frequencies[f"runout {number + 1} of {contact.name!r}"] = abs(frequency) / (2.0 * np.pi)
-    for number, load in enumerate(system.harmonic_loads):
-        if load.frequency != 0.0 and np.any(load.amplitude != 0.0):
-            frequencies[f"harmonic load {number + 1}"] = abs(load.frequency) / (2.0 * np.pi)
-    return frequencies
 
 
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
@@ -116,16 +98,6 @@ def _common_factor(ratios: list[Fraction]) -> int:
     """Return the least common multiple: the number of times that all repeat within a common period."""
     cycles = lcm(*(ratio.denominator for ratio in ratios))
     return int(np.gcd.reduce([int(ratio * cycles) for ratio in ratios]))
-
-
-def _varies(contact: ToothContact) -> bool:
-    """Whether a contact law depends on the phase: a mesh with one constant spring does not."""
-    if contact.faces is not None or contact.hunting_numbers or contact.variants:
-        return True
-    start, end = contact.contact_range
-    curves = (contact.stiffness.coefficients, contact.deviation.coefficients)
-    uneven = any(bool(np.any(curve[:, 1:])) or np.ptp(curve[:, 0]) > 0.0 for curve in curves)
-    return uneven or abs(end - start - round(end - start)) > 1e-12
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,8 +34,9 @@ from coupling.gears import ToothContact
 from coupling.gears import piecewise_cubic as piecewise
 from coupling.machine.connectors import ContactConnector
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
+from coupling.machine.driving_frequencies import driving_frequencies
 from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import common_period, driving_frequencies, periodic_response
+from coupling.periodic.shooting import common_period, periodic_response
 from coupling.statics.mean_mesh import MeanMesh, mean_meshes
 from coupling.time.step_matrices import contact_arrays
 

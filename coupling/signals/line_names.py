@@ -1,9 +1,9 @@
-"""Names of spectral lines by their causes: mesh harmonic, shaft order, rolling elements, sideband, free vibration.
+"""Names of spectral lines by their causes: mesh harmonic, shaft order, load, rolling elements, sideband, free motion.
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
-low order of a shaft, the passing of the elements of a rolling bearing whose law follows them, a sideband, any other
-whole order. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
-apart from the cause.
+low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
+law follows them, a sideband, any other whole order. A line at none of these is free vibration, named after its mode.
+Either may be near a mode, which is given apart from the cause.
 """
 
 from collections.abc import Sequence
@@ -17,11 +17,12 @@ from coupling.errors import CouplingError
 from coupling.linear.complex_modes import CoupledModes
 from coupling.linear.excitation_orders import excitation_lines
 
-LineKind = Literal["mean", "mesh", "shaft", "bearing", "sideband", "mode", "other"]
+LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
 _SHAFT_ORDERS = 4  # highest shaft order that takes precedence over a sideband of the same frequency
 _SIDEBANDS = 4
 _ELEMENT_PASSES = 4
+_LOAD_MULTIPLES = 4
 _HALF_POWER_WIDTHS = 2.0  # distance within which a line is near a mode
 
 
@@ -32,7 +33,7 @@ class LineName:
     Attributes
     ----------
     kind : str
-        ``mean``, ``mesh``, ``shaft``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
+        ``mean``, ``mesh``, ``shaft``, ``load``, ``bearing``, ``sideband``, ``mode`` for free vibration, or ``other``.
     name : str
         Name such as ``1× pinion -> wheel``; coinciding causes are joined by commas.
     order : float
@@ -81,6 +82,7 @@ def line_names(
         mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
         sidebands=_SIDEBANDS,
         element_passes=range(1, _ELEMENT_PASSES + 1),
+        load_multiples=range(1, _LOAD_MULTIPLES + 1),
     )
     line_name_list = []
     for frequency in frequencies:
@@ -95,7 +97,7 @@ def line_names(
                 for line in excited
                 if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
             ]
-            for kind in ("mesh", "shaft", "bearing", "sideband")
+            for kind in ("mesh", "shaft", "load", "bearing", "sideband")
         }
         kind = next((kind for kind in names if names[kind]), None)
         if kind is not None:

@@ -537,11 +537,13 @@ def sweep(
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
     sound_warnings: list[dict[str, Any]] = []
     housing, radiated = None, None
-    if case.acoustics is not None and case.housing is not None:
+    # The points need not have the housing and the acoustics of the case, even where all of them share one.
+    sounding = next((point.case for point in points if point.case.acoustics and point.case.housing), None)
+    if sounding is not None:
         from gearwhine.sweep.sound import add_sound
 
         sound_warnings, housing, radiated = add_sound(
-            case, keys, swept, solve_housing(case, progress, folder=folder), progress
+            sounding, keys, swept, solve_housing(sounding, progress, folder=folder), progress
         )
     peaks = missed_peaks(keys, swept, radiated)
     dataset = collected_sweep(case, keys, swept, peaks)

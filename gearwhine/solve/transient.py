@@ -177,9 +177,9 @@ def solve_transient(
 ) -> SolvedTransient:
     """Integrate the machine's motion through the case's revolutions or run, and take the spectra of its record.
 
-    The record holds whole revolutions of the first driver. Where every shaft then turns a whole number of times
-    the spectra are taken as they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled
-    for its highest speed, and ``discard`` counts revolutions as they are turned. A record that is too long for memory
+    Where the record holds whole turns of every shaft and whole periods of every excitation, the spectra are taken as
+    they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled for its highest speed,
+    and ``discard`` counts revolutions as they are turned. A record that is too long for memory
     is filtered and stored at fewer samples, see :mod:`gearwhine.solve.transient_record`.
 
     Parameters
@@ -212,7 +212,9 @@ def solve_transient(
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
     rows += 2 * len(machine.system.contacts)
     signals = nothing.columns.shape[1]
-    chosen = sampling(case, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block)
+    chosen = sampling(
+        case, machine.system, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block
+    )
     progress("preparing the time stepper")
     integration = (machine.system, chosen.settings, outputs)
     start = starting_state(case, machine)

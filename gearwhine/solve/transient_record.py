@@ -11,6 +11,9 @@ the highest frequency of interest: little folds back then, and the spectra of wh
 that fits in memory stays like that, and its spectra are those of the whole. A longer one is filtered as it comes and
 stored at four times that frequency: its histories and spectra are right up to there, which is also as far as the
 model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
+
+Window: lines are exact where every shaft turns whole times and every excitation makes whole periods in the record, or
+in a stretch of a long one. Otherwise, and where a load varies over time, Hann's window is taken.
 """
 
 import math
@@ -23,19 +26,21 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling import SpeedProfile, TransientSettings, amplitude_spectrum
+from coupling import CoupledSystem, SpeedProfile, TransientSettings, amplitude_spectrum
+from coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
 from coupling.signals.decimation import Decimation
 from coupling.signals.decimation import decimation as coupled_decimation
 from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum
 from coupling.time.histories import Histories, ModalRecord
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
-from gearwhine.case import Case, CaseError, Problem, rotor_speeds, speed_ratios
+from gearwhine.case import Case, CaseError, Problem, speed_ratios
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked
 
 _FOLDER_PREFIX = ".resume-"
@@ -54,6 +59,8 @@ _STRETCH_BYTES = 64 << 20
 _LONGEST_STRETCH = 1 << 18  # samples
 _BLOCK_BYTES = 32 << 20
 _LARGEST_BLOCK = 1 << 18  # samples
+_WHOLE = 1e-6  # tolerance of a whole number of periods: a line leaks as large a part of its height
+_MOST_TURNS = 1000  # largest number of times that a period of the shafts is repeated until a driving frequency is whole
 
 
 class Blocks(Protocol):
@@ -201,7 +208,7 @@ class Sampling:
     stretch : int
         Number of stored samples over which a spectrum is taken.
     window : {"uniform", "hann"}
-        Uniform where every shaft turns a whole number of times in a stretch.
+        Uniform where a stretch holds whole turns of every shaft and whole periods of every excitation.
     """
 
     settings: TransientSettings
@@ -223,6 +230,7 @@ class Sampling:
 
 def sampling(
     case: Case,
+    system: CoupledSystem,
     turning: SpeedProfile | None,
     limit: float,
     signals: int,
@@ -237,6 +245,8 @@ def sampling(
     ----------
     case : Case
         Case with an operation and a transient.
+    system : CoupledSystem
+        System whose motion is sampled: its excitations decide on the window.
     turning : SpeedProfile or None
         Speed over time; None where it is the nominal one all along.
     limit : float
@@ -272,17 +282,20 @@ def sampling(
             "transient", f"a record of {settings.samples} samples", f"{_FEWEST_SAMPLES} or more: a longer run"
         )
         raise CaseError([problem])
+    steady = turning is None and not varies_within(system, settings.record_from, settings.duration)
+    orders = _driving_orders(system, nominal)
     if 8 * signals * settings.samples <= largest:
+        window: Window = "uniform" if steady and _holds_whole_periods(case, orders) else "hann"
         decimation = coupled_decimation(1, 0.25)
-        return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, _window(case))
+        return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, window)
     stored_per_revolution = min(_power_of_two(_STORED_SAMPLING * limit * period), per_revolution // 2)
     factor = per_revolution // stored_per_revolution
     decimation = coupled_decimation(factor, limit * period / stored_per_revolution)
     stored = decimation.kept(settings.samples)
     most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), stored_per_revolution)
-    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    repeats = turning is None and whole * stored_per_revolution <= min(most, stored)
-    unit = stored_per_revolution * (whole if repeats else 1)
+    whole = _period(case, orders) if steady else None
+    repeats = whole is not None and whole * stored_per_revolution <= min(most, stored)
+    unit = stored_per_revolution * (whole if whole is not None and repeats else 1)
     units = max(stored // unit, 1)
     stretch = unit * (units // math.ceil(units * unit / most)) if unit <= stored else stored
     if block is None:
@@ -325,14 +338,30 @@ def _power_of_two(least: float) -> int:
     return int(2 ** np.ceil(np.log2(max(least, 1.0))))
 
 
-def _window(case: Case) -> Window:
-    """Uniform where every shaft turns a whole number of times in the record."""
+def _driving_orders(system: CoupledSystem, revolution: float) -> list[float]:
+    """Driving frequencies, with those of rolling elements, over that of the first driver."""
+    passes = [frequency for frequencies in element_passes(system).values() for frequency in frequencies]
+    return sorted({revolution * frequency for frequency in [*driving_frequencies(system).values(), *passes]})
+
+
+def _holds_whole_periods(case: Case, orders: list[float]) -> bool:
+    """Whether every shaft turns, and every order repeats, a whole number of times in the record."""
     assert case.transient is not None
-    if case.transient.revolutions is None:
-        return "hann"
+    assert case.transient.revolutions is not None
     recorded = case.transient.revolutions - case.transient.discard
-    turns = [recorded * abs(ratio) for ratio in rotor_speeds(case, 1.0).values()]
-    return "uniform" if all(abs(turn - round(turn)) < 1e-9 for turn in turns) else "hann"
+    periods = [recorded * order for order in [*map(abs, map(float, speed_ratios(case).values())), *orders]]
+    return all(abs(count - round(count)) < _WHOLE for count in periods)
+
+
+def _period(case: Case, orders: list[float]) -> int | None:
+    """Fewest revolutions of the first driver in which all shafts and orders repeat; None where there are none."""
+    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    for order in orders:
+        periods = Fraction(whole * order).limit_denominator(_MOST_TURNS)
+        whole *= periods.denominator
+        if abs(whole * order - round(whole * order)) > _WHOLE:
+            return None
+    return whole
 
 
 def block_arrays(columns: FloatArray, filter_state: FloatArray, after: Checkpoint) -> Arrays:

@@ -1,8 +1,8 @@
 """Sound of a sweep: the radiated power of each point's lines that matter, once all points are there.
 
-A point stores the rates of the housing's coordinates at its strongest lines; the housing is the same at all points, so
-that its radiating surface is made once. Where there are many lines their powers are interpolated over frequency
-(:mod:`housing.acoustics.modal_radiation`); lines whose interpolation or proofs are doubtful are solved.
+A point stores the rates of the housing's coordinates at its strongest lines. Modes and acoustics have to be the same at
+all points: the radiating surface is then made once. Where there are many lines their powers are interpolated over
+frequency (:mod:`housing.acoustics.modal_radiation`); lines whose interpolation or proofs are doubtful are solved.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from housing.acoustics.sound_levels import a_weighting, power_level, pressure_le
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
     from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.sweep.points import Point
     from gearwhine.sweep.run import SweptPoint
     from housing.acoustics.radiation import HousingRadiation, RadiatedSound
 
@@ -48,7 +49,6 @@ _TWO_PI = 2.0 * np.pi
 _SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
 _UNPROVED: dict[str, Any] = {"known_source_error": None, "known_source_rms": None}
-_OF_THE_HOUSING = ("housing", "material", "acoustics")
 
 
 def add_sound(
@@ -63,11 +63,12 @@ def add_sound(
     Parameters
     ----------
     case : Case
-        Case with `[acoustics]`.
+        Case of one of the points, with `[acoustics]`.
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
+        Points, at least one.
     housing : SolvedHousing
-        Housing of all points.
+        Housing of that case.
     progress : callable
 
     Returns
@@ -88,15 +89,19 @@ def add_sound(
     """
     from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, microphones_of
     from gearwhine.solve.sound.kept_radiation import kept_radiation
-    from gearwhine.solve.sound.motion_lines import AUDIBLE, left_out_warnings, pulsating_efficiency
+    from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
     from gearwhine.solve.sound.solution import build_radiation, highest_frequency
 
-    if any(key.key.split(".")[0].split("[")[0] in _OF_THE_HOUSING for key in keys):
-        message = "the sound of a sweep is left out: its housing, materials or acoustics change from point to point"
+    # Keys that name no part of the housing change its modes too, such as the place of a bearing or a material.
+    if len({swept_point.point.modes_key for swept_point in swept}) > 1 or any(
+        swept_point.point.case.acoustics != case.acoustics for swept_point in swept
+    ):
+        message = "the sound of a sweep is left out: its housing's modes or its acoustics change from point to point"
         return [warning("sound_of_sweep", message)], housing, None
-    if warnings := left_out_warnings(case):
+    silent_points, warnings = _without_lines(keys, swept)
+    if silent_points == len(swept):
         return warnings, housing, None
-    warnings = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
+    warnings += acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
     radiation = build_radiation(case, housing, progress)
     positions, _ = microphones_of(case, housing.mesh)
     places = np.array(list(positions.values())).reshape(-1, 3)
@@ -137,7 +142,7 @@ def add_sound(
         refused = next((line.refused for line in counted if line.refused is not None), None)
         if refused is not None:
             failures.append(refused)
-            where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, swept[number].point.texts, strict=True))
+            where = _where(keys, swept[number].point)
             warnings.append(warning("sound_of_point", f"the sound at {where} is left out: {refused}"))
             continue
         warnings += [entry for line in counted for entry in line.warnings]
@@ -184,13 +189,33 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
     ]
     if beyond:
         highest, point = max(beyond, key=lambda entry: entry[0])
-        where = ", ".join(f"{key.key}={text}" for key, text in zip(keys, point.texts, strict=True))
         yield warning(
             "sound_left_out",
-            f"at {len(beyond)} of {len(swept)} points, such as {where}, a mesh frequency of up to {highest:.0f} Hz is "
-            f"above {limit:.0f} Hz, where the sound ends: its lines are left out, so that these points cannot be "
-            "compared with the others; raise housing.frequency_limit and acoustics.highest_frequency",
+            f"at {len(beyond)} of {len(swept)} points, such as {_where(keys, point)}, a mesh frequency of up to "
+            f"{highest:.0f} Hz is above {limit:.0f} Hz, where the sound ends: its lines are left out, so that these "
+            "points cannot be compared with the others; raise housing.frequency_limit and acoustics.highest_frequency",
         )
+
+
+def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> tuple[int, list[dict[str, Any]]]:
+    """Return the number of points whose motion has no lines that drive the housing, and the warnings that say why."""
+    from gearwhine.solve.sound.motion_lines import left_out_warnings
+
+    reasons: dict[str, list[Point]] = {}
+    for swept_point in swept:
+        for entry in left_out_warnings(swept_point.point.case):
+            reasons.setdefault(str(entry["message"]), []).append(swept_point.point)
+    warnings = []
+    for message, points in reasons.items():
+        everywhere = len(points) == len(swept)
+        where = "" if everywhere else f"at {len(points)} of {len(swept)} points, such as {_where(keys, points[0])}, "
+        warnings.append(warning("sound_left_out", where + message))
+    return sum(map(len, reasons.values())), warnings
+
+
+def _where(keys: Sequence[SweptKey], point: Point) -> str:
+    """Return the swept keys of a point with their values."""
+    return ", ".join(f"{key.key}={text}" for key, text in zip(keys, point.texts, strict=True))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,17 @@
 """The small gearbox with a quick sound: the estimate by its walls' velocity, or Rayleigh's integral of its top."""
 
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
+
+import numpy as np
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run import RunSolution
+from gearwhine.case import Case
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
     "acoustics.method": "erp",
@@ -40,6 +45,12 @@ def sounding_housing() -> SolvedHousing:
 def sounding_gearbox(changes: dict[str, Any]) -> gw.Study:
     """Load the gearbox with changes that leave its housing as it is."""
     return small_gearbox().changed(changes)
+
+
+def swept_point(case: Case, text: str, outcome: PointResult | None = None, *, modes_key: str = "") -> Any:
+    """A point of a sweep with the value of its key, whose motion has no lines by default."""
+    point = SimpleNamespace(case=case, texts=(text,), modes_key=modes_key)
+    return SimpleNamespace(outcome=outcome or PointResult({}, np.zeros(0)), point=point)
 
 
 @cache

@@ -6,16 +6,18 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sounding_housing
+from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sounding_housing, swept_point
 
 import gearwhine as gw
 from coupling.signals.spectrum import amplitude_spectrum
-from gearwhine.case import CaseError, swept_keys
+from gearwhine.case import CaseError, load_case, swept_keys
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
 from gearwhine.solve.sound.acoustics_checks import microphones_of
 from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
-from gearwhine.solve.sound.solution import solve_sound
+from gearwhine.solve.sound.solution import build_radiation, solve_sound
+from gearwhine.sweep import SweptPoint, sweep_points
+from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing.pictures.drawn_shapes import drawn_housing
 
@@ -202,11 +204,65 @@ def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
 @pytest.mark.parametrize("changes", [RUN_UP, BASE])
 def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
     case = sounding_gearbox(TOP | changes).case
-    (told,), *_ = add_sound(case, swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [], sounding_housing())
+    keys, swept = swept_keys(case, ["operation.torque=10 N*m,20 N*m"]), [swept_point(case, "10 N*m")]
+    (told,), *_ = add_sound(case, keys, swept, sounding_housing())
     assert told["name"] == "sound_left_out"
     solved = quick_run(24.0).solved.transient
     assert solved is not None
     assert len(strongest_lines(case, solved)[0]) == 0
+
+
+def test_a_sweep_tells_which_of_its_points_have_no_lines() -> None:
+    """Whether the case that is swept has them or not."""
+    steady, moving = (sounding_gearbox(TOP | changes).case for changes in ({}, BASE))
+    keys = swept_keys(steady, ["operation.torque=10 N*m,20 N*m,30 N*m"])
+    for case in (steady, moving):
+        swept = [swept_point(one, text) for one, text in ((steady, "10 N*m"), (moving, "20 N*m"), (steady, "30 N*m"))]
+        (told,), _, radiated = add_sound(case, keys, swept, sounding_housing())
+        assert told["message"].startswith("at 1 of 3 points, such as operation.torque=20 N*m, the sound of the motion")
+        assert radiated is not None
+
+
+ALUMINIUM = 'material.aluminium={youngs_modulus="71 GPa", poisson_ratio=0.33, density="2700 kg/m^3"}'
+
+
+@pytest.mark.parametrize(
+    "over",
+    [
+        "housing.material=steel,aluminium",
+        "rotor[0].material,housing.material=steel,aluminium",
+        "bearing.input-back.at=20 mm,22 mm",
+        "acoustics.speed_of_sound=340 m/s,350 m/s",
+        "rotor[0].material=steel,aluminium",
+        "housing.damping_ratio=0.01,0.02",
+    ],
+)
+def test_points_of_a_sweep_share_the_modes_that_radiate(over: str) -> None:
+    """Natural modes follow from stiffness and mass, and attachments from the places of the bearings: not from damping.
+
+    Of the same rates of the same modes in the same air the power is the same.
+    """
+    settings = ["acoustics.method=rayleigh", "acoustics.faces=['top']", "acoustics.highest_frequency=3 kHz", ALUMINIUM]
+    case = load_case("small-gearbox", settings).case
+    keys = swept_keys(case, [over])
+    points = sweep_points("small-gearbox", settings, keys)
+    rates = np.zeros((1, build_radiation(case, sounding_housing()).modal[0].shape[1], 2))
+    rates[0, 4] = [1e-3, 2e-3]
+    named: Any = {"line_names": ("10× input",), "line_kinds": ("other",)}
+    swept = [
+        SweptPoint(
+            point, PointResult({}, np.zeros(0), line_frequencies=np.array([900.0]), line_rates=rates, **named), False
+        )
+        for point in points
+    ]
+    told, *_ = add_sound(case, keys, swept, sounding_housing())
+    sounds = [one.outcome.document.get("sound") for one in swept if isinstance(one.outcome, PointResult)]
+    if over.startswith(("rotor[0].material=", "housing.damping_ratio")):
+        assert told == []
+        assert sounds[0] == sounds[1] is not None
+    else:
+        assert "sound of a sweep is left out" in told[0]["message"]
+        assert sounds == [None, None]
 
 
 def test_the_box_of_microphones_stands_on_the_floor() -> None:

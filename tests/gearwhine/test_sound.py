@@ -2,12 +2,12 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.io import wavfile
 from scipy.signal import spectrogram
+from sounding_gearbox import swept_point
 
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
@@ -18,7 +18,6 @@ from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.sound.kept_radiation import kept_radiation
 from gearwhine.solve.sound.microphones import microphone_histories
 from gearwhine.solve.sound.solution import build_radiation
-from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 from housing.acoustics.modal_radiation import ModalRadiation
@@ -26,6 +25,11 @@ from housing.acoustics.modal_radiation import ModalRadiation
 pytestmark = pytest.mark.slow
 
 COARSE = {"acoustics.mesh_size": "30 mm", "acoustics.highest_frequency": "3 kHz", "acoustics.lines": 8}
+ALUMINIUM = {
+    "acoustics.method": "erp",
+    "housing.box.mesh_size": "40 mm",
+    "material.aluminium": {"youngs_modulus": "71 GPa", "poisson_ratio": 0.33, "density": "2700 kg/m^3"},
+}
 
 
 @pytest.fixture(scope="module")
@@ -246,7 +250,7 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         one = PointResult(
             {}, np.zeros(0), line_frequencies=frequencies, line_rates=rates, line_names=named, line_kinds=named
         )
-        told, kept, _ = add_sound(study.case, keys, [SweptPoint(SimpleNamespace(case=study.case), one, False)], housing)
+        told, kept, _ = add_sound(study.case, keys, [swept_point(study.case, "10 N*m", one)], housing)
         assert told == []
         return one.document["sound"]["lines"], kept
 
@@ -306,6 +310,13 @@ def test_sweep_sounds_as_its_points_do(study, tmp_path):
     assert levels[0] == pytest.approx(found.total_db, abs=0.05)
     loudest = max(found.lines, key=lambda line: line.sound.power)
     assert swept.dataset["sound_line_frequency"].values[0, 0] == pytest.approx(loudest.frequency_hz)
-    keys = swept_keys(alone.case, ["housing.damping_ratio=0.01,0.02"])
-    (told,), *_ = add_sound(alone.case, keys, [], alone.housing)
-    assert "sound of a sweep is left out" in told["message"]
+
+
+def test_sweep_sounds_by_the_housing_of_its_points(tmp_path):
+    """Which is another one than that of the case where the only value of a key makes it so."""
+    short = ALUMINIUM | {"transient.revolutions": 4, "transient.discard": 2, "transient.tolerance": 1e-3}
+    over = "rotor[0].material,housing.material=aluminium"
+    swept = gw.load("small-gearbox", short).sweep([over], folder=tmp_path / "out", workers=1)
+    alone = gw.load("small-gearbox", short | {"rotor.0.material": "aluminium", "housing.material": "aluminium"}).run()
+    assert swept.dataset["sound_power_level"].values[0] == pytest.approx(alone.document["sound"]["total_db"], abs=0.05)
+    assert swept.warnings == []

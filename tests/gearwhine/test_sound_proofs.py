@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from sounding_box import COARSE
-from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing
+from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing, swept_point
 
 import gearwhine as gw
 from gearwhine.case import Case, swept_keys
@@ -162,7 +162,7 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
         line_names=("10× input", "1× pinion -> wheel"),
         line_kinds=("other", "mesh"),
     )
-    swept: Any = [SimpleNamespace(outcome=outcome, point=SimpleNamespace(case=case, texts=("10 N*m",)))]
+    swept = [swept_point(case, "10 N*m", outcome)]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
     told, housing, _ = add_sound(case, keys, swept, sounding_housing())
     assert told == []
@@ -200,10 +200,7 @@ def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest
                 line_kinds=("mesh",),
             )
         )
-    swept: Any = [
-        SimpleNamespace(outcome=one, point=SimpleNamespace(case=case, texts=(text,)))
-        for one, text in zip(outcomes, ("10 N*m", "20 N*m"), strict=True)
-    ]
+    swept = [swept_point(case, text, one) for one, text in zip(outcomes, ("10 N*m", "20 N*m"), strict=True)]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
     add_sound(case, keys, swept, sounding_housing())
     sounds = [one.document.pop("sound") for one in outcomes]
@@ -220,10 +217,7 @@ def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest
 def test_points_whose_mesh_frequency_is_above_the_sound_are_told() -> None:
     sounding = sounding_gearbox(TOP | {"acoustics.highest_frequency": "2.3 kHz"}).case
     cases = [with_speed(sounding, speed) for speed in (4000.0, 5500.0, 6000.0)]
-    swept: Any = [
-        SimpleNamespace(outcome=PointResult({}, np.zeros(0)), point=SimpleNamespace(case=one, texts=(text,)))
-        for one, text in zip(cases, ("4000 rpm", "5500 rpm", "6000 rpm"), strict=True)
-    ]
+    swept = [swept_point(one, text) for one, text in zip(cases, ("4000 rpm", "5500 rpm", "6000 rpm"), strict=True)]
     keys = swept_keys(sounding, ["operation.speed=4000 rpm,5500 rpm,6000 rpm"])
     (told,), *_ = add_sound(sounding, keys, swept, sounding_housing())
     assert "at 2 of 3 points, such as operation.speed=6000 rpm, a mesh frequency of up to 2800 Hz" in told["message"]
