@@ -567,6 +567,7 @@ RUN_SIGNATURE = (
     Quantity("from_rpm", lambda signature: signature.speeds_rpm[0]),
     Quantity("to_rpm", lambda signature: signature.speeds_rpm[-1]),
     Quantity("stretches", lambda signature: len(signature.speeds_rpm)),
+    Quantity("window_turns", lambda signature: signature.turns),
     Quantity("orders", lambda signature: signature.highest()),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
     Quantity(
@@ -812,6 +813,11 @@ def _content(document: Document) -> Iterator[str | Table]:
     if run is not None:
         yield from table_of(columns_of(ORDER), _highest_orders(run["orders"]), "Highest of the orders along the run")
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
+        if "window_turns" in run:
+            yield (
+                f"Orders are means over {run['window_turns']} turns of the leading shaft: a resonance that the run passes "
+                "within them is lower than at steady speed"
+            )
     if "steps" in document:
         yield (
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "

@@ -42,6 +42,8 @@ class RunSignature:
         Orders, in cycles each turn of the leading shaft, over its speeds of that sign.
     named : dict of str to float
         Orders that have names: shafts and harmonics of the meshes.
+    turns : int
+        Turns of the leading shaft in a window of the orders; an amplitude is that of the mean over it.
     """
 
     units: dict[str, str]
@@ -49,6 +51,7 @@ class RunSignature:
     speeds_rpm: FloatArray
     orders: dict[str, signature.OrderMap]
     named: dict[str, float]
+    turns: int
 
     def followed(self) -> FloatArray:
         """Peak amplitude of each signal at each named order, by the windows' speeds: (signals, orders, windows)."""
@@ -127,7 +130,8 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         )
         orders[name] = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
     middles = next(iter(spectra.values())).times
-    return RunSignature(units, spectra, 60.0 * sense * turns_per_second * turning.at(middles)[1], orders, named)
+    speeds_rpm = 60.0 * sense * turns_per_second * turning.at(middles)[1]
+    return RunSignature(units, spectra, speeds_rpm, orders, named, cut.turns)
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
