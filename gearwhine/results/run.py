@@ -815,8 +815,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
         if "window_turns" in run:
             yield (
-                f"Orders are means over {run['window_turns']} turns of the leading shaft: a resonance passed within them "
-                "is lower than at steady speed"
+                f"Orders are means over {run['window_turns']} turns of the leading shaft: a resonance passed within "
+                "them is lower than at steady speed"
             )
     if "steps" in document:
         yield (
