@@ -78,7 +78,8 @@ def _take(handle: int, *, wait: bool) -> bool:
 def file_contents(table: Any) -> dict[str, Any]:
     """Return a digest of the bytes, and the ending, of each file that a table names, however deep.
 
-    The ending counts because a file's reader is chosen by it.
+    The ending counts because a file's reader is chosen by it. A mesh file has the digests of its companions, too, the
+    files that are read with it.
     """
     return {str(path): _file_content(path) for path in _paths(table)}
 
@@ -167,9 +168,19 @@ def _inner(value: Any) -> list[Any]:
     return list(value) if isinstance(value, list | tuple) else []
 
 
-def _file_content(path: Path) -> dict[str, str]:
+def _file_content(path: Path) -> dict[str, Any]:
+    # Imported here: commands without files need no meshes.
+    from meshes.formats.companions import companion_files
+
+    content: dict[str, Any] = {"sha256": _file_digest(path), "ending": path.suffix.lower()}
+    if companions := [_file_digest(companion) for companion in companion_files(path)]:
+        content["companions"] = companions
+    return content
+
+
+def _file_digest(path: Path) -> str:
     with path.open("rb") as file:
-        return {"sha256": hashlib.file_digest(file, "sha256").hexdigest(), "ending": path.suffix.lower()}
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 MODE_CACHE_FILE = "modes.nc"

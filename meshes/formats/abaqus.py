@@ -17,6 +17,7 @@ from meshes.formats.content import MeshContent, corner_rows, find_faces
 from meshes.mesh import Mesh
 
 _DEPTH = 20  # levels of files that include files
+_INCLUDE, _INPUT = "INCLUDE", "INPUT"
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
 
 
@@ -50,9 +51,22 @@ def read_cards(path: Path) -> Iterator[Card]:
     yield from _cards(path, 0)
 
 
+def included_files(path: Path) -> Iterator[Path]:
+    """Yield the files that a file itself includes, whether they exist or not."""
+    # Most decks include nothing and are long: their cards are made only where the word is in them.
+    if _INCLUDE.encode() in path.read_bytes().upper():
+        yield from (_included(card, path) for card in _own_cards(path) if card.keyword == _INCLUDE)
+
+
 def _cards(path: Path, depth: int) -> Iterator[Card]:
     if depth > _DEPTH:
         raise GeometryError(f"mesh file {path} is included {_DEPTH} files deep; does it include itself?")
+    for card in _own_cards(path):
+        yield from _resolved(card, path, depth)
+
+
+def _own_cards(path: Path) -> Iterator[Card]:
+    """Yield the cards of a file itself, INCLUDE among them."""
     card: Card | None = None
     pending = ""
     for raw in path.read_text(encoding="utf-8", errors="replace").splitlines():
@@ -64,24 +78,28 @@ def _cards(path: Path, depth: int) -> Iterator[Card]:
             if pending.endswith(","):  # the keyword goes on in the next line
                 continue
             if card is not None:
-                yield from _resolved(card, path, depth)
+                yield card
             card, pending = _card(pending), ""
         elif card is not None:
             card.lines.append(_items(line))
     if card is not None:
-        yield from _resolved(card, path, depth)
+        yield card
 
 
 def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
     """Yield the card itself, or the cards of the file that it includes."""
-    if card.keyword != "INCLUDE":
+    if card.keyword != _INCLUDE:
         yield card
         return
-    name = card.parameters.get("INPUT", "")
-    other = path.parent / name
-    if not name or not other.is_file():
-        raise GeometryError(f"mesh file {path} includes {name!r}: no such file")
+    other = _included(card, path)
+    if not other.is_file():
+        raise GeometryError(f"mesh file {path} includes {card.parameters.get(_INPUT, '')!r}: no such file")
     yield from _cards(other, depth + 1)
+
+
+def _included(card: Card, path: Path) -> Path:
+    """Return the file that an INCLUDE names, relative to the file that it stands in; its folder where it names none."""
+    return path.parent / card.parameters.get(_INPUT, "")
 
 
 def _card(line: str) -> Card:

@@ -10,10 +10,13 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
+import gearwhine
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.mesh import build_mesh
+from gearwhine.output.files import file_contents
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.transient import solve_transient
@@ -21,6 +24,7 @@ from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_swe
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.run import run_sweep
 from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
+from meshes import read_mesh, write_mesh
 
 COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.discard=1", "transient.tolerance=1e-3")
 
@@ -43,6 +47,28 @@ def test_a_point_is_known_again_by_what_bears_on_it() -> None:
     assert damped.modes_key == slow.modes_key
     assert damped.housing_key != slow.housing_key
     assert points_of("housing.box.wall=11 mm")[0].modes_key != slow.modes_key
+
+
+def test_a_point_is_another_one_where_a_file_read_with_its_mesh_has_changed(tmp_path: Path) -> None:
+    """A box 10 % longer in the deck that the named one includes: other points, other modes, another housing."""
+    source = (Path(gearwhine.__file__).parent / "cases" / "small-gearbox.toml").read_text()
+    begin, end = source.index("[housing.box]"), source.index("[[housing.seat]]")
+    case_file = tmp_path / "meshed.toml"
+    case_file.write_text(f'{source[:begin]}[housing.mesh]\nfile = "deck.inp"\n\n{source[end:]}')
+    write_mesh(build_mesh(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
+    (tmp_path / "deck.inp").write_text("*INCLUDE, INPUT=box.inp\n")
+    keys = swept_keys(load_case(str(case_file)).case, ["operation.torque=50 N*m,60 N*m"])
+    before = sweep_points(str(case_file), (), keys)
+    digests = file_contents([tmp_path / "deck.inp"])
+    assert sweep_points(str(case_file), (), keys) == before
+    mesh = read_mesh(tmp_path / "box.inp")
+    write_mesh(replace(mesh, points=mesh.points * np.array([1.0, 1.1, 1.0])), tmp_path / "box.inp")
+    after = sweep_points(str(case_file), (), keys)
+    for old, new in zip(before, after, strict=True):
+        assert old.key != new.key
+        assert old.modes_key != new.modes_key
+        assert old.housing_key != new.housing_key
+    assert file_contents([tmp_path / "deck.inp"]) != digests
 
 
 def test_a_grid_goes_through_its_last_key_first() -> None:
