@@ -96,7 +96,7 @@ class MeshHarmonicModel:
     def responses(self, limit: float) -> tuple[Response, ...]:
         """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
         return tuple(
-            Response(w, causes, linalg.solve(self._dynamic(w), self._load(w, causes)))
+            Response(w, causes, linalg.solve(self._dynamic(w), self._load(causes)))
             for w, causes in self._harmonics(limit)
         )
 
@@ -165,13 +165,9 @@ class MeshHarmonicModel:
                 harmonics.append((w, (cause,)))
         return harmonics
 
-    def _load(self, w: float, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
-        """Return f at a frequency, shape (n,)."""
-        total = self._error_load(causes)
-        for load in self.machine.system.harmonic_loads:
-            if abs(load.frequency - w) <= _SAME * w:
-                total += load.amplitude
-        return total
+    def _load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+        """Return f by the meshes alone, shape (n,): torque ripple of a mesh's frequency has no part in it."""
+        return self._error_load(causes) + self._shuttling_load(causes)
 
     def _error_load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
         """Return Σ k e d, shape (n,)."""

@@ -267,7 +267,7 @@ class LineModel(MeshHarmonicModel):
 
     def _solved_anew(self, line: Line, dynamic: ComplexArray, output: LineOutput | None = None) -> float:
         """Change of the output with another dynamic stiffness."""
-        motion = linalg.solve(dynamic, self._load(line.frequency, line.causes))
+        motion = linalg.solve(dynamic, self._load(line.causes))
         return (output or line.output).value(line.frequency, motion) - line.value
 
     @cached_property

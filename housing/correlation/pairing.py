@@ -134,7 +134,8 @@ class ShapePair:
         are mixed.
     confidence : float
         Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
-        (another is as good) to 1; see :func:`housing.correlation.pairing.margin`. Not a probability.
+        (another is as good) to 1; see :func:`housing.correlation.pairing.margin`. Not a probability. For want of this
+        pair its measured mode may take one of a MAC below the least, other modes may not.
     close_model, close_measured : tuple of int
         Close modes to which the pair's mode belongs; empty where it stands apart.
     mixed : bool
@@ -192,7 +193,8 @@ def pair_modes(
     shared = _shared(phi, psi, mac, elastic, test_groups)
     scores = (shared * _weight(model_frequencies, measured_frequencies, rule)).T
     allowed = (shared >= rule.least_mac) & (scores > 0.0).T
-    chosen = best_assignment(np.where(allowed.T, scores, 0.0))
+    possible = np.where(allowed.T, scores, 0.0)
+    chosen = best_assignment(possible)
     distance = np.abs(np.log(np.maximum(model_frequencies, 1e-300)[:, None] / measured_frequencies))
     pairs = []
     for members, rivals in _blocks(chosen, groups, test_groups):
@@ -205,12 +207,15 @@ def pair_modes(
             partners = np.array([i for j, i in chosen if j in members])
         inside = np.isin(np.arange(len(phi)), rivals)
         for i, j in zip(map(int, partners), members, strict=True):
+            # A near miss of the rule is a rival of the mode's own pair; others are paired by the rule.
+            rivalled = possible.copy()
+            rivalled[j, ~inside] = scores[j, ~inside]
             pairs.append(
                 ShapePair(
                     i,
                     int(j),
                     float(shared[i, j]),
-                    margin(scores, int(j), inside),
+                    margin(rivalled, int(j), inside),
                     _company(groups, i),
                     _company(test_groups, int(j)),
                     mixed,

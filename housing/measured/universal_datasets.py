@@ -288,20 +288,33 @@ _GRAVITY = 9.80665
 _LABELS = {
     "m": 1.0,
     "mm": 1e-3,
+    "cm": 1e-2,
     "in": 0.0254,
+    "ft": 0.3048,
     "m/s": 1.0,
     "mm/s": 1e-3,
+    "cm/s": 1e-2,
     "in/s": 0.0254,
+    "ft/s": 0.3048,
     "m/s^2": 1.0,
     "m/s2": 1.0,
     "mm/s^2": 1e-3,
     "mm/s2": 1e-3,
+    "cm/s^2": 1e-2,
+    "cm/s2": 1e-2,
     "in/s^2": 0.0254,
+    "in/s2": 0.0254,
+    "ft/s^2": 0.3048,
+    "ft/s2": 0.3048,
     "g": _GRAVITY,
     "n": 1.0,
     "kn": 1e3,
     "lbf": 4.4482216152605,
 }  # units as their labels are written
+_HERTZ = {"hz": 1.0, "khz": 1e3, "rpm": 1.0 / 60.0, "cpm": 1.0 / 60.0}
+_HERTZ |= dict.fromkeys(("rad/s", "rad/sec", "rads/s", "rads/sec"), 1.0 / (2.0 * np.pi))
+"""Units of frequency by their labels [Hz]."""
+_UNLABELLED = ("", "none")
 
 _Key = tuple[int, int]
 
@@ -332,13 +345,13 @@ def read_functions(
         )
     if not functions:
         return None
-    places = 2.0 * np.pi * np.asarray(functions[0]["x"], dtype=np.float64)
+    places = _frequencies(functions[0], remarks)
     motion = _motion(functions, remarks)
     rows: dict[_Key, int] = {}
     columns: dict[_Key, int] = {}
     cells: dict[tuple[int, int], FloatArray] = {}
     for dataset in functions:
-        frequencies = 2.0 * np.pi * np.asarray(dataset["x"], dtype=np.float64)
+        frequencies = _frequencies(dataset, remarks)
         name = f"the function {dataset['rsp_node']}:{dataset['rsp_dir']} by {dataset['ref_node']}:{dataset['ref_dir']}"
         if len(frequencies) != len(places) or np.abs(frequencies - places).max() > _SPACING * places[-1]:
             raise MeasuredDataError(f"{name} has other frequencies than the first of the file")
@@ -388,11 +401,33 @@ def _factor(dataset: Dataset, length: float, force: float, remarks: list[str]) -
     """Factor from the function's unit to SI."""
     factors = []
     for axis, by_system in (("ordinate", length), ("orddenom", force)):
-        label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip().lower().replace(" ", "").replace("**", "^")
+        label = _label(dataset, axis)
         by_label = _LABELS.get(label, by_system)
-        if not np.isclose(by_label, by_system, rtol=1e-6):
-            remark = f"functions taken in {label}, as their axis says, and not in the file's system of units"
-            if remark not in remarks:
-                remarks.append(remark)
+        if label not in _LABELS and label not in _UNLABELLED:
+            _remark(remarks, f"functions' unit {label!r} not known, taken in the file's system of units")
+        elif not np.isclose(by_label, by_system, rtol=1e-6):
+            _remark(remarks, f"functions taken in {label}, as their axis says, and not in the file's system of units")
         factors.append(by_label)
     return float(factors[0] / factors[1])
+
+
+def _frequencies(dataset: Dataset, remarks: list[str]) -> FloatArray:
+    """Frequencies of a function [rad/s]: the format has them in hertz, unless their axis names another unit."""
+    label = _label(dataset, "abscissa")
+    hertz = _HERTZ.get(label, 1.0)
+    if label not in _HERTZ and label not in _UNLABELLED:
+        _remark(remarks, f"unit {label!r} of the functions' frequencies not known, taken in Hz")
+    elif hertz != 1.0:
+        _remark(remarks, f"frequencies of the functions taken in {label}, as their axis says")
+    return np.asarray(2.0 * np.pi * hertz * np.asarray(dataset["x"], dtype=np.float64))
+
+
+def _label(dataset: Dataset, axis: str) -> str:
+    """Return the unit that an axis names, in small letters and without blanks."""
+    written = str(dataset.get(f"{axis}_axis_units_lab", ""))
+    return written.strip().lower().replace(" ", "").replace("**", "^")
+
+
+def _remark(remarks: list[str], remark: str) -> None:
+    if remark not in remarks:
+        remarks.append(remark)

@@ -140,6 +140,17 @@ def test_the_parts_of_a_line_are_its_causes_alone(given: Gearbox) -> None:
         assert by_error == pytest.approx(through / spring * errors[n - 1], rel=1e-6)
 
 
+def test_torque_ripple_of_a_mesh_s_order_is_no_part_of_its_lines(given: Gearbox, housing: SolvedHousing) -> None:
+    """Lines and their parts are by the meshes, which the ripple leaves as they are."""
+    (teeth,) = {gear.teeth for gear in given.case.gear}
+    ripple = f"operation.ripple=[{{ amplitude = '30 N*m', order = {teeth} }}]"
+    other = gearbox(housing, GIVEN, ripple)
+    loads = (model.machine.system.harmonic_loads for model in (given.model, other.model))
+    without, those = (np.sum([load.amplitude for load in each if load.frequency > 0.0], axis=0) for each in loads)
+    assert np.abs(those - without).max() > 1.0
+    assert other.lines() == pytest.approx(given.lines(), rel=1e-9)
+
+
 def test_transmission_error_alone_is_not_that_level(given: Gearbox, aim: SensorLevel) -> None:
     """Shuttling matters in this machine: by the transmissibility alone a line is off by more than half."""
     contact, lines = given.pairs[0].contact, given.lines()

@@ -72,6 +72,36 @@ def test_an_axis_that_names_its_unit_is_taken_in_it(
     assert any("as their axis says" in remark for remark in found.remarks) == (factor != 1.0)
 
 
+@pytest.mark.parametrize(
+    ("label", "angular", "said"),
+    [
+        ("Hz", 2.0 * np.pi, None),
+        ("NONE", 2.0 * np.pi, None),
+        ("rad/s", 1.0, "taken in rad/s, as their axis says"),
+        ("RPM", np.pi / 30.0, "taken in rpm, as their axis says"),
+        ("order", 2.0 * np.pi, "'order' of the functions' frequencies not known, taken in Hz"),
+    ],
+)
+def test_frequencies_are_taken_in_the_unit_that_their_axis_names(
+    tmp_path: Path, label: str, angular: float, said: str | None
+) -> None:
+    found = read_universal(by_pyuff(tmp_path / "f.uff", POINTS, FUNCTION | {"abscissa_axis_units_lab": label}))
+    np.testing.assert_allclose(found.responses.frequencies, angular * FUNCTION["x"], rtol=1e-5)
+    told = [remark for remark in found.remarks if "frequencies" in remark]
+    assert len(told) == (said is not None)
+    assert all(said in remark for remark in told)
+
+
+@pytest.mark.parametrize(("label", "factor", "known"), [("ft/s^2", 0.3048, True), ("furlong/s^2", 1e-3, False)])
+def test_a_unit_that_is_not_known_is_said(tmp_path: Path, label: str, factor: float, known: bool) -> None:
+    """It counts as one of the file's system, here of millimetres and newtons."""
+    units = MILLIMETRES | {"force": 1.0}
+    function = FUNCTION | {"ordinate_axis_units_lab": label}
+    found = read_universal(by_pyuff(tmp_path / "f.uff", POINTS, units, function))
+    np.testing.assert_allclose(found.responses.values[0, 0], factor * FUNCTION["data"], rtol=1e-5)
+    assert any(f"unit {label!r} not known" in remark for remark in found.remarks) != known
+
+
 def test_a_complex_eigenvalue_gives_frequency_and_damping(tmp_path: Path) -> None:
     """λ = ω (-ζ + i √(1 - ζ²)): of -30 ± 40i, ω = 50 rad/s and ζ = 0.6."""
     shape = {key: value for key, value in SHAPE.items() if key != "freq"} | {"analysis_type": 3, "eig": -30 + 40j}

@@ -94,6 +94,24 @@ def test_one_model_mode_is_not_given_twice() -> None:
     assert comparison.pairs[1].confidence == pytest.approx(1.0)
 
 
+def test_only_a_mode_s_own_near_misses_lower_its_confidence() -> None:
+    """Three model shapes at right angles, at frequencies without weight, and mixtures of them, by hand.
+
+    The first measured mode has a MAC of 0.60 with model mode 1 and of 0.40 with mode 2, the second 0.95 with mode 1 and
+    0.05 with mode 3. By the rule only the second is paired, with mode 1. Without that pair the first takes mode 1 and
+    the second mode 3: 0.65 for 0.95. That the first cannot take mode 2 beside the pair is the rule's doing.
+    """
+    model = np.eye(3)
+    rule = PairingRule(frequency_spread=1e6)
+    mixed = np.sqrt(np.array([[0.60, 0.40, 0.0], [0.95, 0.0, 0.05]]))
+    (pair,) = pair_modes(np.array([100.0, 200.0, 300.0]), model, np.array([110.0, 210.0]), mixed, rule)
+    assert (pair.measured, pair.model) == (1, 0)
+    assert pair.confidence == pytest.approx((0.95 - 0.65) / 0.95)
+    # A mode half like each of two is unsure, though the rule leaves it one partner.
+    (pair,) = pair_modes(np.array([100.0, 200.0, 300.0]), model, np.array([110.0]), mixed[:1], rule)
+    assert pair.confidence == pytest.approx(0.2 / 0.6)
+
+
 def test_a_mode_found_twice_is_named() -> None:
     frequencies, shapes = OBLONG
     test = np.array([1.0, 1.004, 1.9]) * frequencies[0]
