@@ -78,7 +78,7 @@ def test_figures_of_a_mesh_are_those_of_its_own_contact() -> None:
     figures = SimpleNamespace(
         mean_force=np.array([1.0, 2.0]), peak_force=np.array([3.0, 4.0]), contact_loss=np.array([0.5, 0.25])
     )
-    assert document_of(motion.MESH, (mesh, figures, 1)) == {
+    assert document_of(motion.MESH, motion.MeshFigures(mesh, figures, 1)) == {
         "driver": "a",
         "driven": "b",
         "mean_force_n": 2.0,
