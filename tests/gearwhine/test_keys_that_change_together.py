@@ -59,7 +59,8 @@ def test_a_shear_modulus_of_its_own_is_that_of_shafts_alone() -> None:
     case = load_case("spur-pair", changes).case
     assert case.material["steel"].shear_modulus == 70e9
     rotor = build_machine(case, None, ()).rotors[0]
-    stiffer = build_machine(load_case("spur-pair", ["material.steel.shear_modulus=90 GPa", *changes[1:]]).case, None, ()).rotors[0]
+    stiff_steel = load_case("spur-pair", ["material.steel.shear_modulus=90 GPa", *changes[1:]]).case
+    stiffer = build_machine(stiff_steel, None, ()).rotors[0]
     # Elastic torsion goes with the root of the shear modulus.
     ratio = stiffer.modal.torsional.frequencies[1] / rotor.modal.torsional.frequencies[1]
     assert ratio == pytest.approx((90.0 / 70.0) ** 0.5, rel=1e-9)
