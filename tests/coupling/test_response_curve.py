@@ -122,6 +122,7 @@ def test_double_period_after_period_doubling() -> None:
     assert twice.rms_compression[0] > 2.0 * once.rms_compression[0]
 
 
+@pytest.mark.slow
 def test_a_rotor_with_unbalance_follows_its_receptance() -> None:
     """Two planes with gyroscopic coupling; forces with the square of the speed."""
     stiffness, damping = np.diag([1.0, 1.3]), 0.05 * np.eye(2)

@@ -100,6 +100,7 @@ def test_segments_make_the_same_pass_as_one() -> None:
         np.testing.assert_allclose(through.monodromy[:, column], (ends[0] - ends[1]) / (2.0 * reach), atol=1e-7)
 
 
+@pytest.mark.slow
 def test_an_unstable_motion_of_many_mesh_periods_is_followed() -> None:
     """A weak runout leaves the branch where it was; its multipliers are those of one mesh period to the 28th power."""
     once = response_curve(lambda speed: runout(speed, 0.0), 0.6, 0.9, points=20)

@@ -12,6 +12,7 @@ pytestmark = pytest.mark.rendered
 KINDS = {"shaft", "modes", "torsion", "whirl", "campbell", "unbalance", "static"}
 
 
+@pytest.mark.slow
 def test_rotors_are_drawn_into_the_folder(gearwhine, tmp_path: Path) -> None:
     document = gearwhine("rotors", "friswell-rotor", "--json", "-q", "-o", "out").document
     present = {path.name for path in (tmp_path / "out").iterdir()}

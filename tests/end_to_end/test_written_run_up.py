@@ -101,6 +101,7 @@ def test_friction_takes_power(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_back_flanks_are_told_with_their_own_pair(tmp_path: Path) -> None:
     """All but unloaded and dropped into mesh, teeth rattle; each pair's back flanks have a force of their own."""
     case = tmp_path / "lopsided.toml"

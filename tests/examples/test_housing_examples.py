@@ -45,6 +45,7 @@ def test_update_finds_the_modulus_of_the_twin(example: Any, monkeypatch: pytest.
     assert float(fit.dataset["value_after"][0]) == pytest.approx(1e9 * expected, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) -> None:
     found = example("housing_and_shafts_coupled")
     system = found["machine"].assembled.system

@@ -17,6 +17,7 @@ pytestmark = pytest.mark.usefixtures("unrendered")
 COARSE = ("housing.box.mesh_size=45 mm", "housing.frequency_limit=4 kHz")
 
 
+@pytest.mark.slow
 def test_a_survey_in_a_file_is_paired_by_shape(tmp_path: Path) -> None:
     """Modes 1, 2, 4 and 5 of the housing as measured 1 % lower: these are found, and mode 3 is named missing."""
     solved = solve_housing(load_case("small-gearbox", COARSE).case)

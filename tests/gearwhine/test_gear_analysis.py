@@ -296,6 +296,7 @@ def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
         assert curves.hunting_phase[-1] < 28.0
 
 
+@pytest.mark.slow
 def test_the_command_compiles_nothing_and_draws_nothing_unasked() -> None:
     """What the work does not need is not loaded."""
     heavy = {"numba", "matplotlib", "xarray", "skfem", "gmsh"}

@@ -382,6 +382,7 @@ def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
         np.testing.assert_allclose(found, part * expected, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_document_ranks_by_a_line() -> None:
     study = gw.load("small-gearbox", {"housing.box.mesh_size": "60 mm"})
     result = study.operating_point(line="right wall")

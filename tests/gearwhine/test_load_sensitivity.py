@@ -175,6 +175,7 @@ def test_walls_of_a_box_and_parameters_of_a_fit() -> None:
     assert housing_parameters(load_case("helical-pair").case) == ()
 
 
+@pytest.mark.slow
 def test_a_box_that_cannot_follow_its_walls_has_faces() -> None:
     changes = {"housing.box.mesh_size": "60 mm", "housing.box.fillets": {"inside": "8 mm"}}
     result = gw.load("small-gearbox", changes).operating_point(sensitivity=True)

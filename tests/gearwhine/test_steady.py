@@ -146,6 +146,7 @@ def test_what_stands_still_or_has_no_range_is_refused() -> None:
         solve_steady(still, machine, None)
 
 
+@pytest.mark.slow
 def test_a_sensor_is_loudest_where_the_mesh_meets_the_mode_it_sits_on() -> None:
     """The top's own mode: its resonance carries nearly all of the line, at the mesh frequency."""
     coarse = {"housing.box.mesh_size": "60 mm", "rotor.*.unbalance": ""}

@@ -67,6 +67,7 @@ def _things(stiffness: tuple[float, ...], turn: FloatArray, shift: FloatArray) -
     ]
 
 
+@pytest.mark.slow
 @few
 @given(stiffness=amounts, angles=angles, shift=st.tuples(*[st.floats(-0.5, 0.5)] * 3))
 def test_turning_and_moving_everything_changes_no_frequency_and_no_damping(

@@ -82,6 +82,7 @@ def test_receptances_are_reciprocal(
     assert np.linalg.eigvalsh((receptance + receptance.T) / 2).min() > -1e-9 * np.abs(receptance).max()
 
 
+@pytest.mark.slow
 @few
 @given(stiffness=st.tuples(*[st.floats(0.0, 1e9)] * 3), more=st.floats(1.0, 100.0))
 def test_springs_raise_every_frequency_or_leave_it(

@@ -249,6 +249,7 @@ def assert_every_root(
 PARTS = powers(-9.0, 0.0)
 
 
+@pytest.mark.slow
 @MANY
 @given(cases(), st.integers(3, 9), PARTS)
 def test_every_root_of_bending(case: Case, count: int, part: float) -> None:

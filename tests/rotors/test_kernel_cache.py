@@ -58,6 +58,7 @@ def run(root: Path) -> tuple[float, int]:
     return float(value), int(hits)
 
 
+@pytest.mark.slow
 def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) -> None:
     package = packages(tmp_path)
     assert run(tmp_path) == (4.0, 0)

@@ -69,6 +69,7 @@ def bearings_of(kind: str) -> list[Bearing]:
     return [Bearing.isotropic("a", 0.05, 2e7, 3e3), Bearing.isotropic("b", 0.75, 1e7, 2e3)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["cross-coupled", "pedestals", "tilting", "five motions", "isotropic"])
 @pytest.mark.parametrize("speed", [0.0, 900.0])
 def test_every_root_is_what_finite_elements_converge_to(kind: str, speed: float) -> None:

@@ -130,6 +130,7 @@ RADIUS, HEIGHT = 0.1524, 0.6096
 ALUMINIUM = Material(70e9, 0.33, 2700.0)
 
 
+@pytest.mark.slow
 def test_free_solid_cylinder(tmp_path: Path, published: Published) -> None:
     modes = _check_cylinder(_solid(_cylinder, 0.04, tmp_path / "cylinder.msh"), published)
     torsion_hz = np.sqrt(ALUMINIUM.lame[1] / ALUMINIUM.density) / (2 * HEIGHT)

@@ -263,6 +263,7 @@ def test_the_table_carries_what_the_slices_carry_beside_a_deep_spall(degrees: fl
     np.testing.assert_allclose(found, FORCE, rtol=miss)
 
 
+@pytest.mark.slow
 def test_what_a_table_misses_beside_a_spall_is_what_the_slices_miss() -> None:
     """A slice is in the pit or out of it: the table of twice as many is no farther from few than both from many."""
     middle = PINION.roll_angle(PINION.pitch_radius)
@@ -309,6 +310,7 @@ def test_at_the_mean_load_the_table_carries_what_slices_on_tilting_bodies_carry(
     assert misses[1] > 4.0 * misses[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", [0.0, FORCE])
 @pytest.mark.parametrize("depth", [2e-6, 14e-6, 60e-6, 300e-6])
 @pytest.mark.parametrize("phase", [0.11, 0.52, 0.87])

@@ -81,6 +81,7 @@ def test_the_error_falls_with_the_edge(coarse: RadiatingSurface, fine: Radiating
     assert found[0].largest > 2.0 * found[1].largest
 
 
+@pytest.mark.slow
 def test_the_error_depends_little_on_the_place_of_the_source():
     elements = BoundaryElements(box(BOX, 0.025), AIR)
     deep = depths(elements.surface, elements._inner_points)
