@@ -257,9 +257,10 @@ class ToothContact:
 
     @property
     def table_faces(self) -> FaceSlices | None:
-        """Slices of the face for the lookup table, whose positions along the path are as far apart as the slices.
+        """Slices of the face for the lookup table, twice as many as those of static solutions.
 
-        With coarser slices their ripple as they come into touch aliases to low mesh harmonics: some nanometres.
+        The ripple of coarser slices as they come into touch aliases, on the table's positions along the path, to low
+        mesh harmonics: some nanometres.
         """
         faces = self.faces
         return faces if faces is None or faces.half_span == 0.0 or faces.z.size > DEFAULT_SLICES else faces.halved()

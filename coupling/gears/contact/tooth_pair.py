@@ -229,10 +229,8 @@ def _weakened(
     """Stiffness of a pair of teeth with faults, whose compliances add to its own."""
     if not any(faults):
         return stiffness
-    sides = (
-        (geometry.driver, geometry.driver_position, faults[0]),
-        (geometry.driven, geometry.driven_position, faults[1]),
-    )
+    driver, driven = geometry.carrying_gears
+    sides = ((driver, geometry.driver_position, faults[0]), (driven, geometry.driven_position, faults[1]))
     pitch_roll = math.tan(geometry.working_pressure_angle)
 
     def weakened(position: FloatArray) -> FloatArray:

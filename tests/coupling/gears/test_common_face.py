@@ -8,7 +8,15 @@ import pytest
 from scipy.linalg import solveh_banded
 
 from coupling import Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
-from coupling.gears import Gear, GearPair, GearPairGeometry, HelixDeviation, PotentialEnergyStiffness
+from coupling.gears import (
+    Gear,
+    GearPair,
+    GearPairGeometry,
+    HelixDeviation,
+    PotentialEnergyStiffness,
+    ToothCrack,
+    tooth_contact,
+)
 from coupling.gears.contact.face_slices import face_slices, tooth_coupling
 from coupling.gears.errors import NoContactError
 from coupling.gears.geometry.profile import meshing_rotations
@@ -60,6 +68,21 @@ def test_a_much_wider_gear_is_little_stiffer() -> None:
     )
     assert widest == pytest.approx(wider, rel=1e-3)
     assert alike < wider < 1.1 * alike
+
+
+def test_a_crack_in_a_wide_gear_softens_it_over_its_effective_width() -> None:
+    """The compliance of a crack through the whole face is inversely proportional to the width, as the tooth's is."""
+    middle = np.array([0.5 * GearPairGeometry(PINION, WHEEL).contact_ratio])
+
+    def softened(width: float) -> tuple[float, GearPairGeometry]:
+        pair = GearPairGeometry(replace(PINION, face_width=width, faults=(ToothCrack(0, 2e-3),)), WHEEL)
+        contact = tooth_contact(pair, MODEL)
+        return float(1.0 / contact.variants[0].stiffness(middle)[0] - 1.0 / contact.stiffness(middle)[0]), pair
+
+    (alike, _), (wide, pair) = softened(20e-3), softened(40e-3)
+    effective = pair.carrying_gears[0].face_width
+    assert 22e-3 < effective < 25e-3
+    assert wide == pytest.approx(alike * 20e-3 / effective, rel=1e-4)
 
 
 @pytest.mark.parametrize("offset", [0.0, 4e-3, -9e-3])
