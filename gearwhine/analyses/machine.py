@@ -121,6 +121,8 @@ def gears(
     pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
     document = gears_document(pairs)
     if point is not None and case.housing is not None:
+        for pair in document["pairs"]:
+            pair["misalignment_seats"] = "rigid"
         message = "the misalignment is that of bearings in rigid seats; load and run find it with the housing"
         add_warnings(document, [warning("rigid seats", message)])
 

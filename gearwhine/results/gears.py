@@ -604,7 +604,8 @@ def _mesh(pair: Document) -> list[str]:
     if origin != "default" or pair["mean_force_n"]:
         misalignment = pair.get("misalignment_rad")
         words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
-        lines.append(words[0].upper() + words[1:])
+        in_seats = " in rigid seats" if pair.get("misalignment_seats") and origin == "operating point" else ""
+        lines.append(words[0].upper() + words[1:] + in_seats)
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
         f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "

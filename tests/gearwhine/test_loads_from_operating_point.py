@@ -297,6 +297,24 @@ def test_check_and_gears_say_which_misalignment_they_take(
         file.write_text(dump_case(parse_case(bare)), encoding="utf-8")
         assert run_command([command, str(file), "-q", *["--verbose"] * (command == "check")]) == 0
         assert expected in capsys.readouterr().out
+    # Beside a housing, which `gears` does not solve, it says whose misalignment it is.
+    assert (
+        run_command(
+            [
+                "gears",
+                "small-gearbox",
+                "-q",
+                "--set",
+                "gear_pair.0.misalignment=found",
+                "-o",
+                str(tmp_path / "out"),
+                "--json",
+            ]
+        )
+        == 0
+    )
+    (pair,) = json.loads(capsys.readouterr().out)["pairs"]
+    assert (pair["misalignment_from"], pair["misalignment_seats"]) == ("operating point", "rigid")
     assert run_command(["check", "spur-pair", "-q", "-v"]) == 0
     assert "misalignment taken as 0, as the case gives none; `gearwhine load` finds it" in capsys.readouterr().out
 
