@@ -19,6 +19,8 @@ from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.gears.contact.sliding_friction import sliding_friction
 from coupling.gears.geometry.pair import mesh_frequency
+from coupling.machine.base_motion import base_loads, gravity_load
+from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import (
     Component,
     HousingComponent,
@@ -26,31 +28,14 @@ from coupling.machine.components import (
     RotorComponent,
     pedestal_component,
 )
-from coupling.machine.connectors import (
-    ContactConnector,
-    GearMesh,
-    LinearConnector,
-    MountedBearing,
-    NonlinearConnector,
-    RollingLaw,
-    ShaftDashpots,
-    Sliding,
-    SpeedTable,
-    shaft_dashpots,
-)
+from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
+from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
 from coupling.machine.load_shuttling import shuttling_loads
-from coupling.machine.loads import (
-    UNLOADED,
-    AnyTorque,
-    CoordinateLoads,
-    MachineCoordinates,
-    MachineLoads,
-    base_loads,
-    gravity_load,
-    largest_torques,
-)
+from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
+from coupling.machine.mounted_parts import GearMesh, MountedBearing
+from coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from coupling.statics.mean_mesh import mean_meshes

@@ -24,8 +24,8 @@ from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from coupling.machine.axial_location import AxialLocation, axial_support
+from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
-from coupling.machine.connectors import GearMesh, MountedBearing, MountedGear, RollingLaw, ShaftDashpots
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -37,6 +37,7 @@ from coupling.machine.gear_train import (
     require_balanced_outputs,
 )
 from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
+from coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from coupling.machine.parts import (
     CONSTANT,
     Driving,
@@ -49,6 +50,7 @@ from coupling.machine.parts import (
     require_stations,
     rotor_with_gears,
 )
+from coupling.machine.shaft_dashpots import ShaftDashpots
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response

@@ -19,7 +19,6 @@ from meshes.quality import edge_lengths, shape_numbers
 from meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
 
 _NEAR = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
-_CORNER_TRIANGLES = {3: ((0, 1, 2),), 4: ((0, 1, 2), (0, 2, 3))}
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
     for block, members in zip(mesh.blocks, np.split(body, mesh.block_ends), strict=True):
         of_node[block.nodes] = members[:, None]
     triangles = np.concatenate(
-        [block.nodes[:, triangle] for block in mesh.boundary for triangle in _CORNER_TRIANGLES[block.of.n_corners]]
+        [block.nodes[:, triangle] for block in mesh.boundary for triangle in block.of.corner_triangles]
     )
     places = mesh.points[triangles]
     middle = places.mean(axis=1)

@@ -60,6 +60,11 @@ class ElementKind:
         """Number of corners, which are the first nodes."""
         return len(_CORNERS[self.corners])
 
+    @property
+    def corner_triangles(self) -> tuple[tuple[int, int, int], ...]:
+        """Corners of the plane triangles that a facet is divided into."""
+        return tuple((0, corner, corner + 1) for corner in range(1, self.n_corners - 1))
+
     @cached_property
     def edges(self) -> IntArray:
         """Corners at the ends of each edge, shape (n_edges, 2)."""

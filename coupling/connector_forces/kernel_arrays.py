@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.machine.connectors import BearingLaw, GapLaw, NonlinearConnector, RollingLaw
+from coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
+from coupling.machine.connectors import NonlinearConnector
 from rotors.rolling_bearings import BallRow
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,8 +7,9 @@ from typing import Literal
 
 from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError
+from coupling.machine.base_motion import BaseHarmonic
 from coupling.machine.driving_frequencies import element_passes as passing_frequencies
-from coupling.machine.loads import BaseHarmonic, TorqueRipple
+from coupling.machine.loads import TorqueRipple
 
 _TWO_PI = 2.0 * math.pi
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from coupling.machine.connectors import MountedBearing
+from coupling.machine.mounted_parts import MountedBearing
 from rotors.rolling_bearings import BallRow, RollingBearing, Row, SphericalRollerRow
 
 _BOTH = frozenset((1, -1))

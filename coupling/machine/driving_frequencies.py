@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import ToothContact
-from coupling.machine.connectors import RollingLaw
+from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.coupled_system import CoupledSystem
 from rotors.rolling_bearings import characteristic_frequencies
 

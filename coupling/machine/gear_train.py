@@ -23,8 +23,9 @@ from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.errors import InterferenceError, NoContactError
 from coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
 from coupling.gears.geometry.profile import meshing_rotations
-from coupling.machine.connectors import GearMesh
-from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques, trains
+from coupling.machine.coordinates import trains
+from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
+from coupling.machine.mounted_parts import GearMesh
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""

@@ -11,10 +11,11 @@ from coupling.gears.geometry.blank import CoreLength, blank_around
 from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.beam import shear_modulus
+from coupling.machine.base_motion import BaseMotion
 from coupling.machine.components import HousingComponent
-from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
-from coupling.machine.loads import AnyTorque, BaseMotion, Drive, ShaftForce
+from coupling.machine.loads import AnyTorque, Drive, ShaftForce
+from coupling.machine.mounted_parts import MountedBearing
 from rotors import Disc, Rotor, Segment
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow

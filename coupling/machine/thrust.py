@@ -13,8 +13,8 @@ import numpy as np
 
 from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry
-from coupling.machine.connectors import MountedBearing
 from coupling.machine.gear_train import turning_senses
+from coupling.machine.mounted_parts import MountedBearing
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
 

@@ -24,8 +24,8 @@ import numpy.typing as npt
 from coupling.gears import GearPairGeometry
 from coupling.gears.contact.sliding_friction import SlidingFriction
 from coupling.machine.connectors import ContactConnector, Sliding
+from coupling.machine.coordinates import MachineCoordinates
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.loads import MachineCoordinates
 from coupling.machine.mesh_kinematics import LineOfAction
 
 FloatArray = npt.NDArray[np.float64]

@@ -26,7 +26,8 @@ from coupling.errors import CouplingError
 from coupling.gears.loaded.contact_pressure import mesh_pressure
 from coupling.gears.loaded.face_load import FaceLoad, face_load_factor
 from coupling.gears.loaded.transmission_error import LoadedMesh
-from coupling.machine.connectors import MountedBearing, RollingLaw
+from coupling.machine.bearing_laws import RollingLaw
+from coupling.machine.mounted_parts import MountedBearing
 from coupling.statics.static_model import (
     FaceContactLaw,
     StaticPair,

@@ -13,8 +13,8 @@ from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.machine.components import HousingComponent
-from coupling.machine.connectors import MountedBearing
 from coupling.machine.loads import ShaftForce, Torque
+from coupling.machine.mounted_parts import MountedBearing
 from coupling.statics.connector_equilibrium import ConnectedStructure
 from coupling.statics.operating_point import (
     BearingLoad,

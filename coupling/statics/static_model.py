@@ -16,8 +16,9 @@ from coupling.gears.contact.face_slices import face_slices, face_stations
 from coupling.gears.loaded.face_load import FaceContact
 from coupling.gears.loaded.gear_pair import GearPair
 from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.machine.connectors import GapLaw, MountedBearing
+from coupling.machine.bearing_laws import GapLaw
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
+from coupling.machine.mounted_parts import MountedBearing
 from rotors.analyses.static_stiffness import StaticShaft
 from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
@@ -66,7 +67,7 @@ class RollingElementLaw:
 
 @dataclass(frozen=True, eq=False)
 class RadialGapLaw:
-    """A ring around the shaft, touched beyond a gap, see :class:`coupling.machine.connectors.GapLaw`."""
+    """A ring around the shaft, touched beyond a gap, see :class:`coupling.machine.bearing_laws.GapLaw`."""
 
     law: GapLaw
 

@@ -24,7 +24,8 @@ import numpy.typing as npt
 from coupling.assembly import CoupledMachine
 from coupling.connector_forces.kernel_arrays import bearing_arrays
 from coupling.errors import CouplingError
-from coupling.machine.connectors import LinearConnector, MountedGear, NonlinearConnector
+from coupling.machine.connectors import LinearConnector, NonlinearConnector
+from coupling.machine.mounted_parts import MountedGear
 from coupling.machine.speed_profile import SpeedProfile
 from coupling.machine.tooth_friction import friction_of
 from coupling.time.settings import MotionRecord, TransientOutputs

@@ -262,8 +262,8 @@ class Base(Table):
         import numpy as np
 
         from coupling import BaseMotion
-        from coupling.machine.loads import BaseHarmonic as BuiltHarmonic
-        from coupling.machine.loads import BaseHistory as BuiltHistory
+        from coupling.machine.base_motion import BaseHarmonic as BuiltHarmonic
+        from coupling.machine.base_motion import BaseHistory as BuiltHistory
 
         parts: list[BuiltHarmonic | BuiltHistory] = [
             BuiltHarmonic(

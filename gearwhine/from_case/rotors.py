@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from coupling import RollingLaw, ShaftGear
 from coupling.gears import Gear
-from coupling.machine.connectors import BearingLaw
+from coupling.machine.bearing_laws import BearingLaw
 from coupling.machine.parts import rotor_with_gears
 from gearwhine.case import Bearing, Case, CaseError, Problem, RollingStiffness, StopStiffness
 from gearwhine.case import Gear as GivenGear

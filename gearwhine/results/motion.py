@@ -9,7 +9,7 @@ from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
 if TYPE_CHECKING:
-    from coupling.machine.connectors import GearMesh
+    from coupling.machine.mounted_parts import GearMesh
     from coupling.periodic.response import PeriodicResponse
     from coupling.periodic.superposition import SuperposedResponse
     from coupling.signals.spectrum import SignalParts

@@ -13,7 +13,7 @@ from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, NamedParts, 
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
-    from coupling.machine.connectors import GearMesh
+    from coupling.machine.mounted_parts import GearMesh
     from coupling.periodic.continuation import ResponseCurve
     from coupling.periodic.response import PeriodicResponse
     from coupling.periodic.superposition import SuperposedResponse

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from housing.errors import HousingError
-from housing.fem.surface import closest_on_triangles
+from housing.fem.nearest_point import closest_on_triangles
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

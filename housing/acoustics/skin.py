@@ -12,7 +12,8 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from housing.errors import HousingError
-from housing.fem.surface import closest_on_triangles, triangle_middles
+from housing.fem.nearest_point import closest_on_triangles
+from housing.fem.outer_facets import triangle_middles
 from meshes import Mesh
 from meshes.elements import KINDS, Facets
 

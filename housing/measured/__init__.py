@@ -8,7 +8,7 @@
 - :func:`candidate_points`, :func:`plan_survey`, :func:`planned_geometry` -- sensor placement, as a :class:`SurveyPlan`.
 """
 
-from housing.fem.surface import outer_facets as outer_facets
+from housing.fem.outer_facets import outer_facets as outer_facets
 from housing.measured.alignment import Alignment as Alignment
 from housing.measured.alignment import MappedSurvey as MappedSurvey
 from housing.measured.alignment import RigidMotion as RigidMotion

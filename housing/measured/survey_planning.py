@@ -15,7 +15,8 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.fem.surface import NearestOnSurface, outer_facets, sample_surface
+from housing.fem.nearest_point import NearestOnSurface
+from housing.fem.outer_facets import outer_facets, sample_surface
 from housing.measured.survey_data import MeasuredGeometry
 from housing.model.patches import points_matrix
 from meshes import Mesh

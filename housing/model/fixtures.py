@@ -16,7 +16,7 @@ from scipy import sparse
 
 from housing.errors import HousingError
 from housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
-from housing.fem.surface import SurfacePoint, surface_point
+from housing.fem.nearest_point import SurfacePoint, surface_point
 from housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
 from meshes import Mesh
 

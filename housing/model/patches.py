@@ -12,7 +12,8 @@ from scipy import sparse
 
 from housing.errors import HousingError
 from housing.fem.matrices import NOTHING, Matrices, NodeBlocks
-from housing.fem.surface import IntArray, SurfacePoint, SurfaceQuadrature, surface_quadrature
+from housing.fem.nearest_point import SurfacePoint
+from housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
 from meshes import Mesh, box_facets, circle_facets, plane_facets
 from meshes.elements import Facets
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from housing.errors import HousingError
-from housing.fem.surface import surface_point
+from housing.fem.nearest_point import surface_point
 from housing.model.patches import patch_matrix, point_matrix
 from meshes import Mesh
 

@@ -17,8 +17,8 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
+from coupling.machine.base_motion import BaseHarmonic, BaseHistory, participations
 from coupling.machine.components import rotor_component
-from coupling.machine.loads import BaseHarmonic, BaseHistory, participations
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, static_deflection
 
 FloatArray = npt.NDArray[np.float64]

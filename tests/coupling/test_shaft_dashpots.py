@@ -7,7 +7,7 @@ import pytest
 
 from coupling import CoupledMachine, MountedBearing, assemble_machine, coupled_modes
 from coupling.machine.components import rotor_component
-from coupling.machine.connectors import ShaftDashpots, shaft_dashpots
+from coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)

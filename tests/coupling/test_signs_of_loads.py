@@ -9,9 +9,9 @@ import pytest
 from coupling.gears import Gear, GearPairGeometry
 from coupling.gears.stiffness.hertz import line_contact
 from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from coupling.machine.base_motion import BaseHistory, _velocities, participations
 from coupling.machine.components import HousingComponent, rotor_component
 from coupling.machine.load_shuttling import load_arms, shuttling_loads
-from coupling.machine.loads import BaseHistory, _velocities, participations
 from coupling.machine.thrust import ThrustPair, axial_forces
 from coupling.signals.spectrum import averaged_spectrum
 from rotors import Rotor, Segment, ShaftMaterial, modal_rotor

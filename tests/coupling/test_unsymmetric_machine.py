@@ -25,9 +25,10 @@ from coupling import (
 )
 from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
 from coupling.linear.frequency_response import mesh_error_response, unbalance_response
+from coupling.machine.base_motion import BaseHarmonic, BaseHistory
 from coupling.machine.components import HousingComponent, pedestal_component, rotor_component
-from coupling.machine.connectors import ShaftDashpots
-from coupling.machine.loads import BaseHarmonic, BaseHistory, BowReactions, Drive, TorqueRipple
+from coupling.machine.loads import BowReactions, Drive, TorqueRipple
+from coupling.machine.shaft_dashpots import ShaftDashpots
 from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor
 from rotors.analyses.harmonic_response import frequency_response
 

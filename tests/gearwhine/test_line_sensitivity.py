@@ -14,7 +14,7 @@ from coupling.gears.loaded.transmission_error import loaded_transmission_error, 
 from coupling.linear import mesh_harmonics
 from coupling.linear.housing_rates import HousingRates
 from coupling.linear.mesh_harmonics import Line, LineModel
-from coupling.machine.connectors import MountedBearing
+from coupling.machine.mounted_parts import MountedBearing
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import adjoint
 from coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing

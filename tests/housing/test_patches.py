@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from housing import HousingError, Patch
-from housing.fem.surface import surface_point
+from housing.fem.nearest_point import surface_point
 from housing.model.patches import patch_center, patch_matrix, point_matrix, rigid_motions
 from meshes import GeometryError, Mesh
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures
-from housing.fem.surface import NearestOnSurface, surface_point, surface_quadrature
+from housing.fem.nearest_point import NearestOnSurface, surface_point
+from housing.fem.surface import surface_quadrature
 from housing.model.seats import seat_matrix, sensor_port
 from meshes import Mesh
 from meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facet_normals, pick_facets
