@@ -1,4 +1,4 @@
-r"""Mesh harmonics: response of the machine about its operating point, its outputs at sensors and in sound, gradients.
+"""Mesh harmonics: response of a machine about its operating point to loaded transmission error and load shuttling.
 
 About the operating point a mesh under its mean force F acts as its mean mesh stiffness k and damping c, driven by its
 loaded transmission error e(t) and by the moments of its shuttling load. At a mesh harmonic ω the motion q of the
@@ -6,398 +6,214 @@ machine is
 
     Z q = f,      Z = K + iωC - ω² I,      f = Σ k e d + moments of shuttling,
 
-K and C with the tangents of bearings and meshes, d the directions of the meshes. A line is an output J(q) of this
-motion, such as the amplitude of a sensor or the sound power (:mod:`coupling.linear.line_outputs`), with the adjoint
-load g: dJ = Re gᵀ dq. One adjoint solve for each line gives its derivative by any parameter of the machine,
-
-    Zᵀ μ = g,      dJ = Re [μᵀ (df - dZ q)] + ∂J
-
-(Choi and Kim, *Structural Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the frequency response), with
-∂J its change at the same motion. Of a sensor this is the gradient of one point, of the sound power one over the
-housing's surface; the sound power is that of the same linear lines.
-
-*Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports
-(:mod:`coupling.linear.housing_rates`). Its modes and residual modes are a fixed basis for the derivative. The output
-errs by the product of what the basis lacks of the motion and of the adjoint field, the derivative by either. So both
-fields must be exact in it, which residual modes of bearings and sensors are nearly, and the harmonic responses of the
-housing's finite-element matrices to the loads of both fields make them
-(:func:`housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of these
-matrices, of which that of any other basis differs by second order.
-
-*Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
-these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
-deflections and approaches of flanks, central differences of the laws, are the gradient of the output by the static
-coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative. The energy of the
-flanks has continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to which
-short steps converge. k is a second derivative: at each phase it has a step where a slice of the face comes into touch.
-Its mean over a mesh period is continuous, its mean over some phases is constant but for such steps. So its differences
-are taken over ten times as many phases and over many steps, and are good to a tenth of the derivative by a tilt.
-
-A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
-with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
-
-Left out are the change of mean mesh forces where meshes share a torque, that of the ratios ζ and of dashpots, friction
-of the teeth, and all that is not linear about the mean mesh: contact loss and the variation of k over the mesh period
-times the motion.
+K and C with the tangents of bearings and meshes, d the directions of the meshes. Both excitations of a mesh are
+periodic with it, and their phases are those of one mesh period: at a harmonic they add as complex numbers, and one may
+be far above the other at a sensor. A transmissibility by transmission error alone misses the second.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.errors import CouplingError
+from coupling.assembly import CoupledMachine
 from coupling.gears import ToothContact
-from coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
-from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.linear.housing_rates import HousingRates
-from coupling.linear.line_outputs import LineOutput, SensorAmplitude
-from coupling.linear.mesh_excitation import HARMONICS, MeshHarmonicModel, Response
-from coupling.machine.connectors import LinearConnector
-from coupling.statics.operating_point import BearingLoad, OperatingPoint
-from coupling.statics.sensitivity import deflection_slope, rigid_slope
-from rotors.rolling_bearings import rolling_state
+from coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    hunting_period_mesh,
+    loaded_transmission_error,
+    mesh_period_phases,
+    transmission_error_phasors,
+)
+from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_GAP_STEP = 1e-6  # step over the flanks' compression, in the differences of transmission error and shuttling
-_STIFFNESS_STEP = 0.01  # the step in the differences of k, which jumps where a slice comes into touch
-_STIFFNESS_POINTS = 2000  # number of phases of a mesh period in the differences of k
-_BEARING_STEP = 1e-4  # step over a bearing's deflection, in the differences of its tangent
-_SHAFT_STEP = 1e-5  # step over the shaft's length, in the differences of its motions
+HARMONICS = 12
+"""Largest number of harmonics of a mesh."""
+_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
+_SAME = 1e-9  # relative difference below which frequencies are equal
 
 
 @dataclass(frozen=True, eq=False)
-class Line(Response):
-    """Line of an output at a mesh harmonic, with the response.
+class Response:
+    """Motion of the machine at a mesh harmonic.
 
     Attributes
     ----------
-    output : LineOutput
-    value : float
-        Output J, in its unit.
-    adjoint : ndarray of complex, shape (n,)
-        Adjoint state μ, output per unit of a load.
+    frequency : float
+        Circular frequency ω [rad/s].
+    causes : tuple of (int, int)
+        For each mesh that drives the motion, number of its contact in the system and harmonic of its mesh frequency.
+    motion : ndarray of complex, shape (n,)
+        Motion q by the coordinates of the system.
     """
 
-    output: LineOutput
-    value: float
-    adjoint: ComplexArray
+    frequency: float
+    causes: tuple[tuple[int, int], ...]
+    motion: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
-class _GapRates:
-    """Derivatives of a loaded contact by the gap of its flanks at the j stations of the face.
+class ResponseParts(Response):
+    """Motion of the machine at a mesh harmonic, and its parts.
 
     Attributes
     ----------
-    stiffness : ndarray, shape (j,)
-        Derivative of k [N/m per m].
-    error : ndarray of complex, shape (j, harmonics)
-        Derivative of e [m per m].
-    shuttling : ndarray of complex, shape (j, harmonics, n)
-        Derivative of the moments on the coordinates.
+    by_error, by_shuttling : ndarray of complex, shape (n,)
+        Motions by the transmission errors and by the load shuttling of the meshes that drive it; q is their sum.
     """
 
-    stiffness: FloatArray
-    error: ComplexArray
-    shuttling: ComplexArray
+    by_error: ComplexArray
+    by_shuttling: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
-class LineModel(MeshHarmonicModel):
-    """A machine linear about its operating point, driven by its loaded meshes.
+class MeshHarmonicModel:
+    """A machine linear about its mean load, driven by its loaded meshes.
 
     Attributes
     ----------
     machine : CoupledMachine
-        Machine assembled about the operating point.
-    point : OperatingPoint
-    pairs : tuple of LoadedGearPair
-        Loaded pairs of the machine's meshes.
-    found : tuple of bool
-        Whether the gap of each pair's flanks is that of the operating point.
+        Assembled about its operating point.
     """
 
-    point: OperatingPoint
-    pairs: tuple[LoadedGearPair, ...]
-    found: tuple[bool, ...]
+    machine: CoupledMachine
 
-    def lines(self, limit: float, count: int) -> tuple[Line, ...]:
-        """Return the highest lines of each sensor, the highest of all first.
+    @cached_property
+    def contact(self) -> ContactState:
+        """Contacts about their mean forces."""
+        return mean_contact(self.machine.system)
+
+    @cached_property
+    def loaded(self) -> tuple[int, ...]:
+        """Numbers of the contacts that carry a mean force and turn."""
+        force = self.contact.force
+        contacts = self.machine.system.contacts
+        return tuple(
+            n
+            for n, contact in enumerate(contacts)
+            if force is not None and force[n] > 0.0 and contact.mesh_frequency != 0.0
+        )
+
+    def responses(self, limit: float) -> tuple[Response, ...]:
+        """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""
+        return tuple(
+            Response(w, causes, linalg.solve(self._dynamic(w), self._load(causes)))
+            for w, causes in self._harmonics(limit)
+        )
+
+    def parts(self, limit: float) -> tuple[ResponseParts, ...]:
+        """Solve the motions of `responses` with their parts by transmission error and by load shuttling."""
+        parts = []
+        for w, causes in self._harmonics(limit):
+            loads = np.stack([self._error_load(causes), self._shuttling_load(causes)], axis=1)
+            by_error, by_shuttling = linalg.solve(self._dynamic(w), loads).T
+            parts.append(ResponseParts(w, causes, by_error + by_shuttling, by_error, by_shuttling))
+        return tuple(parts)
+
+    def dynamic_stiffness(self, frequency: float) -> ComplexArray:
+        """Z at a frequency [rad/s], shape (n, n)."""
+        return self._dynamic(frequency)
+
+    def transmission_error(
+        self, number: int, mesh: LoadedMesh, *, hunting_period: int, count: int = HARMONICS
+    ) -> ComplexArray:
+        """Harmonics of a loaded mesh's transmission error at t = 0 [m], shape (count,).
 
         Parameters
         ----------
-        limit : float
-            Highest frequency [rad/s].
+        number : int
+            Number of the contact in the system, which gives the phase and the mesh frequency.
+        mesh : LoadedMesh
+            Loaded mesh of the flanks of this contact, or of flanks in their place.
+        hunting_period : int
+            Number of mesh periods that the phases of ``mesh`` cover.
         count : int
-            Number of lines of each sensor.
-
-        Raises
-        ------
-        CouplingError
-            For less than one line.
         """
-        if count < 1:
-            raise CouplingError(f"{count} lines of each sensor; expected 1 or more")
-        responses = self.responses(limit)
-        lines = []
-        for name, row in self.machine.sensor_rows.items():
-            output = SensorAmplitude(name, row, self.housing)
-            heard = [(output.value(response.frequency, response.motion), response) for response in responses]
-            heard.sort(key=lambda pair: -pair[0])
-            lines += [self.line(output, one) for value, one in heard[:count] if value > 0.0]
-        return tuple(sorted(lines, key=lambda one: -one.value))
+        contact = self.machine.system.contacts[number]
+        phasors = transmission_error_phasors(mesh, count, hunting_period)
+        phasors = phasors.conj() if contact.mesh_frequency < 0.0 else phasors
+        orders = np.arange(1, count + 1)
+        return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * orders * contact.phase))
 
-    def line(self, output: LineOutput, response: Response) -> Line:
-        """Take an output of a motion, and solve its adjoint state."""
-        w, motion = response.frequency, response.motion
-        adjoint = linalg.solve(self._dynamic(w).T, output.adjoint_load(w, motion))
-        return Line(w, response.causes, motion, output, output.value(w, motion), adjoint)
+    def shuttling_loads(self, number: int, law: ToothContact, force: float) -> dict[int, ComplexArray]:
+        """Moments of load shuttling by harmonic, of the flanks ``law`` under a force [N], shape (n,) each."""
+        rate = abs(self.machine.system.contacts[number].mesh_frequency)
+        loads = self.machine.shuttling(number, law, force)[1]
+        return {round(load.frequency / (2.0 * np.pi * rate)): load.amplitude for load in loads}
 
-    def bearing_loads(self, line: Line, bearing: str) -> tuple[ComplexArray, ComplexArray]:
-        """Return the loads of a bearing on its seat, x, y, z and about x, y, in the motion and in the adjoint field.
+    def _dynamic(self, w: float) -> ComplexArray:
+        stiffness, damping = self._matrices
+        return np.asarray(stiffness + 1j * w * damping - w**2 * np.eye(len(stiffness)))
 
-        Returns
-        -------
-        load : ndarray of complex, shape (5,)
-            Load [N, N m].
-        adjoint : ndarray of complex, shape (5,)
-            Output per unit of the seat's motion [1/m, 1/rad].
-        """
-        law = self._connector(bearing)
-        loads = np.zeros((2, 5), dtype=np.complex128)
-        loads[0, list(law.axes)] = self._dynamic_force(law, line.frequency, line.motion)
-        loads[1, list(law.axes)] = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
-        return loads[0], loads[1]
+    @cached_property
+    def _matrices(self) -> tuple[FloatArray, FloatArray]:
+        return linear_matrices(self.machine.system, self.contact)
 
-    def by_static(self, line: Line) -> FloatArray:
-        """Differentiate a line's output by the coordinates of the static machine, shape (n_static,)."""
-        tangent = self.point.tangent
-        total = np.zeros(len(tangent.stiffness))
-        for load in self.point.bearings:
-            total += tangent.bearings[load.name] @ self._by_bearing_deflection(line, load.name)
-        for number in self.loaded:
-            mesh, _ = self.machine.flanks(number)
-            if number in self._gap_rates:
-                contact = self.point.pairs[mesh].pair.contact
-                by_gap = self._by_gap(line, number)
-                # The gap is the mean approach less that at the stations.
-                by_approach = float(by_gap.sum()) * contact.face_mean
-                by_approach[:-1] -= by_gap
-                total += tangent.pairs[mesh] @ by_approach
+    def _harmonics(self, limit: float) -> list[tuple[float, tuple[tuple[int, int], ...]]]:
+        """Frequencies of the mesh harmonics up to a limit [rad/s], ascending, and the meshes that drive each."""
+        harmonics: list[tuple[float, tuple[tuple[int, int], ...]]] = []
+        every = [
+            (2.0 * np.pi * h * abs(self.machine.system.contacts[n].mesh_frequency), (n, h))
+            for n in self.loaded
+            for h in range(1, HARMONICS + 1)
+        ]
+        for w, cause in sorted(every):
+            if w > limit * (1.0 + _SAME):
+                break
+            if harmonics and w <= harmonics[-1][0] * (1.0 + _SAME):
+                harmonics[-1] = (harmonics[-1][0], (*harmonics[-1][1], cause))
+            else:
+                harmonics.append((w, (cause,)))
+        return harmonics
+
+    def _load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+        """Return f by the meshes alone, shape (n,): torque ripple of a mesh's frequency has no part in it."""
+        return self._error_load(causes) + self._shuttling_load(causes)
+
+    def _error_load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+        """Return Σ k e d, shape (n,)."""
+        system = self.machine.system
+        total = np.zeros(system.size, dtype=np.complex128)
+        for number, harmonic in causes:
+            direction = system.contacts[number].direction
+            total += self.contact.stiffness[number] * self._errors[number][harmonic - 1] * direction
         return total
 
-    def by_bearing_stiffness(self, line: Line, bearing: str) -> float:
-        """Differentiate the output by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
-        law = self._connector(bearing)
-        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        return -float((adjoint @ law.stiffness @ moved).real)
-
-    def by_bearing_position(self, line: Line, bearing: str) -> float:
-        """Differentiate the output by a bearing's position on its shaft, towards +z, at the same static motions."""
-        law, axes = self._connector(bearing), list(self._connector(bearing).axes)
-        force = self._dynamic_force(law, line.frequency, line.motion)
-        against = self._dynamic_force(law, line.frequency, line.adjoint, transposed=True)
-        load = self.point.bearing(bearing)
-        slope = self._bearing_slope(load)[axes]
-        direct = -float(((slope @ line.adjoint) @ force + against @ (slope @ line.motion)).real)
-        # The bearing's static deflection changes with its place too.
-        return direct + float(self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load))
-
-    def by_housing(self, line: Line, rates: HousingRates) -> FloatArray:
-        """Differentiate the output by parameters of the housing, at the same operating point, shape (p,)."""
-        coordinates, w = self.housing, line.frequency
-        motion, adjoint = line.motion[coordinates], line.adjoint[coordinates]
-        dynamic = rates.stiffness - w**2 * rates.mass + 1j * w * rates.damping
-        total = -np.einsum("a,pab,b->p", adjoint, dynamic, motion, optimize=True).real
-        for number, bearings in enumerate(rates.bearings):
-            for name, rows in bearings.items():
-                law = self._connector(name)
-                at_bearing = rows[list(law.axes)]
-                force = self._dynamic_force(law, w, line.motion)
-                against = self._dynamic_force(law, w, line.adjoint, transposed=True)
-                total[number] += float(((at_bearing @ adjoint) @ force + against @ (at_bearing @ motion)).real)
-            total[number] += self._by_seats(line, rates, number)
-            total[number] += line.output.by_housing(rates, number, w, line.motion)
-        return np.asarray(total)
-
-    def stepped_bearing_stiffness(self, line: Line, bearing: str, part: float) -> float:
-        """Change of the output by a factor 1 + part on a bearing's tangent, the response solved anew."""
-        law = self._connector(bearing)
-        change = part * law.directions @ law.stiffness @ law.directions.T
-        return self._solved_anew(line, self._dynamic(line.frequency) + change)
-
-    def stepped_bearing_position(self, line: Line, bearing: str, step: float) -> float:
-        """Change of the output as a bearing moves along its shaft, the response solved anew."""
-        law, load = self._connector(bearing), self.point.bearing(bearing)
-        inner = law.stiffness + 1j * line.frequency * law.damping
-        moved = law.directions + step * self._bearing_slope(load)[list(law.axes)].T
-        change = moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
-        by_tangent = self._by_bearing_deflection(line, bearing) @ deflection_slope(self.point, load)
-        return self._solved_anew(line, self._dynamic(line.frequency) + change) + step * float(by_tangent)
-
-    def stepped_housing(self, line: Line, rates: HousingRates, number: int, step: float) -> float:
-        """Change of the output by a step of a parameter of the housing, the response solved anew.
-
-        Matrices and ports change to first order, so that resonances move with them.
-        """
-        coordinates, w = self.housing, line.frequency
-        dynamic = self._dynamic(w)
-        change = rates.stiffness[number] - w**2 * rates.mass[number] + 1j * w * rates.damping[number]
-        dynamic[coordinates, coordinates] += step * change
-        for name, rows in rates.bearings[number].items():
-            law = self._connector(name)
-            moved = law.directions.copy()
-            moved[coordinates] -= step * rows[list(law.axes)].T
-            inner = law.stiffness + 1j * w * law.damping
-            dynamic += moved @ inner @ moved.T - law.directions @ inner @ law.directions.T
-        moved_output = line.output.moved(rates, number, step)
-        return self._solved_anew(line, dynamic, moved_output) + step * self._by_seats(line, rates, number)
-
-    def _by_seats(self, line: Line, rates: HousingRates, number: int) -> float:
-        """Differentiate the output by the seats' motions in the static field, through the bearings' tangents."""
-        # The deflection is that of the shaft against its seat.
-        return -sum(
-            float(self._by_bearing_deflection(line, name) @ moved) for name, moved in rates.static[number].items()
-        )
-
-    def _solved_anew(self, line: Line, dynamic: ComplexArray, output: LineOutput | None = None) -> float:
-        """Change of the output with another dynamic stiffness."""
-        motion = linalg.solve(dynamic, self._load(line.causes))
-        return (output or line.output).value(line.frequency, motion) - line.value
+    def _shuttling_load(self, causes: tuple[tuple[int, int], ...]) -> ComplexArray:
+        """Return the moments of load shuttling, shape (n,)."""
+        total = np.zeros(self.machine.system.size, dtype=np.complex128)
+        for number, harmonic in causes:
+            if harmonic in self._shuttling[number]:
+                total += self._shuttling[number][harmonic]
+        return total
 
     @cached_property
-    def housing(self) -> slice:
-        """Place of the housing among the coordinates."""
-        components = self.machine.system.components
-        place = next(n for n, part in enumerate(components) if part is self.machine.housing)
-        first = sum(part.size for part in components[:place])
-        return slice(first, first + components[place].size)
+    def _errors(self) -> dict[int, ComplexArray]:
+        """Return e of every loaded contact by harmonic."""
+        contacts = self.machine.system.contacts
+        return {n: self._error(n, self._mesh(n, contacts[n].contact)) for n in self.loaded}
 
     @cached_property
-    def _gap_rates(self) -> dict[int, _GapRates]:
-        """Derivatives of the loaded contacts whose flanks follow the operating point."""
-        rates = {}
-        for number in self.loaded:
-            mesh, back = self.machine.flanks(number)
-            law = self.machine.meshes[mesh].contact
-            # Even flanks, such as those of spur gears in the middle, have no slices and no first-order change.
-            if self.found[mesh] and law.faces is not None:
-                rates[number] = self._gap_rates_of(number, law, back)
-        return rates
-
-    def _gap_rates_of(self, number: int, law: ToothContact, back: bool) -> _GapRates:
-        assert law.faces is not None
+    def _shuttling(self) -> dict[int, dict[int, ComplexArray]]:
+        """Return the moments of every loaded contact by harmonic."""
         assert self.contact.force is not None
-        system, faces = self.machine.system, law.faces
-        rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
-        compression = force / float(self.contact.stiffness[number])
-        over = lagrange(face_stations(faces.face_width), faces.z)
-        stiffness = np.zeros(FACE_STATIONS)
-        error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
-        shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
+        contacts, force = self.machine.system.contacts, self.contact.force
+        return {n: self.shuttling_loads(n, contacts[n].contact, float(force[n])) for n in self.loaded}
 
-        def moved(station: int, step: float) -> ToothContact:
-            opened = replace(law, faces=replace(faces, gap=faces.gap + step * over[:, station]))
-            return opened.back_flanks if back else opened
+    def _mesh(self, number: int, law: ToothContact, points: int = _POINTS) -> LoadedMesh:
+        """Mesh of the contact law ``law`` under the mean force of a contact."""
+        assert self.contact.force is not None
+        force = float(self.contact.force[number])
+        if law.hunting_period > 1:
+            return hunting_period_mesh(law, force)
+        return loaded_transmission_error(law, force, mesh_period_phases(law, points))
 
-        for station in range(FACE_STATIONS):
-            for way in (1.0, -1.0):
-                step = way * _STIFFNESS_STEP * compression
-                far = self._mesh(number, moved(station, step), _STIFFNESS_POINTS)
-                stiffness[station] += far.mean_mesh_stiffness / (2.0 * step)
-                step = way * _GAP_STEP * compression
-                near = moved(station, step)
-                error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
-                for load in self.machine.shuttling(number, near, force)[1]:
-                    order = round(load.frequency / (2.0 * np.pi * rate))
-                    if order <= HARMONICS:
-                        shuttling[station, order - 1] += load.amplitude / (2.0 * step)
-        return _GapRates(stiffness, error, shuttling)
-
-    def _by_gap(self, line: Line, number: int) -> FloatArray:
-        """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
-        rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
-        contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
-        along, deflection = line.adjoint @ contact.direction, line.motion @ contact.direction
-        damping = np.zeros(FACE_STATIONS)
-        if self.pairs[mesh].pair.damping is None:
-            # c = 2 ζ sqrt(k m)
-            damping = 0.5 * float(self.contact.damping[number]) / stiffness * rates.stiffness
-        total = -(rates.stiffness + 1j * line.frequency * damping) * along * deflection
-        for cause, harmonic in line.causes:
-            if cause == number:
-                driven = stiffness * rates.error[:, harmonic - 1]
-                driven += rates.stiffness * self._errors[number][harmonic - 1]
-                total = total + along * driven + rates.shuttling[:, harmonic - 1] @ line.adjoint
-        return np.asarray(total.real)
-
-    def _by_bearing_deflection(self, line: Line, bearing: str) -> FloatArray:
-        """Differentiate the output by a bearing's static deflection, through its tangent, shape (5,)."""
-        if bearing not in self._tangent_rates:
-            return np.zeros(5)
-        law = self._connector(bearing)
-        among_axes = np.ix_(list(law.axes), list(law.axes))
-        moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        return np.array(
-            [-float((adjoint @ change[among_axes] @ moved).real) for change in self._tangent_rates[bearing]]
-        )
-
-    @cached_property
-    def _tangent_rates(self) -> dict[str, FloatArray]:
-        """Derivatives of the tangents that follow the equilibrium by the bearing's deflection, shape (5, 5, 5) each."""
-        loads = self.point.bearings
-        return {
-            load.name: _tangent_rate(load) for load in loads if load.mounted.needs_load and load.rolling is not None
-        }
-
-    def _connector(self, bearing: str) -> LinearConnector:
-        number = next(n for n, one in enumerate(self.machine.bearings) if one.bearing.name == bearing)
-        return self.machine.system.linear[number]
-
-    def _dynamic_force(
-        self, law: LinearConnector, w: float, field: ComplexArray, *, transposed: bool = False
-    ) -> ComplexArray:
-        """Dynamic force (K + iωC) Dᵀ q of a bearing, or that of the transposed law."""
-        dynamic = law.stiffness + 1j * w * law.damping
-        return np.asarray((dynamic.T if transposed else dynamic) @ (law.directions.T @ field))
-
-    def _bearing_slope(self, load: BearingLoad) -> FloatArray:
-        """Slope along z of a bearing's deflection as it moves along its shaft, by the coordinates, shape (5, n)."""
-        mounted = load.mounted
-        rotor = next(rotor for rotor in self.machine.rotors if rotor.name == mounted.rotor)
-        length = self.point.shaft(mounted.rotor).part.shaft.length
-        at, step = mounted.bearing.at, _SHAFT_STEP * length
-        at_middle = rotor.motions(at)
-        # Strains jump at a bearing: the mean of both sides counts. Beyond the shaft's end there is no strain.
-        sides = [
-            (rotor.motions(at + way * step) - at_middle) / (way * step)
-            if 0.0 <= at + way * step <= length
-            else rigid_slope(at_middle)
-            for way in (1.0, -1.0)
-        ]
-        slope = self.machine.rows(rotor.name, 0.5 * (sides[0] + sides[1]))
-        if mounted.seat is not None:
-            assert self.machine.housing is not None
-            seat = self.machine.housing.seat_motions(mounted.seat, rotor.start + at)
-            slope = slope - self.machine.rows(self.machine.housing.name, rigid_slope(seat))
-        return np.asarray(slope)
-
-
-def _tangent_rate(load: BearingLoad) -> FloatArray:
-    """Differentiate a rolling bearing's tangent by its deflection, shape (5, 5, 5)."""
-    assert load.rolling is not None
-    bearing = load.rolling.bearing
-    step = _BEARING_STEP * float(np.linalg.norm(load.deflection[:3]))
-    # Step of the tilts by which the elements move as much.
-    steps = np.array([step] * 3 + [2.0 * step / bearing.rows[0].pitch_diameter] * 2)
-    rate = np.zeros((5, 5, 5))
-    for axis, size in enumerate(steps):
-        for way in (1.0, -1.0):
-            place = load.deflection + way * size * np.eye(5)[axis]
-            rate[axis] += way / (2.0 * size) * rolling_state(bearing, place).stiffness
-    return rate
+    def _error(self, number: int, mesh: LoadedMesh) -> ComplexArray:
+        """Harmonics of the transmission error of a contact at t = 0 [m], shape (harmonics,)."""
+        period = self.machine.system.contacts[number].contact.hunting_period
+        return self.transmission_error(number, mesh, hunting_period=period)

@@ -1,6 +1,6 @@
 r"""Level at a sensor by the flanks of one gear pair: aim of a tip relief.
 
-About the mean load the motion at the n-th harmonic of a mesh is that of :mod:`coupling.linear.mesh_excitation`,
+About the mean load the motion at the n-th harmonic of a mesh is that of :mod:`coupling.linear.mesh_harmonics`,
 
     Z q = f_n,      f_n = k e_n d + m_n,
 
@@ -25,7 +25,7 @@ from scipy import linalg
 
 from coupling.errors import CouplingError
 from coupling.gears import LoadedMesh, ToothContact
-from coupling.linear.mesh_excitation import MeshHarmonicModel
+from coupling.linear.mesh_harmonics import MeshHarmonicModel
 
 ComplexArray = npt.NDArray[np.complex128]
 

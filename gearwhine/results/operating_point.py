@@ -25,7 +25,7 @@ from gearwhine.results.bearing_lives import life_quantities
 from housing.acoustics.sound_levels import power_level
 
 if TYPE_CHECKING:
-    from coupling.linear.mesh_harmonics import Line
+    from coupling.linear.line_sensitivity import Line
     from coupling.statics.operating_point import OperatingPoint
     from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from coupling.linear.campbell import SystemCampbell, SystemCrossing
     from coupling.linear.frequency_response import FrequencyResponse
-    from coupling.linear.mesh_excitation import ResponseParts
+    from coupling.linear.mesh_harmonics import ResponseParts
     from gearwhine.solve.coupled_system import SolvedSystem
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}

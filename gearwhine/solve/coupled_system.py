@@ -16,7 +16,7 @@ from coupling.linear.frequency_response import (
     resonance_grid,
     unbalance_response,
 )
-from coupling.linear.mesh_excitation import MeshHarmonicModel, ResponseParts
+from coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
 from gearwhine.case.errors import NOTHING

@@ -34,7 +34,7 @@ from coupling.gears.loaded.optimal_relief import (
     WeightedHarmonics,
     transmission_error_harmonics,
 )
-from coupling.linear.mesh_excitation import MeshHarmonicModel
+from coupling.linear.mesh_harmonics import MeshHarmonicModel
 from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, require

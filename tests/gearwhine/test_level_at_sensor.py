@@ -14,7 +14,7 @@ from coupling.gears import TipRelief, loaded_transmission_error
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.gears.loaded.transmission_error import mesh_period_phases
 from coupling.linear.frequency_response import mesh_error_response
-from coupling.linear.mesh_harmonics import LineModel
+from coupling.linear.line_sensitivity import LineModel
 from coupling.linear.sensor_level import SensorLevel
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears

@@ -13,7 +13,7 @@ from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.transmission_error import loaded_transmission_error, mesh_period_phases, period_mean
 from coupling.linear import mesh_harmonics
 from coupling.linear.housing_rates import HousingRates
-from coupling.linear.mesh_harmonics import Line, LineModel
+from coupling.linear.line_sensitivity import Line, LineModel
 from coupling.machine.mounted_parts import MountedBearing
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import adjoint

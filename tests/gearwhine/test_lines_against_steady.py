@@ -10,7 +10,7 @@ from coupling.gears import ToothContact
 from coupling.gears.contact.tooth_force_kernels import tooth_force
 from coupling.gears.loaded.transmission_error import loaded_transmission_error
 from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.mesh_harmonics import LineModel
+from coupling.linear.line_sensitivity import LineModel
 from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears

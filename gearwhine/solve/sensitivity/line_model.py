@@ -1,7 +1,7 @@
 """Model of a case's lines: the machine linear about its operating point, and the derivatives of its housing.
 
 Lines are those of the sensors and, where the case has acoustics, of the sound power. The gradients are those of
-:mod:`coupling.linear.mesh_harmonics`, whose motion and adjoint fields must be exact in the housing's basis. Residual
+:mod:`coupling.linear.line_sensitivity`, whose motion and adjoint fields must be exact in the housing's basis. Residual
 modes of the sensors, which the modes of a solved housing do not have, bring the fields close; then the responses of the
 housing's finite-element matrices at the lines' frequencies to the loads in both fields join the basis, and the lines
 are solved again. The adjoint load of a sensor is one on a point, that of the sound power one on the whole skin.
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from coupling import Machine
 from coupling.linear.housing_rates import HousingRates
 from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.mesh_harmonics import Line, LineModel
+from coupling.linear.line_sensitivity import Line, LineModel
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case
 from gearwhine.from_case.driving import driving

@@ -1,7 +1,7 @@
 """Sensitivity ranking at an operating point: gear pairs, sensors' lines and sound by wall thickness and bearings.
 
-The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.mesh_harmonics`. Parameters of
-the housing are those of :mod:`gearwhine.solve.sensitivity.housing_changes`.
+The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.line_sensitivity`. Parameters
+of the housing are those of :mod:`gearwhine.solve.sensitivity.housing_changes`.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from coupling import Machine
 from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.mesh_harmonics import Line, LineModel
+from coupling.linear.line_sensitivity import Line, LineModel
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.case import Case, CaseError, Problem

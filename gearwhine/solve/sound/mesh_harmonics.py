@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.linear.line_outputs import SoundPower
-from coupling.linear.mesh_excitation import Response
-from coupling.linear.mesh_harmonics import Line, LineModel
+from coupling.linear.line_sensitivity import Line, LineModel
+from coupling.linear.mesh_harmonics import Response
 from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
 from housing.acoustics.power_gradient import PowerGradient
 from housing.acoustics.radiation import HousingRadiation, RadiatedSound
