@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import gearwhine as gw
 from coupling import amplitude_spectrum
-from coupling.signals.spectrum import spectrum_peaks
+from coupling.signals.peaks import spectral_peaks
 
 ORBIT_REVOLUTIONS = 5
 LAST_HZ = 1024.0
@@ -87,7 +87,7 @@ def spectra(signals: xr.DataArray, label: str) -> Figure:
         # Hann's window spreads the mean over the line beside it.
         shown = (spectrum.frequencies > 2.0 * spectrum.frequencies[1]) & (spectrum.frequencies <= LAST_HZ)
         axes.plot(spectrum.frequencies[shown], spectrum.amplitude[shown], lw=0.9)
-        for peak in spectrum_peaks(spectrum, count=3, limit=LAST_HZ):
+        for peak in spectral_peaks(spectrum, count=3, limit=LAST_HZ).rows:
             axes.annotate(f"{peak.frequency:.0f}", (peak.frequency, peak.amplitude), fontsize=8)
         axes.set_title(f"{name}; mean {signal.mean():.3g}", fontsize=9, loc="left")
         axes.set(xlim=(0.0, LAST_HZ), ylim=(0.0, None))

@@ -245,38 +245,6 @@ def signal_parts(signal: FloatArray) -> SignalParts:
 
 
 @dataclass(frozen=True)
-class Peak:
-    """A spectral peak: frequency [Hz] and amplitude in the signal's unit."""
-
-    frequency: float
-    amplitude: float
-
-
-def spectrum_peaks(
-    spectrum: Spectrum, *, count: int = 12, above: float = 0.0, limit: float = np.inf, floor: float = 1e-3
-) -> list[Peak]:
-    """Spectral peaks: the highest lines that are higher than both neighbours, highest first.
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Spectrum of one signal.
-    count : int
-        Largest number of peaks.
-    above, limit : float
-        Range of frequencies [Hz].
-    floor : float
-        Least height of a peak, relative to the highest line.
-    """
-    a, f = spectrum.amplitude, spectrum.frequencies
-    inner = np.arange(1, len(a) - 1)
-    peaks = inner[(a[inner] >= a[inner - 1]) & (a[inner] > a[inner + 1]) & (f[inner] > above) & (f[inner] <= limit)]
-    peaks = peaks[a[peaks] > floor * a[peaks].max(initial=0.0)]
-    peaks = peaks[np.argsort(-a[peaks], kind="stable")][:count]
-    return [Peak(float(f[i]), float(a[i])) for i in peaks]
-
-
-@dataclass(frozen=True)
 class PowerDensity:
     """A one-sided power spectral density, averaged over stretches of a record and without its mean.
 

@@ -79,7 +79,7 @@ def hann_tones(spectrum: Spectrum, weights: npt.ArrayLike, floor: float = 1e-6) 
         distance = low[:, None] - (low + offset)[loud]
         itself = np.arange(len(low))[:, None] == loud
         lower, upper = (
-            raw - amplitudes[:, loud] @ np.where(itself, 0.0, _hann(distance + side)).T
+            raw - amplitudes[:, loud] @ np.where(itself, 0.0, hann_line(distance + side)).T
             for raw, side in zip(pair, (0.0, 1.0), strict=True)
         )
         offset, amplitudes = _interpolated(lower, upper, weight)
@@ -94,13 +94,18 @@ def _size(lines: ComplexArray, weights: FloatArray) -> FloatArray:
 def _interpolated(lower: ComplexArray, upper: ComplexArray, weights: FloatArray) -> tuple[FloatArray, ComplexArray]:
     """Distances above the lower of two neighbouring lines, shape (t,), and amplitudes of tones, shape (n, t)."""
     below, above = _size(lower, weights), _size(upper, weights)
-    ratio = above / np.maximum(below, np.finfo(float).tiny)
-    offset = np.clip((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 1.0)
+    offset = tone_offset(below, above)
     # Least squares over both lines, so that a small line counts little.
-    low, high = _hann(-offset), _hann(1.0 - offset)
+    low, high = hann_line(-offset), hann_line(1.0 - offset)
     return offset, (low.conj() * lower + high.conj() * upper) / (np.abs(low) ** 2 + np.abs(high) ** 2)
 
 
-def _hann(distance: FloatArray) -> ComplexArray:
+def tone_offset(lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Distance δ of tones above the lower one of their two highest lines, by the heights of both, from 0 to 1."""
+    ratio = upper / np.maximum(lower, np.finfo(float).tiny)
+    return np.asarray(np.clip((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 1.0))
+
+
+def hann_line(distance: FloatArray) -> ComplexArray:
     """Value h(x) of the line x spacings above a tone of amplitude 1."""
     return np.asarray(line_height(distance, "hann") * np.exp(-1j * np.pi * distance))

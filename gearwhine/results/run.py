@@ -34,8 +34,9 @@ if TYPE_CHECKING:
 
     from coupling.linear.complex_modes import CoupledModes
     from coupling.signals import LineName
+    from coupling.signals.peaks import Peak
     from coupling.signals.sidebands import Sideband
-    from coupling.signals.spectrum import Peak, Spectrum
+    from coupling.signals.spectrum import Spectrum
     from coupling.time.transient import TransientFigures
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
@@ -151,7 +152,7 @@ class _Sensor(NamedTuple):
 
 
 def _sensor_peaks(row: _Sensor) -> list[_NamedPeak] | list[_UnnamedPeak]:
-    peaks, signature = row.transient.sensor_peaks(row.name), row.signature
+    peaks, signature = row.transient.sensor_peaks(row.name).rows, row.signature
     if signature is None:
         return [_UnnamedPeak(peak) for peak in peaks]
     lines = zip(peaks, signature.lines[row.name], strict=True)
@@ -234,7 +235,7 @@ def _contact(row: _Pair) -> str:
 
 
 def _force_peaks(row: _Pair) -> list[_NamedPeak] | list[_UnnamedPeak]:
-    peaks, signature = row.transient.force_peaks(_contact(row)), row.signature
+    peaks, signature = row.transient.force_peaks(_contact(row)).rows, row.signature
     if signature is None:
         return [_UnnamedPeak(peak) for peak in peaks]
     names = list(signature.force_lines.values())[row.number]

@@ -8,7 +8,8 @@ import numpy.typing as npt
 
 from coupling import signals as signature
 from coupling.linear.complex_modes import CoupledModes
-from coupling.signals.spectrum import Peak, Spectrum, Window
+from coupling.signals.peaks import SpectralPeaks
+from coupling.signals.spectrum import Spectrum, Window
 from gearwhine.solve.transient import SolvedTransient
 from gearwhine.solve.transient_record import Signals
 
@@ -274,12 +275,11 @@ def _stretch_spectra(solved: SolvedTransient, signals: Signals) -> _StretchSpect
 
 @dataclass(frozen=True)
 class _PeakLines:
-    """Lines at the peaks of a sensor.
+    """Lines at the p peaks of a sensor.
 
     Attributes
     ----------
-    places : ndarray of int, shape (p,)
-        Places of the peaks in the spectrum.
+    peaks : SpectralPeaks
     value : ndarray of complex, shape (p,)
         Lines of the sensor.
     housing : ndarray of complex, shape (p, n_modes)
@@ -288,7 +288,7 @@ class _PeakLines:
         Lines of the bearings' forces.
     """
 
-    places: npt.NDArray[np.int64]
+    peaks: SpectralPeaks
     value: ComplexArray
     housing: ComplexArray
     bearings: dict[str, ComplexArray]
@@ -300,34 +300,30 @@ def _peak_lines(solved: SolvedTransient, last: _StretchSpectra) -> dict[str, _Pe
     A sensor's line a has the root mean square amplitude A over the stretches, and the phase φ of its mean. A line x of
     another signal counts with its part in the line: by the cross-spectrum with the line, averaged over the stretches,
 
-        x = <x_s a_s*> / A e^{iφ},
+        x = <x_s a_s*> / <a_s a_s*> A e^{iφ},
 
     which is linear in x. So parts of the line that add up in each stretch add up to A e^{iφ}, and their shares are
-    Re <x_s a_s*> / A². Of a single stretch x is its own line.
+    Re <x_s a_s*> / <a_s a_s*>. Of a single stretch x is its own line.
     """
     assert last.housing is not None
-    places, sums = dict[str, npt.NDArray[np.int64]](), dict[str, ComplexArray]()
+    peaks = {name: solved.sensor_peaks(name) for name in solved.sensor_spectra}
     counts = [len(last.housing.amplitude), *(len(spectrum.amplitude) for spectrum in last.bearings.values())]
-    for name, spectrum in solved.sensor_spectra.items():
-        peaks = [peak.frequency for peak in solved.sensor_peaks(name)]
-        places[name] = np.searchsorted(spectrum.frequencies, peaks).astype(np.int64)
-        sums[name] = np.zeros((sum(counts), len(peaks)), dtype=np.complex128)
+    sums = {name: np.zeros((sum(counts), len(at)), dtype=np.complex128) for name, at in peaks.items()}
+    squares = {name: np.zeros(len(at)) for name, at in peaks.items()}
     stretches: Iterable[_StretchSpectra] = (last,)
     if solved.record.sampling.is_long:
         stretches = (_stretch_spectra(solved, signals) for signals in solved.record.stretches())
-    count = 0
     for stretch in stretches:
         assert stretch.housing is not None
         others = np.concatenate([stretch.housing.lines, *(forces.lines for forces in stretch.bearings.values())])
-        for name, at in places.items():
-            sums[name] += others[:, at] * stretch.sensors[name].lines[at].conj()
-        count += 1
+        for name, at in peaks.items():
+            own = at.of(stretch.sensors[name].lines)
+            sums[name] += at.of(others) * own.conj()
+            squares[name] += np.abs(own) ** 2
     found = {}
-    for name, at in places.items():
-        value = solved.sensor_spectra[name].lines[at]
-        housing, *bearings = np.split(
-            (sums[name] / count * value / np.abs(value) ** 2).T, np.cumsum(counts[:-1]), axis=1
-        )
+    for name, at in peaks.items():
+        value = at.amplitudes * np.exp(1j * np.angle(at.of(solved.sensor_spectra[name].lines)))
+        housing, *bearings = np.split((sums[name] / squares[name] * value).T, np.cumsum(counts[:-1]), axis=1)
         found[name] = _PeakLines(at, value, housing, dict(zip(last.bearings, bearings, strict=True)))
     return found
 
@@ -337,25 +333,25 @@ def _traced(
 ) -> tuple[TracedLine, ...]:
     spectrum, machine = solved.sensor_spectra[sensor], solved.machine
     assert machine.housing is not None
-    peaks, values = solved.sensor_peaks(sensor), lines.value
+    values = lines.value
     by_mode = signature.mode_parts(machine.housing, sensor, lines.housing, values)
-    angular = _TWO_PI * spectrum.frequencies[lines.places]
+    angular = _TWO_PI * lines.peaks.frequencies
     paths = signature.housing_paths(machine, angular, lines.bearings).at(sensor)
     free = values - paths.total
     mode_names = [f"housing mode {i} ({hz:.0f} Hz)" for i, hz in enumerate(frequencies.tolist(), start=1)]
     mode_names.append("local compliance")
     numbers = [*range(1, len(frequencies) + 1), None]
-    names = _named(solved, spectrum, peaks, modes)
+    names = _named(solved, spectrum, lines.peaks, modes)
     return tuple(
         TracedLine(
-            frequency=peak.frequency,
+            frequency=frequency,
             value=complex(values[i]),
             named=names[i],
             modes=_ranked(mode_names, by_mode[i], complex(values[i]), numbers),
             bearings=_ranked(list(paths.bearings), paths.by_bearing[i], complex(values[i])),
             free=_ranked(["free vibration"], free[i : i + 1], complex(values[i]))[0],
         )
-        for i, peak in enumerate(peaks)
+        for i, frequency in enumerate(lines.peaks.frequencies.tolist())
     )
 
 
@@ -370,11 +366,11 @@ def _ranked(
 
 
 def _named(
-    solved: SolvedTransient, spectrum: Spectrum, peaks: list[Peak], modes: CoupledModes
+    solved: SolvedTransient, spectrum: Spectrum, peaks: SpectralPeaks, modes: CoupledModes
 ) -> list[signature.LineName]:
     # Whole periods put every line exactly where it belongs; otherwise it may be half a spacing off.
     tolerance = (0.02 if spectrum.window == "uniform" else 0.5 + 1e-6) * spectrum.spacing
-    return signature.line_names(solved.machine, [peak.frequency for peak in peaks], tolerance, modes)
+    return signature.line_names(solved.machine, peaks.frequencies.tolist(), tolerance, modes)
 
 
 def _sidebands(

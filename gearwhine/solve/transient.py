@@ -8,7 +8,8 @@ import numpy.typing as npt
 
 import gearwhine
 from coupling import CoupledMachine, SpeedProfile
-from coupling.signals.spectrum import Peak, SignalParts, Spectrum, signal_parts, spectrum_peaks
+from coupling.signals.peaks import SpectralPeaks, spectral_peaks
+from coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
 from coupling.time.exponential_collocation import integration_method
 from coupling.time.histories import (
     Histories,
@@ -118,13 +119,13 @@ class SolvedTransient:
         """RMS acceleration of a sensor up to where the housing's modes are complete: beyond, none is its own [m/s²]."""
         return float(self.sensor_spectra[sensor].rms(self.trusted_limit))
 
-    def sensor_peaks(self, sensor: str) -> list[Peak]:
+    def sensor_peaks(self, sensor: str) -> SpectralPeaks:
         """Return the reported spectral peaks of a sensor, highest first."""
-        return spectrum_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
+        return spectral_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
 
-    def force_peaks(self, contact: str) -> list[Peak]:
+    def force_peaks(self, contact: str) -> SpectralPeaks:
         """Return the reported spectral peaks of a gear-mesh force, highest first."""
-        return spectrum_peaks(self.force_spectra[contact], count=8)
+        return spectral_peaks(self.force_spectra[contact], count=8)
 
     def back_flanks(self, pair: int) -> int | None:
         """Return the number of the contact of a gear pair's back flanks; None where they cannot meet."""

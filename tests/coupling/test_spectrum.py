@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from coupling import amplitude_spectrum
-from coupling.signals.spectrum import Spectrum, spectrum_peaks
 
 INTERVAL = 1e-3
 
@@ -83,24 +82,3 @@ def test_a_derivative_multiplies_lines() -> None:
     acceleration = amplitude_spectrum(-(w**2) * np.cos(w * times + 0.3), 1.0 / 500.0)
     assert acceleration.amplitude[20] / motion.amplitude[20] == pytest.approx(w**2, rel=1e-12)
     assert np.cos(acceleration.phase[20] - motion.phase[20]) == pytest.approx(-1.0, abs=1e-12)
-
-
-def lines(*amplitudes: float) -> Spectrum:
-    a = np.array(amplitudes)
-    return Spectrum(10.0 * np.arange(a.size, dtype=np.float64), a, np.zeros(a.size), "uniform")
-
-
-def test_peaks() -> None:
-    spectrum = lines(9.0, 0.1, 3.0, 0.2, 5.0, 4.0, 4.5, 0.1, 0.004, 0.001, 8.0)
-    found = [(peak.frequency, peak.amplitude) for peak in spectrum_peaks(spectrum)]
-    # Highest first; the mean and the last line have one neighbour each and are no peaks; 0.004 is below the floor.
-    assert found == [(40.0, 5.0), (60.0, 4.5), (20.0, 3.0)]
-    assert [peak.frequency for peak in spectrum_peaks(spectrum, count=2)] == [40.0, 60.0]
-    assert [peak.frequency for peak in spectrum_peaks(spectrum, above=20.0, limit=60.0)] == [40.0, 60.0]
-    assert [peak.frequency for peak in spectrum_peaks(spectrum, limit=59.0)] == [40.0, 20.0]
-    assert spectrum_peaks(spectrum, count=0) == []
-    assert spectrum_peaks(spectrum, above=1e3) == []
-    assert [peak.frequency for peak in spectrum_peaks(lines(0.0, 1.0, 0.0, 1e-4, 0.0), floor=1e-5)] == [10.0, 30.0]
-    assert spectrum_peaks(lines(0.0, 0.0, 0.0, 0.0)) == []
-    # Two equal neighbours are one peak.
-    assert [peak.frequency for peak in spectrum_peaks(lines(0.0, 2.0, 2.0, 0.0))] == [20.0]

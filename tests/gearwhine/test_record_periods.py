@@ -86,6 +86,9 @@ def test_a_ripple_between_the_lines_has_its_frequency_its_height_and_its_name() 
     assert tones.frequencies[near] == pytest.approx(412.5, abs=0.1)
     assert abs(tones.amplitudes[0, near]) == pytest.approx(expected, rel=0.01)
     peaks = {peak["name"]: peak for peak in result.document["gear_pairs"][0]["force_peaks"]}
-    assert peaks["1× ripple of 412.5 Hz on input"]["kind"] == "load"
+    told = peaks["1× ripple of 412.5 Hz on input"]
+    assert told["kind"] == "load"
+    assert told["frequency_hz"] == pytest.approx(412.5, abs=0.1)
+    assert told["amplitude_n"] == pytest.approx(expected, rel=0.01)
     assert peaks["2× pinion -> wheel - 1× ripple of 412.5 Hz on input"]["kind"] == "sideband"
     assert "mode" not in {peak["kind"] for peak in peaks.values()}

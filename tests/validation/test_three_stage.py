@@ -19,7 +19,8 @@ import numpy.typing as npt
 import pytest
 
 from coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
-from coupling.signals.spectrum import Spectrum, spectrum_peaks
+from coupling.signals.peaks import spectral_peaks
+from coupling.signals.spectrum import Spectrum
 from coupling.time.histories import histories, modal_rows, transient_outputs
 from gearwhine.case import Case, load_case
 from gearwhine.from_case.gear_pairs import pair_geometries, solve_gears
@@ -186,7 +187,7 @@ def test_mesh_force_of_stages_1_2_is_led_by_900_and_355_hz(
     run: Run, published: Callable[..., None], remark: Callable[[str, str], None]
 ) -> None:
     spectrum = run.lines(run.force[MESHES[0]])
-    first, second, third = spectrum_peaks(spectrum, count=3, limit=LAST_HZ)
+    first, second, third = spectral_peaks(spectrum, count=3, limit=LAST_HZ).rows
     published(TEXT, "mesh 1-2, highest line", 900.0, first.frequency, "Hz", abs=0.7)
     published(TEXT, "mesh 1-2, second line", 355.0, second.frequency, "Hz", abs=2.5)
     assert second.amplitude > 5.0 * third.amplitude
@@ -208,7 +209,7 @@ def test_shaft_frequency_and_echoes_of_the_other_stages_in_the_mesh_force(
     assert at_shaft > 4.0 * beside.max()
     # Stage 3's torsional mode, 280 Hz by itself, is heard in the mesh 1-2 as well.
     spectrum = run.lines(run.force[MESHES[0]])
-    echo = spectrum_peaks(spectrum, count=1, above=200.0, limit=330.0)[0]
+    echo = spectral_peaks(spectrum, count=1, above=200.0, limit=330.0).rows[0]
     assert 240.0 < echo.frequency < 290.0
     remark(
         TEXT,
@@ -291,9 +292,9 @@ def test_modal_responses_of_stage_1_fall_with_the_number_of_the_mode(
     assert np.all(np.diff(fixed) < 0.0)
     # "The ratio of fixed to varying signal magnitudes decreases as the mode number increases", once settled.
     assert np.all(np.diff(fixed / varying) < 0.0)
-    own = spectrum_peaks(run.lines(run.torsion[1]), count=1)[0]
+    own = spectral_peaks(run.lines(run.torsion[1]), count=1).rows[0]
     published(TEXT, "stage 1's first elastic torsional mode, highest line", 355.0, own.frequency, "Hz", abs=2.5)
-    second = spectrum_peaks(run.lines(run.torsion[2]), count=1)[0]
+    second = spectral_peaks(run.lines(run.torsion[2]), count=1).rows[0]
     assert second.frequency == pytest.approx(900.0, abs=0.7)
     whole = ", ".join(f"{ratio:.1f}" for ratio in fixed / run.torsion.std(axis=1))
     remark(
@@ -313,11 +314,11 @@ def test_first_lateral_modes_turn_with_the_shafts_and_stage_3_rings(
         spectrum = run.lines(coordinates)
         amplitude = np.sqrt((spectrum.amplitude**2).sum(axis=0))
         both = Spectrum(spectrum.frequencies, amplitude, amplitude, spectrum.window)
-        highest = [peak.frequency for peak in spectrum_peaks(both, count=2, limit=LAST_HZ)]
+        highest = [peak.frequency for peak in spectral_peaks(both, count=2, limit=LAST_HZ).rows]
         assert any(abs(frequency - 25.0) < 0.7 for frequency in highest)
         ringing[stage] = line_at(both, LATERAL_HZ[3][0]) / line_at(both, 25.0, 0.7)
         if stage == 3:
-            own = spectrum_peaks(both, count=1, limit=LAST_HZ)[0].frequency
+            own = spectral_peaks(both, count=1, limit=LAST_HZ).rows[0].frequency
             published(TEXT, "stage 3's own first lateral mode in its response", 110.0, own, "Hz", abs=2.5)
     assert ringing[3] > 1.0
     assert max(ringing[1], ringing[2]) < 0.5
