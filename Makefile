@@ -11,6 +11,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+# Byte code is written by what imports it: pip would compile all of the packages, most of which is never imported.
 PIP    := $(BIN)/pip --disable-pip-version-check -qq
 OUT    ?= results/nasa-gear-noise-rig
 
@@ -71,17 +72,17 @@ $(BIN)/python:
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing (about a minute) ..."
-	$(PIP) install -c constraints.txt -e .
+	$(PIP) install --no-compile -c constraints.txt -e .
 	@touch $@
 
 $(VENV)/.installed-docs: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing with the tools of the documentation site ..."
-	$(PIP) install -c constraints.txt -e .[docs]
+	$(PIP) install --no-compile -c constraints.txt -e .[docs]
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "Installing with the development tools (some minutes) ..."
-	$(PIP) install -c constraints.txt -e .[dev]
+	$(PIP) install --no-compile -c constraints.txt -e .[dev]
 	@touch $@ $(VENV)/.installed
 
 # The documentation site, from the pages in docs, the docstrings, the schema and the worked examples, which it runs.
