@@ -225,6 +225,11 @@ class FrequencyResponse:
         return np.asarray(tops[np.argsort(-size[tops], kind="stable")][:count])
 
 
+def touching_meshes(machine: CoupledMachine, contact: ContactState) -> tuple[int, ...]:
+    """Numbers of the gear meshes whose loaded flanks touch, drive flanks or, in a braked pair, back flanks."""
+    return tuple(mesh for mesh, flanks in enumerate(machine.loaded_contacts) if contact.stiffness[flanks] > 0.0)
+
+
 def mesh_error_response(
     machine: CoupledMachine,
     frequencies: FloatArray,
@@ -233,7 +238,7 @@ def mesh_error_response(
     contact: ContactState | None = None,
     modes: CoupledModes | None = None,
 ) -> FrequencyResponse:
-    """Response to a unit transmission error along one line of action [1/m].
+    """Response to a unit transmission error of the loaded flanks of a mesh, along their line of action [1/m].
 
     Parameters
     ----------
@@ -257,13 +262,14 @@ def mesh_error_response(
     if not 0 <= mesh < len(machine.meshes):
         raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
     state = mean_contact(machine.system) if contact is None else contact
-    tooth = machine.system.contacts[mesh]
-    law = state.stiffness[mesh] + 1j * frequencies * state.damping[mesh]
-    if state.stiffness[mesh] == 0.0:
+    flanks = machine.loaded_contacts[mesh]
+    tooth = machine.system.contacts[flanks]
+    law = state.stiffness[flanks] + 1j * frequencies * state.damping[flanks]
+    if state.stiffness[flanks] == 0.0:
         raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
     loads = law[:, None, None] * tooth.direction
     moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
-    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", mesh)
+    return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", flanks)
 
 
 def sensor_force_response(
@@ -372,7 +378,7 @@ def _named(
     unit: str,
     erring: int | None = None,
 ) -> FrequencyResponse:
-    """Response at sensors, bearings and meshes from coordinates (f, n); one mesh may have a unit error."""
+    """Response at sensors, bearings and meshes from coordinates (f, n); one contact may have a unit error."""
     system, rate = machine.system, 1j * frequencies
     loads = {}
     for connector in system.linear[: len(machine.bearings)]:

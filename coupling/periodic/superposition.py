@@ -32,6 +32,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError, PeriodicError
 from coupling.gears import ToothContact
 from coupling.gears import piecewise_cubic as piecewise
+from coupling.machine.base_motion import BaseHarmonic, BaseMotion
 from coupling.machine.connectors import ContactConnector
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
 from coupling.machine.driving_frequencies import driving_frequencies
@@ -65,6 +66,11 @@ class ExcitationGroup:
 
     meshes: tuple[int, ...] = ()
     frequencies: tuple[float, ...] = ()
+
+    def part_of(self, base: BaseMotion) -> BaseMotion:
+        """Return the harmonics of a base's motion that are excitations of this group."""
+        parts = (part for part in base.parts if isinstance(part, BaseHarmonic))
+        return replace(base, parts=tuple(part for part in parts if _among(part.frequency, self.frequencies)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -583,7 +583,12 @@ def _content(document: Document) -> Iterator[str | Table]:
     for response in document.get("transmissibility", ()):
         yield from _peaks(response)
     if document.get("transmissibility"):
-        yield from _lines(document.get("mesh_lines", []))
+        yield (
+            "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
+            "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: "
+            "`load --sensitivity` has the lines by both and what changes them, `steady` the motion."
+        )
+    yield from _lines(document.get("mesh_lines", []))
     if campbell := document.get("campbell"):
         yield from _crossings(campbell)
     yield from kept_sentence(document, SYSTEM_OPTIONS, "modes")
@@ -675,12 +680,7 @@ _LINES = 3  # of each sensor, the highest
 
 
 def _lines(lines: list[Document]) -> Iterator[str | Table]:
-    """Yield a note on load shuttling, and the highest lines of each sensor by transmission error, by it and by both."""
-    yield (
-        "These are by transmission error alone. Load shuttling, the moments of a load that moves along the face, "
-        "excites at the same frequencies and may lead in helical, crowned or misaligned teeth: `load --sensitivity` "
-        "has the lines by both and what changes them, `steady` the motion."
-    )
+    """Yield the highest lines of each sensor by transmission error, by load shuttling and by both."""
     rows: list[dict[str, Any]] = []
     for sensor in lines[0]["sensor_acceleration_m_per_s2"]["together"] if lines else ():
         of_sensor = [

@@ -14,6 +14,7 @@ from coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_response,
     resonance_grid,
+    touching_meshes,
     unbalance_response,
 )
 from coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
@@ -189,7 +190,7 @@ def _mesh_responses(
     contact: ContactState,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
     """Return responses to the error of each mesh by superposition, and their largest error against direct solutions."""
-    touching = [number for number in range(len(machine.meshes)) if contact.stiffness[number] > 0.0]
+    touching = touching_meshes(machine, contact)
     if not touching:
         return (), None
     limit = _frequency_limit(case, housing)

@@ -13,8 +13,10 @@ from coupling import CoupledMachine
 from coupling.gears.geometry.pair import pair_label
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
+from coupling.machine.base_motion import BaseMotion
 from coupling.machine.components import HousingComponent, housing_component
 from coupling.statics.operating_point import OperatingPoint
+from coupling.time.histories import Histories
 from gearwhine.case import Case, require
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import solve_gears
@@ -249,3 +251,14 @@ def _housing_component(
         sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
         participation=participation,
     )
+
+
+def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None, base: BaseMotion | None) -> Histories:
+    """Return histories as accelerometers show them: motion in space, not relative to a moving base."""
+    if base is None or housing is None:
+        return relative
+    absolute = {
+        name: relative.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, relative.times)
+        for name, port in housing.sensors.items()
+    }
+    return replace(relative, sensor_acceleration=absolute)

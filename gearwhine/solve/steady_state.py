@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
+from coupling.machine.base_motion import BaseMotion
 from coupling.periodic.continuation import ResponseCurve
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.superposition import (
@@ -25,9 +26,11 @@ from coupling.time.histories import histories as coupled_histories
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, with_sense_of_operation
+from gearwhine.from_case.machine import base_motion
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.machine import in_space
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -262,14 +265,15 @@ def solve_steady(
         return _superposed(case, machine, housing, speed, groups, progress)
     if not over_speed:
         response = periodic_response(machine.system)
-        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
+        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response, base_motion(case)),))
     low, high = _speed_range(case)
     low, high = with_sense_of_operation(case, (low, high))
+    base = base_motion(case)
     rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
     def seen(at: float, response: PeriodicResponse) -> None:
         if rms:
-            motion = _motion(case, machine.at_speed(at), housing, at, response)
+            motion = _motion(case, machine.at_speed(at), housing, at, response, base)
             for name, value in motion.sensor_rms.items():
                 rms[name].append(value)
 
@@ -284,7 +288,7 @@ def solve_steady(
     progress("the motions at the speed of operation")
     reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
     responses = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
-    motions = tuple(_motion(case, machine, housing, speed, response) for response in responses)
+    motions = tuple(_motion(case, machine, housing, speed, response, base) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
     loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
     return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)
@@ -298,7 +302,7 @@ def _loudest(
     for place in sorted(set(places.values())):
         speed = float(curve.speeds[place])
         machine_there = machine.at_speed(speed)
-        motion = _motion(case, machine_there, housing, speed, curve.motion(place))
+        motion = _motion(case, machine_there, housing, speed, curve.motion(place), base_motion(case))
         samples = len(motion.histories.times)
         record = motion.response.record(with_modal_rows(machine_there, transient_outputs(machine_there)), samples)
         modal = amplitude_spectrum(
@@ -349,10 +353,13 @@ def _superposed(
     progress: Progress,
 ) -> SolvedSteady:
     progress(f"the motions of {len(groups)} groups of excitations without a short common period")
-    superposed = superposed_response(machine.system, groups)
+    superposed, base = superposed_response(machine.system, groups), base_motion(case)
     motions = tuple(
-        replace(_motion(case, machine, housing, speed, group.response), excitation=group.name)
-        for group in superposed.motions
+        replace(
+            _motion(case, machine, housing, speed, one.response, None if base is None else one.group.part_of(base)),
+            excitation=one.name,
+        )
+        for one in superposed.motions
     )
     return SolvedSteady(machine, motions, superposed=superposed)
 
@@ -377,6 +384,7 @@ def _motion(
     housing: SolvedHousing | None,
     speed: float,
     response: PeriodicResponse,
+    base: BaseMotion | None,
 ) -> SteadyMotion:
     assert case.operation is not None
     ratio = abs(speed / case.operation.speed)
@@ -385,4 +393,4 @@ def _motion(
         limit = housing.trusted_limit_hz
     samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
     record = response.record(transient_outputs(machine), samples)
-    return SteadyMotion(speed, response, coupled_histories(machine, record), limit)
+    return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, base), limit)

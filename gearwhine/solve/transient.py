@@ -1,7 +1,7 @@
 """Transient of a case: time integration of the loaded machine; histories of sensors, gears and bearings."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,7 @@ from gearwhine.from_case.machine import base_motion
 from gearwhine.output.files import PRESENTATION, installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import ReducedHousing
+from gearwhine.solve.machine import ReducedHousing, in_space
 from gearwhine.solve.transient_record import (
     RECORD_BYTES,
     Arrays,
@@ -205,9 +205,11 @@ def solve_transient(
     modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
 
+    base = base_motion(case)
+
     def named(result: MotionRecord) -> Signals:
-        histories = _in_space(case, housing, coupled_histories(machine, result, turning))
-        return Signals(histories, modal_record(machine, result, modal, housing=traced))
+        relative = coupled_histories(machine, result, turning)
+        return Signals(in_space(relative, housing, base), modal_record(machine, result, modal, housing=traced))
 
     nothing = named(empty_record(machine, outputs))
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
@@ -222,7 +224,7 @@ def solve_transient(
     key = integration_key(*integration, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
     blocks: Blocks = _InMemory()
     if keep is not None:
-        blocks = keep(_with_code(fingerprint(key, base_motion(case)), chosen))
+        blocks = keep(_with_code(fingerprint(key, base), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     filter_state = nothing.columns if last is None else last["held"]
     integrated = integrate_blocks(
@@ -244,18 +246,6 @@ def solve_transient(
     return SolvedTransient(
         machine, case.operation.speed, method, turning, figures, record, stretch, of_sensors, of_meshes, limit
     )
-
-
-def _in_space(case: Case, housing: SolvedHousing | ReducedHousing | None, named: Histories) -> Histories:
-    """Return histories as accelerometers show them: motion in space, not relative to a moving base."""
-    base = base_motion(case)
-    if base is None or housing is None:
-        return named
-    absolute = {
-        name: named.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, named.times)
-        for name, port in housing.sensors.items()
-    }
-    return replace(named, sensor_acceleration=absolute)
 
 
 def _with_code(key: str, chosen: Sampling) -> str:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from coupling import CoupledMachine, ModesError, coupled_modes
 from coupling.linear.complex_modes import CoupledModes
 from coupling.linear.excitation_orders import excitation_lines
-from coupling.linear.frequency_response import mesh_error_response, resonance_grid
+from coupling.linear.frequency_response import mesh_error_response, resonance_grid, touching_meshes
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case
 from gearwhine.solve.sound.motion_lines import pulsating_efficiency
@@ -88,7 +88,7 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
         case.operation is None or case.operation.base is None
     )
     contact = mean_contact(machine.system)
-    touching = [number for number in range(len(machine.meshes)) if contact.stiffness[number] > 0.0]
+    touching = touching_meshes(machine, contact)
     heard = case.acoustics is not None and machine.housing is not None
     listens = machine.housing is not None and (machine.housing.sensors or heard)
     if not (steady and touching and listens and limit_hz > _LOWEST_HZ):

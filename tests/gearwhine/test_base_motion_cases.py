@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.terminal import shown_by
@@ -97,3 +98,31 @@ def test_sensors_show_the_motion_in_space() -> None:
     assert np.mean(solved.histories.sensor_acceleration["top"]) == pytest.approx(300.0, rel=0.02)
     # Sideways, along the right wall's normal, it does not.
     assert abs(np.mean(solved.histories.sensor_acceleration["right wall"])) < 6.0
+
+
+@pytest.mark.parametrize("hertz", [5500.0 / 240.0, 23.7])
+def test_sensors_of_a_steady_motion_show_it_in_space(hertz: float) -> None:
+    """Far below all modes everything moves with the base, in one motion of four turns and in superposed ones."""
+    base = {"harmonic": [{"frequency": f"{hertz!r} Hz", "y": "5 m/s^2", "phase": "20 deg"}]}
+    document = document_of("small-gearbox", base=base)
+    document["housing"]["box"]["mesh_size"] = "60 mm"
+    document["gear_pair"][0]["stiffness"] = {"model": "constant", "value": "2e8 N/m"}
+    result = gw.build(**document).steady()
+    assert (result.solved.superposed is None) == (hertz < 23.0)
+    motion, told = result.solved.motions[-1], result.document["motions"][-1]
+    (line,) = [one for one in motion.lines(motion.histories.sensor_acceleration["top"]) if abs(one[0] - hertz) < 0.1]
+    assert line[1] == pytest.approx(5.0, rel=0.01)
+    times = motion.histories.times
+    expected = 5.0 * np.cos(2.0 * np.pi * hertz * times + np.radians(20.0))
+    turned = np.exp(-2j * np.pi * hertz * times)
+    assert np.angle(motion.histories.sensor_acceleration["top"] @ turned) == pytest.approx(
+        np.angle(expected @ turned), abs=0.01
+    )
+    (sensor,) = [row for row in told["sensors"] if row["name"] == "top"]
+    assert sensor["rms_m_per_s2"] > 0.99 * 5.0 / np.sqrt(2.0)
+    # Sideways, along the right wall's normal, the base does not move it.
+    side = motion.histories.sensor_acceleration["right wall"]
+    assert abs(2.0 * np.mean(side * turned)) < 0.1
+    # The other motions, of excitations that are not the base's, have none of it.
+    for other in result.solved.motions[:-1]:
+        assert other.sensor_rms["top"] < 1.0

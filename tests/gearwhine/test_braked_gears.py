@@ -5,11 +5,14 @@ from functools import cache
 import numpy as np
 import pytest
 
+import gearwhine as gw
 from coupling.gears import loaded_transmission_error, mesh_stiffness
 from coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.results.system import sections
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, first_touch, solve_over_torques
+from gearwhine.sweep.resonances import find_resonances
 
 HELICAL = (
     "gear.*.module=3.066814498467792 mm",  # at 15 degrees the same centre distance
@@ -74,3 +77,35 @@ def test_harris_map_and_relief_of_a_braked_pair_are_those_of_its_back_flanks() -
     assert braked.optimum is not None
     assert driving.optimum is not None
     assert braked.optimum.unmodified[0] == pytest.approx(driving.optimum.unmodified[0], rel=5e-3)
+
+
+@pytest.mark.slow
+def test_transmissibility_lines_and_resonances_of_a_braked_machine_are_those_of_its_back_flanks() -> None:
+    """The machine is the same whichever gear is called the driver: its flanks that touch, and how it answers them."""
+    found = []
+    for case in (braked_case(), exchanged_case()):
+        document = case_document(case)
+        document["housing"]["box"]["mesh_size"] = "60 mm"
+        for bearing in document["bearing"]:
+            bearing["stiffness"] = {"matrix": np.diag([1.2e8, 1.2e8, 5e7, 0.0, 0.0]).tolist()}
+        study = gw.build(**document)
+        result, machine = study.system(), study.machine.assembled
+        resonances = find_resonances(study.case, machine, 2500.0)
+        assert resonances is not None
+        (response,) = result.solved.responses
+        (force,) = response.mesh_force.values()
+        found.append(
+            ({**response.sensor_acceleration, "force": force}, result.document["mesh_lines"], resonances, result)
+        )
+    (accelerations, lines, resonances, result), (others, other_lines, other_resonances, _) = found
+    assert list(accelerations) == ["top", "right wall", "force"]
+    for sensor, acceleration in accelerations.items():
+        np.testing.assert_allclose(acceleration, others[sensor], rtol=2e-3, atol=1e-6 * np.abs(acceleration).max())
+    assert len(lines) > 2
+    for line, other in zip(lines, other_lines, strict=True):
+        for by, of_sensors in line["sensor_acceleration_m_per_s2"].items():
+            assert of_sensors == pytest.approx(other["sensor_acceleration_m_per_s2"][by], rel=0.01, abs=1e-6)
+    np.testing.assert_allclose(resonances.frequencies, other_resonances.frequencies, rtol=1e-4)
+    np.testing.assert_allclose(resonances.response, other_resonances.response, atol=0.05)
+    shown = "".join(str(part) for section in sections(result.document) for part in section.content)
+    assert "by transmission error alone" in shown
