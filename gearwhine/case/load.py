@@ -18,7 +18,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from gearwhine.case.checks import check, warnings_of, without_changed
+from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, did_you_mean, problem_of
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document

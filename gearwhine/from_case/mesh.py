@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
-from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, did_you_mean
 from gearwhine.case.housing import Region
 from housing import Joint, Material

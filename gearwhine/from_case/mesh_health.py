@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.box import Box
-from gearwhine.case.check_housing import wall_volume
+from gearwhine.case.checks.housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
 from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of

@@ -14,7 +14,7 @@ from scipy import sparse
 
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_document, parse_case
 from gearwhine.case.box import wall_by_face
-from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import Location, key_of, look_up
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import amount, si_amount

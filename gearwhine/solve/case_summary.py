@@ -7,7 +7,7 @@ from typing import Any
 from coupling.gears import GearPairGeometry
 from coupling.machine.axial_location import AxialLocation
 from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
-from gearwhine.case.checks import axial_locations
+from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
     TakenMisalignment,

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearwhine.case import Bearing, Case, RollingStiffness
 from gearwhine.case.bearings import RollingCatalogue
-from gearwhine.case.check_housing import box_geometry
+from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.housing import Seat
 from gearwhine.output.quantity import warning
 from housing.model.seats import sensor_port

@@ -29,7 +29,7 @@ import tomli_w
 from scipy import sparse
 
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
-from gearwhine.case.checks import without_changed
+from gearwhine.case.checks.whole_case import without_changed
 from gearwhine.case.errors import UNSAID, Location, key_of
 from gearwhine.case.units import si_unit
 from gearwhine.from_case.mesh import build_mesh

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
-from gearwhine.case.checks import warnings_of
+from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.from_case.fixtures import build_attachments
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check

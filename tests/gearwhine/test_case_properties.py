@@ -220,6 +220,6 @@ def test_a_damping_table_is_sorted_by_frequency() -> None:
 def test_what_is_likely_not_meant_is_a_warning() -> None:
     document = document_of("small-gearbox")
     del document["housing"]["sensor"]
-    from gearwhine.case.checks import warnings_of
+    from gearwhine.case.checks.whole_case import warnings_of
 
     assert any("no [[housing.sensor]]" in warning for warning in warnings_of(parse_case(document)))

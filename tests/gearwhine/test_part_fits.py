@@ -6,7 +6,7 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case import load_case
-from gearwhine.case.checks import warnings_of
+from gearwhine.case.checks.whole_case import warnings_of
 
 BALLS = {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "52 mm", "width": "13 mm"}
 

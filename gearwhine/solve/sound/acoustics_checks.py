@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.check_machine import millimetres
+from gearwhine.case.checks.machine import millimetres
 from gearwhine.case.errors import did_you_mean
 from gearwhine.output.quantity import warning
 from housing import HousingError

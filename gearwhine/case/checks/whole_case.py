@@ -10,9 +10,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.case.bearings import Bearing, MatrixStiffness, RollingStiffness
-from gearwhine.case.check_acoustics import check_acoustics
-from gearwhine.case.check_housing import check_box, check_housing_form
-from gearwhine.case.check_machine import check_bearings, check_gears, check_running, check_shafts
+from gearwhine.case.checks.acoustics import check_acoustics
+from gearwhine.case.checks.housing import check_box, check_housing_form
+from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
 from gearwhine.case.errors import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft
 from gearwhine.case.overrides import parse_key_path, place_in_list

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from gearwhine.case.box import FACES, Box
-from gearwhine.case.check_machine import millimetres
+from gearwhine.case.checks.machine import millimetres
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean
 from gearwhine.case.fields import Patch
 from gearwhine.case.housing import Seat

@@ -1,0 +1,1 @@
+"""Checks of a case beyond single keys: by table, and across tables."""
