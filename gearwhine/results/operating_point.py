@@ -797,7 +797,8 @@ def misalignment_words(misalignment: float | None, origin: str, at_operating_poi
         return f"misalignment of {_MICRO * (misalignment or 0.0):z.4g} µrad taken, as the case gives it{beside}"
     if at_operating_point is None:
         return "misalignment left to the operating point"
-    return f"misalignment of {_MICRO * at_operating_point:z.2f} µrad taken, as the operating point has it"
+    taken = f"misalignment of {_MICRO * at_operating_point:z.2f} µrad"
+    return f"{taken} and the curvature of the flank gap taken, as the operating point has them"
 
 
 def _seats(load: Document) -> str:

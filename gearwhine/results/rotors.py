@@ -614,6 +614,7 @@ ROTORS = (
     _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode"),
     _numbers("torsional_mode", lambda rotor: rotor.torsional.frequencies, "torsional mode"),
     _numbers("whirl_mode", lambda rotor: rotor.whirl_deflection, "whirl mode"),
+    Quantity("seats", lambda solved: "rigid"),
     Rows("rotors", lambda solved: solved, ROTOR, "rotor"),
 )
 """Quantities of all rotors of a case."""
@@ -680,7 +681,9 @@ def _content(rotor: Document) -> Iterator[str | Table]:
     yield from _at_rest(rotor)
     yield from _whirl(rotor)
     yield from _critical_speeds(rotor)
-    yield from table_of(columns_of(ROLLING), rotor["rolling_bearings"], "Rolling bearings under their loads")
+    yield from table_of(
+        columns_of(ROLLING), rotor["rolling_bearings"], "Rolling bearings under their loads, in rigid seats"
+    )
     yield from _weight(rotor["static"])
     if response := rotor["unbalance_response"]:
         yield from table_of(_PROBES, response["probes"][:_MOST], "Response to unbalance and bow")

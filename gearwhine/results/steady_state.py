@@ -84,19 +84,24 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
             # The frequencies differ, so their powers add.
             "rms_m_per_s2": float(np.hypot.reduce([motion.sensor_rms[name] for motion in motions])),
             "lines": _lines(
-                motions, [motion.histories.sensor_acceleration[name] for motion in motions], "amplitude_m_per_s2"
+                motions,
+                [motion.histories.sensor_acceleration[name] for motion in motions],
+                "amplitude_m_per_s2",
+                motions[0].trusted_limit,
             ),
         }
         for name in motions[0].histories.sensor_acceleration
     ]
 
 
-def _lines(motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str) -> list[dict[str, Any]]:
-    """Return the highest lines of all motions together, each with its excitation where that has a name."""
+def _lines(
+    motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str, limit: float = np.inf
+) -> list[dict[str, Any]]:
+    """Return the highest lines of all motions together up to a limit [Hz], each with the name of its excitation."""
     lines = [
         {"frequency_hz": frequency, key: amplitude} | ({"excitation": motion.excitation} if motion.excitation else {})
         for motion, signal in zip(motions, signals, strict=True)
-        for frequency, amplitude in motion.lines(signal)
+        for frequency, amplitude in motion.lines(signal, limit)
     ]
     return sorted(lines, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 

@@ -78,14 +78,13 @@ class SteadyMotion:
         """Number of the highest lines of a signal that are reported."""
         return _LINES
 
-    def lines(self, signal: FloatArray) -> list[tuple[float, float]]:
-        """Frequencies [Hz] and amplitudes of a signal's highest lines up to the trusted limit.
+    def lines(self, signal: FloatArray, limit: float = np.inf) -> list[tuple[float, float]]:
+        """Frequencies [Hz] and amplitudes of a signal's highest lines up to a limit [Hz].
 
         Each is a whole number of times the period's frequency.
         """
         spectrum = self.spectrum(signal)
-        limit = self.trusted_limit * (1.0 + 1e-9)
-        inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit))
+        inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit * (1.0 + 1e-9)))
         highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:_LINES]
         return [
             (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]))
@@ -313,7 +312,7 @@ def _loudest(
             if places.get(name) != place:
                 continue
             spectrum = motion.spectrum(motion.histories.sensor_acceleration[name])
-            frequency, amplitude = motion.lines(motion.histories.sensor_acceleration[name])[0]
+            frequency, amplitude = motion.lines(motion.histories.sensor_acceleration[name], motion.trusted_limit)[0]
             number = int(np.argmin(np.abs(spectrum.frequencies - frequency)))
             line = spectrum.lines[number]
             shares = (row[: len(modal.lines)] * modal.lines[:, number] * line.conj()).real / abs(line) ** 2

@@ -290,7 +290,7 @@ def test_check_and_gears_say_which_misalignment_they_take(
     for angle, command, expected in (
         ("found", "check", "misalignment left to the operating point; `gearwhine load` finds it"),
         ("0.2 mrad", "check", "misalignment of 200 µrad taken, as the case gives it\n"),
-        ("found", "gears", "µrad taken, as the operating point has it"),
+        ("found", "gears", "µrad and the curvature of the flank gap taken, as the operating point has them"),
         ("0.2 mrad", "gears", "Misalignment of 200 µrad taken, as the case gives it\n"),
     ):
         bare["gear_pair"][0]["misalignment"] = angle

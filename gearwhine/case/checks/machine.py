@@ -103,6 +103,9 @@ def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
             )
 
 
+_BORE_ERROR = 1e-3  # offset of a seat below which it is one of manufacture [m]
+
+
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
     from coupling.machine.gear_train import LARGEST_OFFSET
@@ -114,6 +117,8 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
             f"(axis at {millimetres(rotor.axis[0])}, {millimetres(rotor.axis[1])}; "
             f"centre at {millimetres(seat.center[0])}, {millimetres(seat.center[1])})"
         )
+        if offset < _BORE_ERROR:
+            expected += "; what a bore out of place does to the flanks is errors.helix.slope of a gear"
         yield Finding(("bearing", index, "seat"), expected)
     wall = 0.0
     if draft.box is not None:
