@@ -42,7 +42,12 @@ from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
-from gearwhine.solve.plausibility import add_uncertainty, bearing_load_warnings, unstable_modes_warnings
+from gearwhine.solve.plausibility import (
+    add_uncertainty,
+    bearing_load_warnings,
+    settling_warnings,
+    unstable_modes_warnings,
+)
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
@@ -171,6 +176,8 @@ def run(
                 signature = solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
             add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
+            if signature is not None:
+                add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = solve_run_signature(case, transient)
             add_warnings(document, run_signature_warnings(case, transient))

@@ -595,6 +595,7 @@ ROTOR = (
     Part("torsional_response", lambda solved: solved.torsion, TORSION),
     Part("stiffness_map", lambda solved: solved.stiffness_map, STIFFNESS_MAP),
     Part("certificate", lambda solved: solved.rest.certificate, COUNT_CERTIFICATE),
+    Quantity("seats", lambda solved: "rigid"),
 )
 """Quantities of one rotor on grounded bearings."""
 
@@ -614,7 +615,6 @@ ROTORS = (
     _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode"),
     _numbers("torsional_mode", lambda rotor: rotor.torsional.frequencies, "torsional mode"),
     _numbers("whirl_mode", lambda rotor: rotor.whirl_deflection, "whirl mode"),
-    Quantity("seats", lambda solved: "rigid"),
     Rows("rotors", lambda solved: solved, ROTOR, "rotor"),
 )
 """Quantities of all rotors of a case."""

@@ -20,12 +20,16 @@ from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
 from gearwhine.output.quantity import warning
+from gearwhine.solve.signature import SolvedSignature, TracedLine
+from gearwhine.solve.transient import SolvedTransient
 from rotors.rolling_bearings import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
 _DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
 _ROUNDING = 1e-6  # part of the load below which a component counts as zero
+_SETTLED = 0.02  # free vibration at the begin of a record, as a part of that at the start, without a warning
+_HIGHEST = 5  # lines of a sensor that are looked at
 _OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
 
 
@@ -79,6 +83,42 @@ def bearing_load_warnings(
                 mean_force_n=actual.tolist(),
             )
         )
+    return warnings
+
+
+def settling_warnings(case: Case, transient: SolvedTransient, signature: SolvedSignature) -> list[dict[str, Any]]:
+    """Warn of high lines near coupled modes whose free vibration from the start is still there when the record begins.
+
+    Parameters
+    ----------
+    case : Case
+        With a transient at steady speed.
+    transient : SolvedTransient
+    signature : SolvedSignature
+        Its lines; the highest of each sensor count.
+    """
+    assert case.operation is not None
+    assert case.transient is not None
+    begin = transient.record.sampling.settings.record_from
+    near: dict[int, TracedLine] = {}
+    for lines in signature.lines.values():
+        for line in lines[:_HIGHEST]:
+            if line.named.mode is not None and line.named.kind != "mode":
+                near.setdefault(line.named.mode, line)
+    warnings = []
+    for mode, line in sorted(near.items()):
+        decay = -float(signature.modes.eigenvalues[mode].real)
+        left = float(np.exp(-decay * begin))
+        if decay <= 0.0 or left <= _SETTLED:
+            continue
+        turns = int(np.ceil(np.log(1.0 / _SETTLED) / decay * abs(case.operation.speed) / (2.0 * np.pi)))
+        hertz = float(signature.modes.frequencies_hz[mode])
+        message = (
+            f"{line.named.name} at {line.frequency:.5g} Hz stands near a coupled mode of {hertz:.5g} Hz whose free "
+            f"vibration has fallen to {100.0 * left:.2g} % of its start when the record begins, so the line may be "
+            f"off: take transient.discard = {turns} revolutions for {100.0 * _SETTLED:.0f} %, or `steady`"
+        )
+        warnings.append(warning("settling", message, frequency_hz=line.frequency, mode_hz=hertz, left=left))
     return warnings
 
 
