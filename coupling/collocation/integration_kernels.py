@@ -159,10 +159,10 @@ def integrate_elements(
         time, left = starts[element], sizes[element]
         whole, cuts_here = left, 0
         stop = time + whole * (1.0 - INSIDE)
-        slot = slots[element]
+        slot, reach = slots[element], left
         while True:
             if slot < 0:
-                slot = nearest_step_size(reference, steps, left, work)
+                slot = nearest_step_size(reference, steps, min(left, reach), work)
             elif steps.filled[slot] == 0:
                 fill_step(reference, steps, slot, work.integral, work.values)
             tries = 0
@@ -180,17 +180,23 @@ def integrate_elements(
                     at, which = first_switch(reference, contacts, time, h, stop, furthest, work)
                 if at * h > (1.0 - 1e-9) * left or at * h < 1e-11 * whole:
                     which = -1
-                if which < 0 or at > PLACES[ORDER - 1] or tries == _TRIES:
+                if which >= 0 and at <= PLACES[ORDER - 1] and tries < _TRIES:
+                    # Some places lie beyond the switch: solve again with a size that ends near it.
+                    closer = nearest_step_size(reference, steps, at * h, work)
+                    if closer != slot:
+                        tries, slot = tries + 1, closer
+                        continue
+                if solved:
                     break
-                # Some places lie beyond the switch: solve again with a size that ends near it.
-                closer = nearest_step_size(reference, steps, at * h, work)
-                if closer == slot:
-                    break
-                tries, slot = tries + 1, closer
+                # Where an element is long for the teeth's own vibration, the forces that the law sends back change
+                # the compressions by more than they came from: Newton's method may then circle around a balance, or
+                # there is none. Over a short one they hardly change them, and there is one balance.
+                shorter = nearest_step_size(reference, steps, 0.5 * min(h, left), work)
+                if shorter == slot:
+                    return count, cuts, NO_BALANCE
+                tries, slot, reach = 0, shorter, steps.size[shorter]
             if which >= 0:
                 part = at
-            if which < 0 and not solved:
-                return count, cuts, NO_BALANCE
             if count >= trace.start.size:
                 return count, cuts, NO_ROOM
             length = part * h
@@ -204,9 +210,8 @@ def integrate_elements(
                 z[i] = work.end[i]
             if left - length <= 1e-12 * whole:
                 break
-            cuts_here += 1
             if which >= 0:
-                cuts += 1
+                cuts, cuts_here = cuts + 1, cuts_here + 1
                 if columns.shape[0] > 0:
                     inside = 1e-5 * min(length, left - length)
                     x, v = interpolated(work.delta, which, part), interpolated(work.rate, which, part)

@@ -199,8 +199,9 @@ class PeriodMotion:
 
     @property
     def missing(self) -> float:
-        """Norm of the closure errors."""
-        return float(np.linalg.norm(self.misses))
+        """Norm of the closure errors; infinite where an unstable motion leaves none of their squares finite."""
+        with np.errstate(over="ignore"):
+            return float(np.linalg.norm(self.misses))
 
     def correction(self, misses: FloatArray | None = None, *, least: bool = False) -> FloatArray:
         """Newton correction that closes this motion, or one nearby with other closure errors, shape (K, 2 N).

@@ -16,7 +16,7 @@ The period is the common period of all excitations of the machine (`common_perio
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 
@@ -43,8 +43,15 @@ _SHORTEST_STEP = 1.0 / 64.0
 _MOST_SEGMENTS = 32
 _ROUNDING = 1e-11  # closure error of a closed motion, relative
 _FINEST = 12  # largest number of halvings of the coarsest element
+_FINER = 3  # number of halvings of the elements that the search tries
 _ROUNDS = 6  # rounds of time integration before the search fails
+_FIRST_ROUNDS = 2  # number of them before finer elements, and the search from damped teeth
 _PERIODS = 8  # periods of the first round, doubled in every further one
+_TURNED, _WATCHED = 16, 32  # periods before and while the growth of a disturbance is measured
+_CHAOTIC = 1.02  # growth in a period beyond which a motion is called chaotic
+_DAMPED = 64.0  # largest damping of the teeth over their own
+_LOSS_FACTOR = 1e-3  # least loss factor, at the fastest mesh frequency, that takes the place of the teeth's own
+_LONGEST_STRIDE, _SHORTEST_STRIDE = 0.7, 0.02  # largest and least change of the damping's logarithm in one step
 
 
 def common_period(system: CoupledSystem, period: float | None = None) -> float:
@@ -223,7 +230,7 @@ def periodic_response(
     ready = problem(system, period)
     level = 0 if not isinstance(start, PeriodicResponse) else max(start.level - 1, 0)
     state = np.zeros((ready.segments, ready.part.states)) if start is None else _states(ready, start)
-    motion, steps = _search(ready, level, state)
+    motion, level, steps = _search(ready, level, state)
     return refined(ready, motion, level, tolerance, steps)
 
 
@@ -280,14 +287,13 @@ def refined(
     """
     while level < _FINEST:
         finer = close(ready, ready.elements(level + 1), motion.starts)
+        if finer is None and near:
+            raise PeriodicError("elements half as large find no motion near that of the larger ones")
         if finer is None:
-            if near:
-                raise PeriodicError("elements half as large find no motion near that of the larger ones")
-            again, more = _search(ready, level + 1, motion.starts)
-            finer = again, more
-        better, more = finer
+            better, level, more = _search(ready, level + 1, motion.starts)
+        else:
+            better, level, more = finer[0], level + 1, finer[1]
         steps += more
-        level += 1
         # Rounding sets a floor to what a halving can show.
         moved = float(np.linalg.norm(better.starts - motion.starts, axis=1).max()) / ready.scale(better.start)
         monodromy_change = float(np.abs(better.monodromy - motion.monodromy).max(initial=0.0))
@@ -346,21 +352,129 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Period
     return None
 
 
-def _search(ready: Problem, level: int, state: FloatArray) -> tuple[PeriodMotion, int]:
-    """Search by Newton's method; where it stagnates, it is repeated after some periods of time integration."""
+def _search(ready: Problem, level: int, state: FloatArray) -> tuple[PeriodMotion, int, int]:
+    """Search for a closed motion; returns it, the level of its elements, and the number of Newton steps.
+
+    Newton's method comes first. Where it stagnates, it is repeated
+
+    - after some periods of time integration, which lead to a stable motion;
+    - with finer elements: over elements that are long for the vibration of the teeth, the end of a period jumps as its
+      start changes, and no motion may close at all;
+    - on the way from heavily damped teeth to the teeth as they are, which leads to an unstable motion too;
+    - after more periods of time integration.
+    """
     elements = ready.elements(level)
     closed = close(ready, elements, state)
     nearer = state if state.ndim == 1 else state[0]
+    damped: DampedMotion | None = None
     for turn in range(_ROUNDS):
         if closed is not None:
-            return closed
+            return closed[0], level, closed[1]
+        if turn == _FIRST_ROUNDS:
+            for _ in range(_FINER):
+                level += 1
+                elements = ready.elements(level)
+                closed = close(ready, elements, state)
+                if closed is not None:
+                    return closed[0], level, closed[1]
+            damped = _from_damped_teeth(ready, level, state)
+            if damped is not None and damped.factor == 1.0:
+                return damped.motion, level, damped.steps
         for _ in range(_PERIODS * 2**turn):
             nearer = integrate_period(ready.part, ready.contacts, elements, nearer, varied=False).end
         closed = close(ready, elements, nearer)
     if closed is not None:
-        return closed
-    raise PeriodicError(
-        f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in "
-        "time: it may be chaotic or repeat after several periods (give a multiple as period), or the start is far from "
-        "one; start from a neighbouring speed or from the end of a transient"
+        return closed[0], level, closed[1]
+    raise PeriodicError(_why_none(ready, elements, nearer, damped))
+
+
+def _why_none(ready: Problem, elements: Elements, state: FloatArray, damped: "DampedMotion | None") -> str:
+    """Message that no motion is found, with the evidence: growth of a disturbance, and a motion of damped teeth."""
+    text = (
+        f"no motion of period {ready.period:.6g} s found, not even after {_PERIODS * (2**_ROUNDS - 1)} periods in time"
     )
+    growth = _growth(ready, elements, state)
+    if growth > _CHAOTIC:
+        text += f": it is chaotic, a disturbance grows by a factor of {growth:.3g} a period"
+    else:
+        text += ": it may repeat after several periods (give a multiple as period), or the start is far from one"
+    if damped is not None:
+        floquet = multipliers(damped.motion.turn, ready.period)
+        text += (
+            f"; with {damped.factor:.3g} times the damping of the teeth there is "
+            f"{'a stable one' if floquet.stable else f'an unstable one (Floquet multiplier {floquet.largest:.4g})'}"
+        )
+    return text + "; start from a neighbouring speed or from the end of a transient"
+
+
+def _growth(ready: Problem, elements: Elements, state: FloatArray) -> float:
+    """Mean growth of a disturbance in a period of time integration: the exponential of the largest Lyapunov exponent.
+
+    The first periods turn the disturbance to the direction that grows most, and do not count.
+    """
+    along, total = np.ones(ready.part.states), 0.0
+    for number in range(-_TURNED, _WATCHED):
+        motion = integrate_period(ready.part, ready.contacts, elements, state)
+        state, along = motion.end, motion.turn @ along
+        length = float(np.linalg.norm(along))
+        along = along / length
+        total += math.log(length) if number >= 0 else 0.0
+    return math.exp(total / _WATCHED)
+
+
+@dataclass(frozen=True, eq=False)
+class DampedMotion:
+    """Closed motion with more damping of the teeth.
+
+    Attributes
+    ----------
+    motion : PeriodMotion
+    factor : float
+        Damping over the teeth's own, 1 where they are as they are.
+    steps : int
+        Number of Newton steps on the way.
+    """
+
+    motion: PeriodMotion
+    factor: float
+    steps: int
+
+
+def _from_damped_teeth(ready: Problem, level: int, state: FloatArray) -> DampedMotion | None:
+    """Follow the motion from heavily damped teeth, which hardly part, as far as possible to the teeth as they are.
+
+    None where there is none even with heavy damping.
+    """
+    fastest = 2.0 * np.pi * max([abs(one.mesh_frequency) for one in ready.system.contacts], default=0.0)
+    # Teeth without damping of their own have none to multiply.
+    least = ready.part.reference.stiffness * (_LOSS_FACTOR / fastest if fastest else 0.0)
+    way = last = math.log(_DAMPED)
+    stride, steps, starts = _LONGEST_STRIDE, 0, state
+    found: DampedMotion | None = None
+    while True:
+        try:
+            other = _with_damping(ready, math.expm1(way) * least, math.expm1(way)) if way else ready
+            closed = close(other, other.elements(level), starts)
+        except PeriodicError:
+            closed = None
+        if closed is not None:
+            steps += closed[1]
+            found, starts = DampedMotion(closed[0], math.exp(way), steps), closed[0].starts
+            stride = min(1.5 * stride, _LONGEST_STRIDE)
+            if way == 0.0:
+                return found
+        else:
+            way, stride = way + last, 0.5 * stride
+            if found is None or stride < _SHORTEST_STRIDE:
+                return found
+        last = min(stride, way)
+        way -= last
+
+
+def _with_damping(ready: Problem, least: FloatArray, part: float) -> Problem:
+    """Shooting problem with the damping of each contact raised by a part of its own, or by ``least`` [N s/m], (c,)."""
+    contacts = tuple(
+        replace(one, contact=replace(one.contact, damping=one.contact.damping + max(part * one.contact.damping, added)))
+        for one, added in zip(ready.system.contacts, least.tolist(), strict=True)
+    )
+    return problem(replace(ready.system, contacts=contacts), ready.period, ready)
