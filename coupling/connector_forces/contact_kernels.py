@@ -11,12 +11,21 @@ import numpy.typing as npt
 from coupling.connector_forces.bearing_kernels import evaluate_bearings
 from coupling.connector_forces.dense_kernels import solve_in_place
 from coupling.connector_forces.kernel_arrays import Bearings, Contacts, Scratch
-from coupling.gears.contact.tooth_force_kernels import friction_shares, ranked_penetration, tooth_force
+from coupling.gears.contact.tooth_force_kernels import (
+    friction_shares,
+    ranked_penetration,
+    tooth_energy,
+    tooth_force,
+    tooth_force_and_energy,
+    tooth_force_and_tangents,
+)
 from rotors.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 30
+_CONVERGED = 1e-13
+"""Error of the deflections, over the largest of them, at which Newton's iteration ends."""
 
 # Columns of the laws' table: results of coupling.gears.contact.tooth_force_kernels.tooth_force.
 FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
@@ -46,6 +55,39 @@ def evaluate_contact(
     law = tooth_force(phase, delta, rate, contacts.law, contacts.law_at[k])
     laws[row, FORCE], laws[row, TANGENT], laws[row, DAMPING] = law[0], law[1], law[2]
     laws[row, ENERGY], laws[row, PHASE_SLOPE], laws[row, TOUCHING] = law[3], law[4], law[5]
+
+
+@inner(inline="always")
+def evaluate_tangents(
+    contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray
+) -> None:
+    """Evaluate force and tangents of a contact into its row of the laws' table."""
+    phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
+    law = tooth_force_and_tangents(phase, delta, rate, contacts.law, contacts.law_at[k])
+    laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING] = law[0], law[1], law[2]
+
+
+@inner(inline="always")
+def _evaluate_with_energy(
+    contacts: Contacts, k: int, nominal_time: float, delta: float, rate: float, laws: FloatArray
+) -> None:
+    """Evaluate force, tangents and energy of a contact into its row of the laws' table."""
+    phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
+    law = tooth_force_and_energy(phase, delta, rate, contacts.law, contacts.law_at[k])
+    laws[k, FORCE], laws[k, TANGENT], laws[k, DAMPING], laws[k, ENERGY] = law[0], law[1], law[2], law[3]
+
+
+@inner(inline="always")
+def energy_at(
+    contacts: Contacts, k: int, nominal_time: float, delta: float, laws: FloatArray, known: float, rate: float
+) -> float:
+    """Energy in the teeth of a contact [J], from the row of the laws' table at a compression ``known`` near ``delta``.
+
+    ``rate`` is the rate at ``known``; the elastic force, which the law's damping hides, follows with the tangent.
+    """
+    phase = contacts.phase[k] + contacts.mesh_frequency[k] * nominal_time
+    force = laws[k, FORCE] - laws[k, DAMPING] * rate + laws[k, TANGENT] * (delta - known)
+    return tooth_energy(phase, delta, force, contacts.law, contacts.law_at[k])
 
 
 @inner()
@@ -85,12 +127,12 @@ def evaluate_friction(
 def evaluate_forces(contacts: Contacts, bearings: Bearings, nominal_time: float, scratch: Scratch) -> None:
     """Evaluate all nonlinear laws at the deflections and rates in ``scratch``: teeth, their friction, bearings.
 
-    Fills in the laws' table, the force along every direction, the friction's slopes, the bearings' tangents, and the
-    energy stored in the bearings.
+    Fills in the laws' table but for the phase slope and the touching pairs, the force along every direction, the
+    friction's slopes, the bearings' tangents, and the energy stored in the bearings.
     """
     delta, rate, laws, push = scratch.delta, scratch.rate, scratch.laws, scratch.push
     for k in range(contacts.phase.size):
-        evaluate_contact(contacts, k, nominal_time, delta[k], rate[k], laws, k)
+        _evaluate_with_energy(contacts, k, nominal_time, delta[k], rate[k], laws)
         push[k] = laws[k, FORCE]
         if contacts.friction_row[k] >= 0:
             evaluate_friction(contacts, k, nominal_time, delta[k], laws, push, scratch.drag[k])
@@ -98,6 +140,49 @@ def evaluate_forces(contacts: Contacts, bearings: Bearings, nominal_time: float,
         evaluate_bearings(
             bearings, contacts.phase.size, nominal_time, delta, push, scratch.tangents, scratch.bearing_work
         )
+
+
+@inner()
+def _stiffest(contacts: Contacts, bearings: Bearings, per: float, scratch: Scratch) -> float:
+    """Largest slope of a law's force so far: what a slope may change by within a small step.
+
+    A contact that touches anew has none yet, and one whose damping is held back has none that means anything.
+    """
+    laws, stiffest = scratch.laws, scratch.stiffest[0]
+    for k in range(contacts.phase.size):
+        if laws[k, FORCE] > 0.0:
+            stiffest = max(stiffest, laws[k, TANGENT] + laws[k, DAMPING] * per)
+    for number in range(bearings.preload.size):
+        count = bearings.first[number + 1] - bearings.first[number]
+        for i in range(count):
+            for j in range(count):
+                stiffest = max(stiffest, abs(scratch.tangents[number, i, j]))
+    scratch.stiffest[0] = stiffest
+    return float(stiffest)
+
+
+@inner()
+def _follow_tangents(contacts: Contacts, bearings: Bearings, per: float, scratch: Scratch) -> None:
+    """Take forces and the teeth's energy by their tangents to the deflections of the last Newton step."""
+    laws, drag, push, step, rate = scratch.laws, scratch.drag, scratch.push, scratch.residual, scratch.rate
+    c = contacts.phase.size
+    for k in range(c):
+        d = step[k, 0]
+        laws[k, ENERGY] += (laws[k, FORCE] - laws[k, DAMPING] * rate[k]) * d
+        rate[k] += per * d
+        if laws[k, FORCE] == 0.0:
+            continue
+        laws[k, FORCE] += (laws[k, TANGENT] + laws[k, DAMPING] * per) * d
+        push[k] = laws[k, FORCE]
+        row = contacts.friction_row[k]
+        if row >= 0:
+            push[row] += (drag[k, 0] + drag[k, 2] * per) * d
+            push[row + 1] += (drag[k, 1] + drag[k, 3] * per) * d
+    for number in range(bearings.preload.size):
+        first, end = bearings.first[number], bearings.first[number + 1]
+        for i in range(first, end):
+            for j in range(first, end):
+                push[c + i] += scratch.tangents[number, i - first, j - first] * step[c + j, 0]
 
 
 @inner(inline="always")
@@ -114,8 +199,9 @@ def solve_contact_forces(
 
     Fills in deflections, rates, laws and forces; returns whether the iteration converged. The tooth contact law is
     piecewise linear but for wide faces, so the iteration ends after a few steps with the right set of touching pairs.
-    Bearings begin with their last forces. The function is inlined, as passing its arguments would cost time at every
-    call.
+    It begins with the forces of the last steps, extrapolated. A step after which the error cannot exceed the tolerance,
+    even if a slope changed by the largest one so far, is the last: forces follow their tangents, and the laws need no
+    evaluation anew. The function is inlined, as passing its arguments would cost time at every call.
     """
     free, free_rate, delta, rate, push = (
         scratch.delta_free,
@@ -129,11 +215,19 @@ def solve_contact_forces(
     )  # fmt: skip
     c, u, directions = contacts.phase.size, free.size, push.size
     per = by_velocity / by_displacement
+    # Forces on a parabola through the last ones are so near that mostly one evaluation is enough.
+    for j in range(directions):
+        last, change = push[j], push[j] - scratch.push_before[j]
+        push[j] += 2.0 * change - scratch.push_change[j]
+        scratch.push_before[j], scratch.push_change[j] = last, change
+    most = 0.0
     for k in range(u):
         delta[k] = free[k]
-    for k in range(c, u):
+        total = 0.0
         for j in range(directions):
             delta[k] -= by_displacement * flexibility[k, j] * push[j]
+            total += abs(flexibility[k, j])
+        most = max(most, total)
     for _ in range(_NEWTON_STEPS):
         for k in range(c):
             rate[k] = free_rate[k] + per * (delta[k] - free[k])
@@ -145,7 +239,7 @@ def solve_contact_forces(
                 residual[k, 0] -= by_displacement * flexibility[k, j] * push[j]
             scale = max(scale, abs(free[k]) + abs(delta[k]))
             largest = max(largest, abs(residual[k, 0]))
-        if largest <= 1e-13 * scale:
+        if largest <= _CONVERGED * scale:
             return True
         for k in range(u):
             for j in range(c):
@@ -166,6 +260,11 @@ def solve_contact_forces(
                     jacobian[k, c + j] = by_displacement * value
             jacobian[k, k] += 1.0
         solve_in_place(jacobian, residual)
+        farthest = 0.0
         for k in range(u):
             delta[k] += residual[k, 0]
+            farthest = max(farthest, abs(residual[k, 0]))
+        if by_displacement * _stiffest(contacts, bearings, per, scratch) * farthest * most <= _CONVERGED * scale:
+            _follow_tangents(contacts, bearings, per, scratch)
+            return True
     return False

@@ -152,19 +152,22 @@ class Scratch(NamedTuple):
     dq_predicted: FloatArray  # (k,)
     dv_predicted: FloatArray  # (k,)
     push: FloatArray  # (k,) forces of the laws
+    push_before: FloatArray  # (k,) those at the start of the last step, and their change in the step before it
+    push_change: FloatArray  # (k,)
     delta: FloatArray  # (e + c,) deflections, their rates, and both without the laws' forces
     rate: FloatArray  # (e + c,)
     delta_free: FloatArray  # (e + c,)
     rate_free: FloatArray  # (e + c,)
     slip: FloatArray  # (e + c,) rates of the runout errors
-    force_before: FloatArray  # (e + c,) at the step's start: forces, compressions and energies of the teeth
-    delta_before: FloatArray  # (e + c,)
-    energy_before: FloatArray  # (e + c,)
+    delta_before: FloatArray  # (e + c,) at the step's start: compressions of the teeth, their rates and laws
+    rate_before: FloatArray  # (e + c,)
+    laws_before: FloatArray  # (c, 6)
     laws: FloatArray  # (c, 6)
     spare: FloatArray  # (c, 6)
     drag: FloatArray  # (c, 4) slopes of friction
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
+    stiffest: FloatArray  # (1,): `coupling.connector_forces.contact_kernels._stiffest`
     tangents: FloatArray  # (b, 5, 5) of bearings
     bearing_work: FloatArray  # (8, 5): `coupling.connector_forces.bearing_kernels.evaluate_bearings`
     powers: FloatArray  # (5,): `coupling.time.newmark.evaluate_powers`

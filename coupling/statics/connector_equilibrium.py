@@ -37,14 +37,16 @@ _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
 _ROUNDED = 1e-11  # error over the deflections below which steps are not halved, and end where it hardly falls
+_ROUNDINGS = 4.0  # error over the deflections, in units of rounding, that is that of the deflections themselves
 _FALLS = 0.5  # largest part of the error that a step leaves, unless the error is rounding
 _NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class _Imbalance:
-    """Deflections minus those under the forces that they cause, over `size`; derivative and norm."""
+    """Deflections minus those under the forces that they cause, over `size`; derivative and norm; the coordinates."""
 
+    x: FloatArray
     difference: FloatArray
     slope: FloatArray
     norm: float
@@ -87,8 +89,7 @@ class ConnectedStructure:
         # The first radius of the search is the size of the motions under the loads.
         radius = max(float(np.sqrt(abs(self.load @ self._under_nominal_laws))), 1e-9)
         minimum = minimise(self._potential, np.zeros(self._spread.shape[1]), radius, _TOLERANCE)
-        z, steps = self._polished(self._start + self._spread @ minimum.place)
-        x, _ = self._motions(z)
+        x, steps = self._polished(self._start + self._spread @ minimum.place)
         return x, minimum.iterations + steps
 
     @cached_property
@@ -113,7 +114,7 @@ class ConnectedStructure:
 
     @cached_property
     def _extended(self) -> sparse.csr_array:
-        return sparse.csr_array(self._held.astype(np.longdouble))
+        return sparse.csr_array(self._held).astype(np.longdouble)
 
     @cached_property
     def _shift(self) -> FloatArray:
@@ -152,11 +153,23 @@ class ConnectedStructure:
         """Energy, force and tangent of the laws at deflections, minus those of the nominal laws."""
         energy, force, tangent = 0.0, np.zeros(z.size), np.zeros((z.size, z.size))
         for part, law in zip(self.parts, laws, strict=True):
-            stored, law_force, slope = law.at(z[part])
+            stored, law_force, slope = self._at(law, z[part])
             energy, force[part], tangent[part, part] = energy + stored, law_force, slope
         linear = self.nominal @ z - self._shift
         stored = 0.5 * float(z @ (self.nominal @ z)) - float(self._shift @ z)
         return energy - stored, force - linear, tangent - self.nominal
+
+    @cached_property
+    def _last(self) -> dict[int, tuple[bytes, tuple[float, FloatArray, FloatArray]]]:
+        """Deflections at which each law was last evaluated, as bytes, and what it gave."""
+        return {}
+
+    def _at(self, law: ConnectorLaw, z: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Evaluate a law; Newton's method begins where the search of the minimum has ended."""
+        last = self._last.get(id(law))
+        if last is None or last[0] != z.tobytes():
+            last = self._last[id(law)] = z.tobytes(), law.at(z)
+        return last[1]
 
     @cached_property
     def _conservative_laws(self) -> list[ConnectorLaw]:
@@ -190,15 +203,17 @@ class ConnectedStructure:
         x, tangent = self._motions(z)
         difference = (z - self.directions.T @ x) / self._size
         slope = np.eye(z.size) + self._compliance @ tangent * self._size / self._size[:, None]
-        return _Imbalance(difference, slope, float(np.linalg.norm(difference)))
+        return _Imbalance(x, difference, slope, float(np.linalg.norm(difference)))
 
     def _polished(self, z: FloatArray) -> tuple[FloatArray, int]:
-        """Newton's method with halved steps, to rounding: deflections and the number of steps."""
+        """Newton's method with halved steps, to rounding: coordinates and the number of steps."""
         imbalance, steps = self._imbalance(z), 0
         for _ in range(_NEWTON_STEPS):
-            before = imbalance.norm
+            before, size = imbalance.norm, float(np.linalg.norm(z / self._size))
+            if before <= _ROUNDINGS * np.finfo(np.float64).eps * size:
+                break
             step = self._size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
-            rounded = before <= _ROUNDED * float(np.linalg.norm(z / self._size))
+            rounded = before <= _ROUNDED * size
             for halving in range(1 if rounded else _HALVINGS):
                 nearer = z - 0.5**halving * step
                 trial = self._imbalance(nearer)
@@ -207,4 +222,4 @@ class ConnectedStructure:
                     break
             if imbalance.norm == before or (rounded and imbalance.norm > _FALLS * before):
                 break
-        return z, steps
+        return imbalance.x, steps

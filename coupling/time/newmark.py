@@ -31,8 +31,9 @@ from coupling.connector_forces.contact_kernels import (
     DAMPING,
     ENERGY,
     FORCE,
-    evaluate_contact,
+    energy_at,
     evaluate_forces,
+    evaluate_tangents,
     flank_gap,
     solve_contact_forces,
 )
@@ -185,22 +186,21 @@ def _work_on_teeth(contacts: Contacts, nominal_time0: float, nominal_time: float
     last. ∂U/∂p jumps and ripples as the slices of helical teeth meet the corners of the profiles, often in one step:
     quadrature of it adds up errors that depend on where the steps fall, and that smaller steps need not make smaller.
     """
-    spare, work = scratch.spare, 0.0
+    laws, before, delta, rate, work = scratch.laws, scratch.laws_before, scratch.delta, scratch.rate, 0.0
     for k in range(contacts.phase.size):
-        evaluate_contact(contacts, k, nominal_time, scratch.delta_before[k], 0.0, spare, k)
-        work += 0.5 * (spare[k, ENERGY] - scratch.energy_before[k])
-        evaluate_contact(contacts, k, nominal_time0, scratch.delta[k], 0.0, spare, k)
-        work += 0.5 * (scratch.laws[k, ENERGY] - spare[k, ENERGY])
-    return work
+        delta0, rate0 = scratch.delta_before[k], scratch.rate_before[k]
+        work += energy_at(contacts, k, nominal_time, delta0, laws, delta[k], rate[k]) - before[k, ENERGY]
+        work += laws[k, ENERGY] - energy_at(contacts, k, nominal_time0, delta[k], before, delta0, rate0)
+    return 0.5 * work
 
 
 @inner(inline="always")
 def _keep_teeth(contacts: Contacts, scratch: Scratch) -> None:
-    """Keep forces, compressions and energies of the teeth for the end of the next step."""
+    """Keep compressions, rates and laws of the teeth for the end of the next step."""
     for k in range(contacts.phase.size):
-        scratch.force_before[k] = scratch.laws[k, FORCE]
-        scratch.delta_before[k] = scratch.delta[k]
-        scratch.energy_before[k] = scratch.laws[k, ENERGY]
+        scratch.delta_before[k], scratch.rate_before[k] = scratch.delta[k], scratch.rate[k]
+        for column in range(ENERGY + 1):
+            scratch.laws_before[k, column] = scratch.laws[k, column]
 
 
 @inner()
@@ -257,7 +257,7 @@ def write_samples(
             for k in range(contacts.phase.size):
                 gone, slip = flank_gap(contacts.clearance, contacts.errors, k, nominal_time, speed)
                 samples.compression[row, k] -= gone
-                evaluate_contact(contacts, k, nominal_time, samples.compression[row, k], work[k] - slip, laws, k)
+                evaluate_tangents(contacts, k, nominal_time, samples.compression[row, k], work[k] - slip, laws)
                 samples.force[row, k] = laws[k, FORCE]
         for i in range(n):
             x[i] = (1.0 - s) * a[i] + s * a1[i]
@@ -402,6 +402,8 @@ def _start_segment(
     for k in range(c, delta.size):
         delta[k] = dq[k]
     evaluate_forces(contacts, bearings, nominal_time, scratch)
+    for j in range(push.size):
+        scratch.push_before[j], scratch.push_change[j] = push[j], 0.0
     for i in range(a.size):
         a[i] = scratch.load[i] - dynamics.stiffness[i] * q[i] - dynamics.damping[i] * v[i]
     blocks, first, size, work = dynamics.gyroscopic, dynamics.block_start, dynamics.block_size, scratch.block
@@ -618,7 +620,7 @@ def _accumulate(
         powers_before[k] = powers[k]
     for k in range(contacts.phase.size):
         force = scratch.laws[k, FORCE]
-        contact_totals[k, IMPULSE] += 0.5 * h * (scratch.force_before[k] + force)
+        contact_totals[k, IMPULSE] += 0.5 * h * (scratch.laws_before[k, FORCE] + force)
         if force == 0.0:
             contact_totals[k, APART] += h
         else:

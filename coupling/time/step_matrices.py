@@ -76,10 +76,12 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
     u, b = c + arrays.bearings.axis.size, arrays.bearings.preload.size
     shapes: dict[str, tuple[int, ...]] = {
         "laws": (c, 6),
+        "laws_before": (c, 6),
         "spare": (c, 6),
         "drag": (c, 4),
         "jacobian": (u, u),
         "residual": (u, 1),
+        "stiffest": (1,),
         "tangents": (b, 5, 5),
         "bearing_work": (8, 5),
         "powers": (5,),
@@ -92,10 +94,10 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
     shapes |= dict.fromkeys(
         ("tq", "tv", "ta", "tq_predicted", "tv_predicted", "ta_end", "connector_force", "response", "correction"), (r,)
     )
-    shapes |= dict.fromkeys(("dq", "dv", "da", "dq_predicted", "dv_predicted", "push"), (k,))
     shapes |= dict.fromkeys(
-        ("delta", "rate", "delta_free", "rate_free", "slip", "force_before", "delta_before", "energy_before"), (u,)
+        ("dq", "dv", "da", "dq_predicted", "dv_predicted", "push", "push_before", "push_change"), (k,)
     )
+    shapes |= dict.fromkeys(("delta", "rate", "delta_free", "rate_free", "slip", "delta_before", "rate_before"), (u,))
     return Scratch(**{name: np.zeros(shape) for name, shape in shapes.items()})
 
 

@@ -66,6 +66,8 @@ _DOUBT = 1e-12
 """Part of the compression within which a pair's first touch is rounding."""
 PRECISE, _NEAR_ENOUGH = 1e-9, 1e-4
 """Corrections after which the pairs' compression is exact to rounding: at once, or after one more Newton step."""
+_SETTLED = 1e-6
+"""Correction of the pairs' compression after which their energy is exact to rounding."""
 
 
 @inner(inline="always")
@@ -287,35 +289,9 @@ def ranked_penetration(phase: float, compression: float, law: FloatArray, at: in
     return -math.inf
 
 
-@uncounted(fastmath={"contract"})
-def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
-    """Force of the tooth contact, its tangent, and its stored energy.
-
-    Parameters
-    ----------
-    phase : float
-        Mesh periods since the driver's zero, any real number.
-    compression, rate : float
-        Compression of the contact [m] and its rate [m/s].
-    law : ndarray
-        Numbers of `coupling.gears.contact.lookup_tables`, of one law or of several laws in a row.
-    at : int
-        Index at which the numbers of this law begin.
-
-    Returns
-    -------
-    force : float
-        Force that pushes the gears apart [N].
-    stiffness_tangent, damping_tangent : float
-        Derivatives of the force by compression [N/m] and rate [N s/m]; where the force is held at zero, 0 and the
-        coefficient by which the springs' power is lost.
-    energy : float
-        Energy stored in the pairs [J].
-    energy_phase_slope : float
-        Derivative of the energy by phase at fixed compression [J per mesh period].
-    touching : int
-        Number of pairs that touch.
-    """
+@inner(fastmath={"contract"}, forceinline=True)
+def _whole_law(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
+    """Evaluate the law, as `tooth_force` returns it; where it is inlined, what a caller leaves is not computed."""
     if compression <= law_value(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
     number, interval, u, per_width = locate(law, at, phase)
@@ -401,6 +377,117 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
         # Teeth do not pull: the damping absorbs at most the springs' force, here all of it.
         return 0.0, 0.0, -force / rate, energy, slope, touching
     return force + damping * rate, tangent, damping, energy, slope, touching
+
+
+@uncounted(fastmath={"contract"})
+def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
+    """Force of the tooth contact, its tangent, and its stored energy.
+
+    Parameters
+    ----------
+    phase : float
+        Mesh periods since the driver's zero, any real number.
+    compression, rate : float
+        Compression of the contact [m] and its rate [m/s].
+    law : ndarray
+        Numbers of `coupling.gears.contact.lookup_tables`, of one law or of several laws in a row.
+    at : int
+        Index at which the numbers of this law begin.
+
+    Returns
+    -------
+    force : float
+        Force that pushes the gears apart [N].
+    stiffness_tangent, damping_tangent : float
+        Derivatives of the force by compression [N/m] and rate [N s/m]; where the force is held at zero, 0 and the
+        coefficient by which the springs' power is lost.
+    energy : float
+        Energy stored in the pairs [J].
+    energy_phase_slope : float
+        Derivative of the energy by phase at fixed compression [J per mesh period].
+    touching : int
+        Number of pairs that touch.
+    """
+    return _whole_law(phase, compression, rate, law, at)
+
+
+@inner(fastmath={"contract"})
+def tooth_force_and_tangents(
+    phase: float, compression: float, rate: float, law: FloatArray, at: int
+) -> tuple[float, float, float]:
+    """Force and its tangents by compression and rate, the first three results of `tooth_force`."""
+    force, tangent, damping, _, _, _ = _whole_law(phase, compression, rate, law, at)
+    return force, tangent, damping
+
+
+@inner(fastmath={"contract"})
+def tooth_force_and_energy(
+    phase: float, compression: float, rate: float, law: FloatArray, at: int
+) -> tuple[float, float, float, float]:
+    """Force, its tangents and the stored energy, the first four results of `tooth_force`."""
+    force, tangent, damping, energy, _, _ = _whole_law(phase, compression, rate, law, at)
+    return force, tangent, damping, energy
+
+
+@inner(fastmath={"contract"})
+def tooth_energy(phase: float, compression: float, force: float, law: FloatArray, at: int) -> float:
+    """Energy stored in the pairs [J], the fourth result of `tooth_force`, from their elastic force as far as known.
+
+    With x the pairs' own compression, U(x) + (compression - x)^2 / 2 C is stationary at the compression that the pairs
+    have: an error of x, after the Newton step that corrects it, enters in its third power. So one round is mostly
+    enough, without the iteration for x.
+
+    Parameters
+    ----------
+    phase, compression, law, at
+        As for `tooth_force`.
+    force : float
+        Elastic force of the pairs [N], about.
+    """
+    if compression <= law_value(law, at + FIRST_TOUCH):
+        return 0.0
+    number, interval, u, _ = locate(law, at, phase)
+    pairs, hunting = int(law_value(law, at + PAIRS)), int(law_value(law, at + HUNTING))
+    unit = law_value(law, at + DEPTH_UNIT)
+    uneven = unit > 0.0
+    per_unit, cells, deepest_cell, depth_step = 0.0, 0, 0, 0
+    if uneven:
+        per_unit = 1.0 / unit
+        cells = at + int(law_value(law, at + CELLS_AT))
+        deepest_cell, depth_step = int(law_value(law, at + DEPTHS)) - 1, int(law_value(law, at + DEPTH_STEP))
+    start = at + int(law_value(law, at + PAIRS_AT)) + PAIR * pairs * interval
+    shared = law_value(law, at + SHARED)
+    first = int(number) - int(law_value(law, at + FIRST_PAIR))
+    x, small, energy = compression - shared * force, _SETTLED * abs(compression), 0.0
+    for _ in range(_NEWTON_STEPS):
+        force, tangent, energy = 0.0, 0.0, 0.0
+        for pair in range(pairs):
+            approach, place = penetration(law, at, hunting, first - pair, u, x, start + PAIR * pair)
+            if approach <= 0.0:
+                continue
+            if uneven:
+                r = math.sqrt(approach * per_unit)
+                depth = min(int(r), deepest_cell)
+                cell = cells + depth * depth_step + CELL * int(law_value(law, place + 4))
+                p = law_value(law, place + 5) + u * law_value(law, place + 6)
+                begin = float(depth)
+                pair_force, pair_tangent, pair_energy, _ = face_force(law, cell, unit, per_unit, p, begin, r - begin)
+                force += pair_force
+                tangent += pair_tangent
+                energy += pair_energy
+            else:
+                c1, c2, c3 = law_value(law, place + 5), law_value(law, place + 6), law_value(law, place + 7)
+                k = law_value(law, place + 4) + u * (c1 + u * (c2 + u * c3))
+                force += k * approach
+                tangent += k
+                energy += 0.5 * k * approach * approach
+        excess = (x - compression + shared * force) / (1.0 + shared * tangent)
+        if abs(excess) <= small:
+            energy += excess * (0.5 * excess * tangent - force)
+            force -= excess * tangent
+            break
+        x -= excess
+    return energy + 0.5 * shared * force * force
 
 
 @counted()
