@@ -315,14 +315,10 @@ def _bearing(
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
     stiffness, damping = bearing.spatial_stiffness, bearing.spatial_damping
-    axes = np.flatnonzero(np.any(stiffness != 0.0, axis=1) | np.any(damping != 0.0, axis=1))
-    axes = np.union1d(axes, [0, 1])
+    axes = np.union1d(mounted.bearing.axes, [0, 1])
     if isinstance(mounted.law, RollingLaw):
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
-    if table is not None:
-        ever = np.any(table.stiffness != 0.0, axis=(0, 2)) | np.any(table.damping != 0.0, axis=(0, 2))
-        axes = np.union1d(axes, np.flatnonzero(ever))
     relative = coordinates.rows(rotor.name, rotor.motions(at))
     if mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:

@@ -12,6 +12,7 @@ from coupling.machine.driving_frequencies import element_passes as passing_frequ
 from coupling.machine.loads import TorqueRipple
 
 _TWO_PI = 2.0 * math.pi
+_STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def excitation_lines(
         Multiples of each mesh frequency.
     sidebands : int
         Number of sidebands on either side of each mesh harmonic, spaced by the speed of either gear's shaft, or by the
-        frequency of a load where loads count.
+        frequency of a load where loads count. One below zero is folded to its size, one at zero left out.
     element_passes : sequence of int
         Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
     load_multiples : sequence of int
@@ -93,9 +94,11 @@ def excitation_lines(
             for source, ratio in modulations:
                 for number in range(1, sidebands + 1):
                     for sign, word in ((-1, "-"), (1, "+")):
-                        order = harmonic * teeth + sign * number * ratio
+                        # A carrier modulated faster than its own frequency has its lower sideband at |difference|.
+                        order = abs(harmonic * teeth + sign * number * ratio)
                         text = f"{harmonic}× {name} {word} {number}× {source}"
-                        lines.append(ExcitationLine(text, "sideband", order))
+                        if order > _STANDSTILL * teeth:
+                            lines.append(ExcitationLine(text, "sideband", order))
     lines += [
         ExcitationLine(f"{multiple}× elements of {name}", "bearing", multiple * frequency * _TWO_PI / leading)
         for name, frequencies in passing_frequencies(machine.system).items()

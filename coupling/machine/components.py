@@ -20,6 +20,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
+from rotors.modes.lateral import LateralModes
 from rotors.modes.modal_rotor import gyroscopic_matrix
 
 FloatArray = npt.NDArray[np.float64]
@@ -105,7 +106,7 @@ class RotorComponent(Component):
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m, m)
-        The plane's coordinates in terms of the planar modes, orthogonal: columns diagonalise the free shaft.
+        The plane's coordinates in terms of the planar modes, orthogonal: shift, tilt and bending of the free shaft.
     axis : tuple of float
         x and y of the shaft's line [m].
     """
@@ -289,10 +290,13 @@ def rotor_component(
 
     The planar modes are those at averaged support stiffness k̄ (TM-101442 Eq. 7). The springs come back with the
     bearings' connectors, so they are taken out here, K = diag(ω²) - Σ k̄ φ(z_b) φ(z_b)ᵀ in each plane (the
-    *compensation* of TM-104434 Eqs. 11 to 15), and the same span is taken in coordinates that diagonalise K: the free
-    shaft's own. Its damping acts on these, so that it resists bending and twisting but no motion of the shaft as a
-    whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y rows, G_ij = ∫ φ'_i dI_p φ'_j, so
-    that C + ΩG gives the terms G_v of Eqs. 1 and 2.
+    *compensation* of TM-104434 Eqs. 11 to 15), and the same span is taken in the free shaft's own coordinates: its
+    shift, its tilt, and the bending beside them that diagonalises K. The shaft's damping acts on bending and twisting,
+    not on a motion of the shaft as a whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y
+    rows, G_ij = ∫ φ'_i dI_p φ'_j, so that C + ΩG gives the terms G_v of Eqs. 1 and 2.
+
+    An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
+    shaft's tilt has negative stiffness: what holds the shaft is its bearings.
 
     Parameters
     ----------
@@ -302,26 +306,46 @@ def rotor_component(
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
-        Damping ratio of the shaft's own material and fits, on every mode of the free shaft.
+        Damping ratio of the shaft's own material and fits, on every mode of the free shaft but its shift and tilt.
     axis : tuple of float
         x and y of the shaft's line [m], which matter where the base turns.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
     m, n = lateral.count, modal.size
-    values, plane_basis = np.linalg.eigh(lateral.free_stiffness)
-    # Motions of the whole shaft have no stiffness; rounding errors of it are set to zero.
-    values = np.where(np.abs(values) < 1e-9 * values[-1], 0.0, np.maximum(values, 0.0))
-    squared = np.concatenate([values, values, modal.torsional.frequencies**2, along**2])
+    plane_basis, plane_stiffness, bending = _free_plane(lateral)
+    stiffness = np.diag(np.concatenate([np.zeros(2 * m), modal.torsional.frequencies**2, along**2]))
+    stiffness[:m, :m] = stiffness[m : 2 * m, m : 2 * m] = plane_stiffness
+    # Zeros for motions as a whole: they strain no material, though an axial force may resist the tilt or drive it.
+    damped = np.concatenate([bending, bending, modal.torsional.frequencies, along])
     gyroscopic = np.zeros((n, n))
     gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(plane_basis.T @ lateral.polar_inertia_matrix @ plane_basis)
     return RotorComponent(
         name=name,
         kinds=("rotor",) * (2 * m) + ("torsion",) * modal.torsional.count + ("axial",) * len(along),
-        stiffness=np.diag(squared),
-        damping=np.diag(2.0 * damping_ratio * np.sqrt(squared)),
+        stiffness=stiffness,
+        damping=np.diag(2.0 * damping_ratio * damped),
         gyroscopic=gyroscopic,
         modal=modal,
         start=start,
         plane_basis=plane_basis,
         axis=axis,
     )
+
+
+def _free_plane(lateral: LateralModes) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Orthogonal basis of a plane's free shaft (m, m), stiffness there (m, m) [1/s²], bending frequencies (m,) [rad/s].
+
+    The frequencies are zero for the motions of the shaft as a whole, the first columns of the basis. These are
+    known, and so is it that nothing resists them: among the eigenvalues of the stiffness their zeros cannot be told
+    from soft bending, since their rounding error is that of the stiffest attachment mode.
+    """
+    whole, free = lateral.rigid_motions, lateral.free_stiffness
+    count, unresisted = whole.shape[1], lateral.unresisted_motions
+    beside = np.linalg.qr(whole, mode="complete")[0][:, count:]
+    values, vectors = np.linalg.eigh(beside.T @ free @ beside)
+    basis = np.hstack([whole, beside @ vectors])
+    resisted = basis.T @ free @ whole
+    resisted[:, :unresisted] = resisted[:unresisted] = 0.0
+    stiffness = np.diag(np.concatenate([np.zeros(count), values]))
+    stiffness[:, :count], stiffness[:count] = resisted, resisted.T
+    return basis, stiffness, np.concatenate([np.zeros(count), np.sqrt(np.maximum(values, 0.0))])

@@ -203,6 +203,19 @@ class Bearing:
         """Damping matrix (5, 5) over x, y, z and the rotations about x and y."""
         return _spatial(self._constant(self.damping))
 
+    @cached_property
+    def axes(self) -> tuple[int, ...]:
+        """Motions of the shaft that it takes part in, of x, y, z and the rotations about x and y as 0 to 4, ascending.
+
+        A motion takes part if it causes a force or moment (a column of stiffness or damping) or if one acts along it
+        (a row), at any speed of the tables. Matrices that are not symmetric may have the one without the other.
+        """
+        coupled = np.zeros(5, dtype=np.bool_)
+        for matrix in (self.stiffness, self.damping):
+            acts = (matrix != 0.0).reshape(-1, *matrix.shape[-2:]).any(axis=0)
+            coupled[: acts.shape[0]] |= acts.any(axis=0) | acts.any(axis=1)
+        return tuple(np.flatnonzero(coupled).tolist())
+
     @property
     def mean_stiffness(self) -> float:
         """Mean stiffness (k_xx + k_yy) / 2 of the planar modal basis (TM-101442 Eq. 7) [N/m]."""

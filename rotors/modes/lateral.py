@@ -26,6 +26,8 @@ RELATIVE_WIDTH = 1e-13
 MOST_DOUBLINGS = 100
 # Factor below which it is zero: a shaft that is free to tilt buckles under any compression.
 LEAST_FACTOR = 1e-9
+# Deviation from a unit motion of the whole shaft at a support below which the modes follow it.
+FOLLOWED = 1e-6
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -201,6 +203,34 @@ class LateralModes:
     def free_stiffness(self) -> FloatArray:
         """Stiffness of the shaft alone, diag(ω²) less the supports, (m, m) [1/s²]."""
         return np.diag(self.frequencies**2) - self.support_matrix
+
+    @property
+    def rigid_motions(self) -> FloatArray:
+        """Modal coordinates of the motions of the shaft as a whole, orthonormal, (m, 2): its shift, then its tilt.
+
+        They are the nearest in mass that the modes contain. A single mode has one of them.
+        """
+        return np.asarray(np.linalg.qr(self.fields.bending_participation(self.mixture))[0])
+
+    @property
+    def unresisted_motions(self) -> int:
+        """Number of `rigid_motions`, from the first, for which `free_stiffness` is exactly zero.
+
+        An axial force acts on the tilt. The modes contain a motion where they are followed by attachment modes at
+        every support; but the supports of a lumped rotor may stand between its masses, where no mode follows it.
+        """
+        shaft, along = self.fields.shaft, self.fields.bending_participation(self.mixture)
+        follows = np.array([True, not shaft.has_axial_force])
+        for support in self.supports:
+            exact = np.array([[1.0, (support.at - shaft.nodes[0]) / shaft.length_unit], [0.0, 1.0]])
+            motions = [
+                part[:, 0] / unit
+                for part, unit in zip(self.evaluate([support.at]), shaft.displacement_unit, strict=True)
+            ]
+            errors = np.abs(np.array(motions) @ along - exact)
+            held = np.array([support.stiffness, support.tilt_stiffness]) > 0.0
+            follows &= (errors[held] < FOLLOWED).all(axis=0)
+        return min(int(np.logical_and.accumulate(follows).sum()), self.count)
 
     @property
     def support_matrix(self) -> FloatArray:

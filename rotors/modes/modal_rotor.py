@@ -12,9 +12,9 @@ with the gyroscopic matrix G = ∫ Φ' dI_p Φ'ᵀ and, summed over the bearings
 and the cross-coupling K_c = Σ [[0, k_xy], [k_yx, 0]] ⊗ Φ_b Φ_bᵀ (TM-104434 Eqs. 11 to 15). A bearing's tilt stiffness
 enters in the same way with the slopes. The modes are followed by residual attachment modes for every load that a
 bearing or a gear puts on the shaft: a lateral force at each of them, a moment and an axial force where a bearing
-resists these motions or a gear has thrust, and a torque at every gear. They are the static response of the truncated
-modes (Craig 2000), without which the shaft is too stiff at gears and bearings. Of a lumped rotor they complete the
-motions of its masses: a place between these also bends without any mass, which no mode follows.
+takes part in these motions or a gear has thrust, and a torque at every gear. They are the static response of the
+truncated modes (Craig 2000), without which the shaft is too stiff at gears and bearings. Of a lumped rotor they
+complete the motions of its masses: a place between these also bends without any mass, which no mode follows.
 
 The participation factors of the modes belong to rigid motions of the ground. For a ground that moves rigidly,
 u = q + R s, the modes are driven by -∫ φ R dm s'' over translation and over rotation of the sections. R is a
@@ -111,7 +111,7 @@ class ModalRotor:
     torsional : TorsionalModes
         Torsional modes of the free shaft, the rigid rotation first.
     axial : AxialModes or None
-        Axial modes of the free shaft, the rigid motion first; None where no bearing resists axial motion.
+        Axial modes of the free shaft, the rigid motion first; None where no bearing takes part in axial motion.
     bearings : tuple of Bearing
         The bearings whose averaged stiffness is in the bending modes.
     ports : tuple of float
@@ -271,9 +271,7 @@ def modal_rotor(
     if frequency_limit is not None and torsional.count < _FEWEST:
         least = min(_FEWEST, rod_shaft(rotor, (), "torsion").available_modes)
         torsional = solve_torsional_modes(rotor, count=int(least))
-    tilted = [
-        bearing.at for bearing in bearings if bearing.spatial_stiffness[3:].any() or bearing.spatial_damping[3:].any()
-    ]
+    tilted = [bearing.at for bearing in bearings if not {3, 4}.isdisjoint(bearing.axes)]
     lateral = add_attachment_modes(lateral, forces_at=ports, moments_at=(*tilted, *moments_at))
     torsional = add_rod_attachment_modes(torsional, gears_at)
     axial = _axial(rotor, bearings, frequency_limit, count, thrusts_at)
@@ -307,7 +305,7 @@ def _axial(
     thrusts_at: Sequence[float],
 ) -> AxialModes | None:
     """Free axial modes with attachment modes at the axial bearings; None without axial bearings."""
-    thrust = [b.at for b in bearings if b.spatial_stiffness[2].any() or b.spatial_damping[2].any()]
+    thrust = [bearing.at for bearing in bearings if 2 in bearing.axes]
     if not thrust:
         return None
     modes = solve_axial_modes(rotor, frequency_limit=frequency_limit, count=count)

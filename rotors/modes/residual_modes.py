@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from rotors.modes.lateral import LateralModes, lateral_modes
 from rotors.modes.torsional_and_axial import Modes, RodModes, rod_modes
+from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, require_positions, responses, ritz_vectors
 
 FloatArray = npt.NDArray[np.float64]
@@ -17,6 +18,9 @@ NOTHING_LEFT = 1e-7
 # that response is rigid; the direction of the rest errs by the same part at most, so the compliance errs by its square.
 # A smaller shift would lose more to rounding.
 FREE_SHIFT = 0.03
+# An estimate of the first elastic ω holds within this factor of that of the attachment modes made with it. Otherwise
+# that one replaces it, this often at most: each time it falls to a part of itself, or to its final value.
+NEAR_ENOUGH, CORRECTIONS = 1.5, 20
 
 
 def add_attachment_modes(
@@ -83,20 +87,52 @@ def _attached(modes: LateralModes | RodModes, loads_at: list[tuple[float, int]])
     loads = [load for load in dict.fromkeys(loads) if not shaft.constrained[load]]
     if not loads:
         return None
+    found = _attachment_modes(modes, shaft, loads)
+    if found is None:
+        return None
+    fields, mixture, added = found
+    old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
+    frequencies = np.concatenate([modes.frequencies, added])
+    return SolvedModes(frequencies, fields, np.vstack([old, mixture]), modes.certificate)
+
+
+Attachments = tuple[ShaftFields, FloatArray, FloatArray]
+
+
+def _attachment_modes(
+    modes: LateralModes | RodModes, shaft: DiscretisedShaft, loads: list[tuple[int, int]]
+) -> Attachments | None:
+    """Fields, their mixture in the attachment modes and frequencies of these [rad/s]; None where they add nothing.
+
+    The first elastic ω of a free shaft with rigid modes alone is estimated by that of its attachment modes: a step of
+    inverse iteration from the loads, whose Rayleigh quotient is above the first ω² that they excite, and close to it.
+    """
+    if not shaft.rigid_shapes.shape[0]:
+        return _attachment_modes_at(modes, shaft, loads, 0.0)
     elastic = modes.frequencies[modes.frequencies > 0.0]
-    zeros = modes.count - elastic.size
-    is_free = shaft.rigid_shapes.shape[0] > 0
-    reference = elastic[0] if elastic.size else 1.0
-    squared_shift = -((FREE_SHIFT * reference) ** 2) if is_free else 0.0
-    static = ShaftFields(shaft, np.full(len(loads), squared_shift), responses(shaft, loads, squared_shift))
+    if elastic.size:
+        return _attachment_modes_at(modes, shaft, loads, FREE_SHIFT * elastic[0])
+    # In scaled units a shaft is about as stiff as a uniform bar of unit length, whose first elastic ω is π / √m.
+    reference = np.pi * np.abs(modes.mixture @ modes.fields.states[:, :, 0]).max()
+    for _ in range(CORRECTIONS):
+        found = _attachment_modes_at(modes, shaft, loads, FREE_SHIFT * reference)
+        if found is None or reference / NEAR_ENOUGH < found[2][0] < NEAR_ENOUGH * reference:
+            break
+        reference = found[2][0]
+    return found
+
+
+def _attachment_modes_at(
+    modes: LateralModes | RodModes, shaft: DiscretisedShaft, loads: list[tuple[int, int]], shift: float
+) -> Attachments | None:
+    """Attachment modes by the response to loads at ω² = −(shift)²."""
+    static = ShaftFields(shaft, np.full(len(loads), -(shift**2)), responses(shaft, loads, -(shift**2)))
     fields = modes.fields.on(shaft).joined(static)
-    mixture = _residuals(fields, modes.mixture, zeros, len(loads))
+    mixture = _residuals(fields, modes.mixture, int(np.count_nonzero(modes.frequencies == 0.0)), len(loads))
     if mixture.shape[0] == 0:
         return None
     squared, vectors = ritz_vectors(*fields.energies(mixture))
-    old = np.hstack([modes.mixture, np.zeros((modes.count, len(loads)))])
-    frequencies = np.concatenate([modes.frequencies, np.sqrt(np.maximum(squared, 0.0))])
-    return SolvedModes(frequencies, fields, np.vstack([old, vectors.T @ mixture]), modes.certificate)
+    return fields, vectors.T @ mixture, np.sqrt(np.maximum(squared, 0.0))
 
 
 def _residuals(fields: ShaftFields, modes: FloatArray, zeros: int, count: int) -> FloatArray:

@@ -189,6 +189,17 @@ class DiscretisedShaft:
             node_polar=spread(nodes.size, index, self.node_polar),
         )
 
+    @property
+    def has_axial_force(self) -> bool:
+        """Whether a static axial force acts along a part of the shaft, of which bending alone takes account."""
+        return self.size == 2 and bool(self.table.coefficients[:, 5].any())
+
+    @property
+    def quadrature_places(self) -> FloatArray:
+        """Places of `energy_weights` from the first node: Gauss points of all elements, then nodes, in scaled units."""
+        inside = self.nodes[:-1, None] + np.diff(self.nodes)[:, None] * GAUSS_FRACTIONS
+        return np.asarray((np.concatenate([inside.ravel(), self.nodes]) - self.nodes[0]) / self.length_unit)
+
     @cached_property
     def rigid_shapes(self) -> FloatArray:
         """Independent rigid motions, which strain nothing, as node displacements, (zero modes, p + 1, n).
@@ -203,8 +214,7 @@ class DiscretisedShaft:
             return np.ones((1, place.size, 1))[: int(free)]
         supported = place[self.node_stiffness[:, 0] > 0.0]
         slope, constant = np.ones_like(place), np.zeros_like(place)
-        loaded = bool(self.table.coefficients[:, 5].any())
-        tilt_held = loaded or bool((self.node_stiffness[:, 1] > 0.0).any())
+        tilt_held = self.has_axial_force or bool((self.node_stiffness[:, 1] > 0.0).any())
         if supported.size == 0:
             shift = np.stack([slope, constant], axis=-1)
             tilt = np.stack([place - place.mean(), slope], axis=-1)

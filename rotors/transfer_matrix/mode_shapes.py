@@ -83,6 +83,18 @@ class ShaftFields:
         weighted = (rows @ motion) * self.shaft.energy_weights.mass
         return np.asarray(weighted @ (others @ motion).T)
 
+    def bending_participation(self, rows: FloatArray) -> FloatArray:
+        """Mass products of combinations of bending fields (a, k) with the motions of the shaft as a whole, (a, 2).
+
+        These are a unit shift and a unit tilt about the first node, in scaled units. Under an axial force the tilt is
+        no field without forces, so that both are given by their displacements.
+        """
+        place = self.shaft.quadrature_places
+        shift = np.stack([np.ones_like(place), np.zeros_like(place)], axis=1)
+        tilt = np.stack([place, np.ones_like(place)], axis=1)
+        weighted = (rows @ self._rows[0]) * self.shaft.energy_weights.mass
+        return np.asarray(weighted @ np.stack([shift.ravel(), tilt.ravel()], axis=1))
+
     def mass_norms(self, rows: FloatArray) -> FloatArray:
         """Norms in mass of combinations (a, k), (a,)."""
         motion = rows @ self._rows[0]

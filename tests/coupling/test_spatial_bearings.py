@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from coupling import CouplingError, MountedBearing, assemble_machine, coupled_modes
+from coupling import CouplingError, Machine, MountedBearing, Shaft, ShaftForce, assemble_machine, coupled_modes
 from coupling.machine.components import HousingComponent, housing_component, rotor_component
+from coupling.statics.static_equilibrium import static_equilibrium
 from rotors import Bearing, Disc, ModalRotor, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, solve_whirl
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
@@ -108,3 +109,45 @@ def test_rigid_motion_of_rotor_and_seat_together_strains_no_bearing() -> None:
         body[0], body[4] = shift * np.sqrt(20.0), tilt * np.sqrt(3.0)
         whole[component.size :] = body
         assert np.abs(rows @ whole).max() < 1e-8
+
+
+@pytest.mark.parametrize("crossing", ["forces by tilt", "moments by displacement"])
+@pytest.mark.parametrize("tabled", [False, True])
+def test_unsymmetric_bearing_drives_the_same_whirl_by_rows_as_by_columns(crossing: str, tabled: bool) -> None:
+    """Forces by a tilt that no moment resists make the shaft unstable, as it is found alone."""
+    radial = np.diag([2e7, 2e7, 0.0, 0.0, 0.0])
+    crossed = radial.copy()
+    crossed[0, 4], crossed[1, 3] = 3e6, -3e6
+    if crossing == "moments by displacement":
+        crossed = crossed.T
+    stiffness = np.array([radial, crossed]) if tabled else crossed
+    speeds = np.array([0.5 * SPEED, SPEED]) if tabled else None
+    bearings = (
+        Bearing("left", 0.0, stiffness, np.diag([500.0, 500.0]), speeds),
+        Bearing("right", 0.9, 1e7 * np.eye(2), 300.0 * np.eye(2)),
+    )
+    exact = solve_whirl(SHAFT, bearings, SPEED, count=4).eigenvalues
+    assert exact.real.max() > 1.0
+    found = whirl_of(machine(bearings))[:4]
+    assert np.abs(found - exact).max() < 1e-5 * np.abs(exact).max()
+
+
+def test_force_across_by_a_motion_along_the_axis_acts_where_nothing_resists_that_motion_there() -> None:
+    """A thrust F at the right bearing moves the shaft by F / k_z; k_xz of the left one is carried by its own k_xx."""
+    along, across, thrust = 5e7, 1e7, 400.0
+    slanted = np.diag([4e7, 4e7, 0.0, 0.0, 0.0])
+    slanted[0, 2] = across
+    bearings = (
+        Bearing("left", 0.1, slanted, np.zeros((2, 2))),
+        Bearing("right", 0.9, np.diag([3e7, 3e7, along, 0.0, 0.0]), np.zeros((2, 2))),
+    )
+    whole = Machine(
+        [Shaft(SHAFT)],
+        [MountedBearing(bearing, "shaft", None) for bearing in bearings],
+        speed=SPEED,
+        forces=[ShaftForce("shaft", 0.9, (0.0, 0.0, thrust))],
+    )
+    place = static_equilibrium(whole.assembled.system)
+    x, _, z = whole.assembled.rotors[0].motions(0.1)[:3] @ place
+    assert z == pytest.approx(thrust / along, rel=1e-6)
+    assert x == pytest.approx(-across * thrust / along / 4e7, rel=1e-6)

@@ -151,6 +151,14 @@ def test_orders_of_a_train() -> None:
     np.testing.assert_allclose(sidebands, [19.0, 19.6, 20.4, 21.0, 39.0, 39.6, 40.4, 41.0])
 
 
+def test_lower_sidebands_beyond_zero_are_folded_and_the_one_at_zero_is_no_line() -> None:
+    """cos 20θ cos 21θ has the order 1, cos 20θ cos 20θ a mean: of 20 teeth the lines are 1 to 19 and 1 to 2 again."""
+    lines = excitation_lines(geared(100.0), shaft_orders=(), mesh_harmonics=(1,), sidebands=22)
+    lower = [line.order for line in lines if "wheel - " in line.name and line.name.endswith("fast")]
+    np.testing.assert_allclose(lower, [*range(19, 0, -1), 1, 2])
+    assert min(line.order for line in lines) > 0.0
+
+
 def test_mesh_orders_meet_the_modes() -> None:
     """Every branch below the line at both ends has none, every one it passes has one crossing."""
     diagram = system_campbell(geared(100.0), np.linspace(20.0, 1200.0, 15), frequency_limit=4e4)

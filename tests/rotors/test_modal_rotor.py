@@ -7,6 +7,7 @@ import pytest
 
 from rotors import (
     Bearing,
+    Coupling,
     Disc,
     ModalRotor,
     Rotor,
@@ -14,6 +15,7 @@ from rotors import (
     Segment,
     ShaftMaterial,
     modal_rotor,
+    solve_axial_modes,
     solve_lateral_modes,
     solve_torsional_modes,
     solve_whirl,
@@ -90,6 +92,44 @@ def test_attached_torques_make_the_static_twist_exact() -> None:
     exact = 0.5 / BAR.section(0.0).torsional_stiffness
     assert twist(3) < 0.99 * exact
     assert twist(5) == pytest.approx(exact, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    "discs", [[], [Disc(0.0, 30.0, 0.5, 0.3)], [Disc(0.3, 1e3, 2.0, 1.0), Disc(1.0, 0.1, 1e-4, 1e-4)]]
+)
+@pytest.mark.parametrize("length", [0.2, 0.05, 0.015])
+def test_free_shaft_without_an_elastic_mode_below_the_limit_has_its_exact_compliance(
+    length: float, discs: list[Disc]
+) -> None:
+    """Opposite forces along the axis, or torques, at two places of a short shaft: F l / EA and M l / GJ."""
+    bar = Segment(length, 0.4 * length, 0.0, STEEL)
+    placed = [Disc(disc.at * length, disc.mass, disc.polar_inertia, disc.diametral_inertia) for disc in discs]
+    rotor, section = Rotor("short", [bar], placed), bar.section(0.5)
+    for modes, stiffness in (
+        (solve_axial_modes(rotor, frequency_limit=500.0), section.axial_stiffness),
+        (solve_torsional_modes(rotor, count=1), section.torsional_stiffness),
+    ):
+        assert modes.count == 1
+        places = np.array([0.1, 0.5, 0.8]) * length
+        attached = add_rod_attachment_modes(modes, places.tolist())
+        motion = attached.evaluate(places)[1:] / attached.frequencies[1:, None]
+        for one, other in ((0, 1), (0, 2), (1, 2)):
+            compliance = ((motion[:, other] - motion[:, one]) ** 2).sum()
+            assert compliance * stiffness / (places[other] - places[one]) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_free_shafts_on_a_soft_coupling_have_their_exact_compliance_without_an_elastic_mode() -> None:
+    """Their first elastic frequency is a fortieth of that of a bar: heavy discs on a spring."""
+    bar = Segment(0.1, 0.03, 0.0, STEEL)
+    soft = bar.section(0.5).axial_stiffness / (100.0 * bar.length)
+    coupling = Coupling(0.05, 1e8, 1e4, torsional_stiffness=1e4, axial_stiffness=soft)
+    rotor = Rotor("coupled", [bar, coupling, bar], [Disc(at, 50.0, 0.1, 0.1) for at in (0.0, 0.25)])
+    places = [0.02, 0.1, 0.15, 0.23]
+    attached = add_rod_attachment_modes(solve_axial_modes(rotor, count=1), places)
+    motion = attached.evaluate(places)[1:] / attached.frequencies[1:, None]
+    shaft = 0.08 / bar.section(0.5).axial_stiffness
+    for one, other, exact in ((0, 1, shaft), (1, 2, 1.0 / soft), (0, 3, 2.0 * shaft + 1.0 / soft)):
+        assert ((motion[:, other] - motion[:, one]) ** 2).sum() / exact == pytest.approx(1.0, abs=1e-7)
 
 
 def test_torsional_set_stays_orthonormal_with_its_vectors() -> None:
