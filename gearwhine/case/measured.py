@@ -276,9 +276,10 @@ class Update(Table):
     gap: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = 0.15
     """Least gap of dominance, ln(strength of the last chosen mode / of the first left out)."""
     model_modes: ModelModes | None = None
-    """Number of modes that the model must have."""
+    """Number of modes that the model must have, the rigid ones of a free housing counted."""
     modes: Annotated[int, Whole(2, 1000)] = 48
-    """Number of modes in the surrogate: about twice those in the band."""
+    """Number of modes that each design is solved for, the rigid ones of a free housing counted: about twice those up to
+    the band's end."""
     solves: Annotated[int, Whole(1, 10_000)] = 40
     """Largest number of designs solved on the search's mesh, shared by all starts; the own mesh takes some more."""
     explore: Annotated[int, Whole(0, 10_000)] = 0

@@ -303,7 +303,7 @@ class ParametricHousing:
     ----------
     case : FittedCase
     modes : int
-        Number of modes.
+        Number of modes, rigid ones counted.
     measured : callable, optional
         Returns for a mesh the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
@@ -364,7 +364,12 @@ class ParametricHousing:
         """Solve the modes of the case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
-        solved = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
+        every = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
+        n_rigid = int(np.count_nonzero(every.frequencies == 0.0))
+        if n_rigid == len(every.frequencies):
+            raise HousingError(f"all {n_rigid} modes are rigid: expected elastic ones too; ask for more (update.modes)")
+        # Rigid modes are left out once, here: state, shapes and rates number the same modes.
+        solved = replace(every, frequencies=every.frequencies[n_rigid:], shapes=every.shapes[n_rigid:])
         table = case.housing
         assert table is not None
         ports = [seat_matrix(mesh, seat.build()) for seat in table.seat]
@@ -376,7 +381,7 @@ class ParametricHousing:
         bounds = None if table.box is None else np.array([table.box.lower, table.box.upper])
         skin = survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
-        state = ModalState(solved.frequencies, seats, skin, measured)
+        state = ModalState(solved.frequencies, seats, skin, measured, n_rigid)
         return HousingAtParameters(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
 
 
@@ -393,7 +398,7 @@ class HousingAtParameters:
     mesh : Mesh
     state : housing.updating.ModalState
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
-        Mass-normalised mode shapes [1/√kg]; None once they are dropped.
+        Mass-normalised shapes of the state's modes [1/√kg]; None once they are dropped.
     known : Surrogate or None
         Surrogate about these coordinates, where it is computed already.
     """

@@ -329,7 +329,7 @@ class UpdatedPair:
     before_error, error : float
         Errors ln(model / measured); NaN without a partner.
     mode : int or None
-        Number of its partner after the update, from 1.
+        Number of its partner in the housing after the update, from 1, rigid modes counted.
     before_mac, mac : float or None
         MAC with the partner; None without shapes.
     strength : float or None
@@ -457,7 +457,7 @@ class SolvedUpdate:
                 measured=float(measured),
                 before_error=float(before.errors[place]),
                 error=float(after.errors[place]),
-                mode=None if mode == UNPAIRED else int(mode) + 1,
+                mode=None if mode == UNPAIRED else self.after.state.number(int(mode)),
                 before_mac=None if before.mac is None else float(before.mac[place]),
                 mac=None if after.mac is None else float(after.mac[place]),
                 strength=None if mode == UNPAIRED else float(strengths[mode]),

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import linalg
 
+from housing import HousingError
 from housing.updating import ModalState, Surrogate
 from housing.updating.sensitivities import ModalSensitivities
 
@@ -99,10 +100,16 @@ def test_slopes_of_frequencies_and_shapes_are_those_of_differences() -> None:
         assert np.abs(slopes[number] - difference[modes]).max() < 1e-6 * np.abs(difference).max()
 
 
-def test_rigid_modes_are_left_out() -> None:
-    state = ModalState(np.array([0.0, 1e-4, 100.0, 200.0]), np.zeros((4, 1, 2)), np.ones((4, 3)))
-    surrogate = Surrogate.about(np.zeros(1), state, ModalSensitivities(np.zeros((1, 4, 4)), np.zeros((1, 4, 4))))
-    assert surrogate.state.frequencies.tolist() == [100.0, 200.0]
+def test_rigid_modes_are_none_of_a_state() -> None:
+    with pytest.raises(HousingError, match="of elastic modes"):
+        ModalState(np.array([0.0, 100.0, 200.0]), np.zeros((3, 1, 2)), np.ones((3, 3)))
+
+
+def test_modes_are_numbered_and_counted_behind_the_rigid_ones() -> None:
+    state = ModalState(np.array([100.0, 200.0]), np.zeros((2, 1, 2)), np.ones((2, 3)), n_rigid=6)
+    near = Surrogate(np.zeros(1), state, np.zeros((1, 2, 2)), np.zeros((1, 2, 2))).at(np.ones(1)).state
+    assert [near.number(mode) for mode in (0, 1)] == [7, 8]
+    assert [near.n_below(limit) for limit in (1.0, 150.0, 300.0)] == [6, 7, 8]
 
 
 def test_slopes_of_strengths_are_those_of_differences() -> None:
