@@ -1,13 +1,21 @@
 """Surrogate of a housing's modes about a design: modes of neighbouring designs in a millisecond.
 
 Fixed modes fail where two of them cross or exchange their dominance. The surrogate lets all modes at hand mix: with
-Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters,
+Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters, the modes of the neighbour are
+those of the symmetric matrix
 
-    H(d) = diag(ln λ) + Σ_j d_j Λ^-½ [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] Λ^-½,
+    A(d) = Λ + Σ_j d_j [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] + O(d²),
 
-whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It
-is exact to first order (shapes except for contributions of modes above those at hand), and in logarithms: a frequency
-that is a power of a parameter is reproduced exactly where that parameter's coordinate is its logarithm.
+with eigenvalues λ and with eigenvectors C that make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. The surrogate expands
+the logarithm of A,
+
+    H(d) = diag(ln λ) + Σ_j d_j [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)]_ab / L(λ_a, λ_b),
+
+which has the same eigenvectors and the eigenvalues ln λ. L is the logarithmic mean (λ_a - λ_b) / (ln λ_a - ln λ_b), the
+inverse of the divided difference of ln, by which a function of a symmetric matrix is differentiated (theorem of
+Daleckii and Krein: Higham 2008, Functions of Matrices, section 3.2). So H is exact to first order in frequencies and
+shapes (shapes except for contributions of modes above those at hand), and in logarithms: a frequency that is a power of
+a parameter is reproduced exactly where that parameter's coordinate is its logarithm.
 """
 
 from dataclasses import dataclass, replace
@@ -150,7 +158,7 @@ class Surrogate:
     state : ModalState
         State at the design.
     rates : ndarray, shape (n_parameters, n_modes, n_modes)
-        Λ^-½ [...] Λ^-½ of each coordinate.
+        Derivatives of H by each coordinate.
     mass : ndarray, shape (n_parameters, n_modes, n_modes)
         Φᵀ dM Φ of each coordinate.
     """
@@ -165,8 +173,7 @@ class Surrogate:
         """Build the surrogate about a design, from its modes and the derivatives by the same modes."""
         eigenvalues, mass = state.frequencies**2, rates.mass
         change = rates.stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
-        scale = 1.0 / np.sqrt(eigenvalues)
-        return cls(center, state, scale[:, None] * change * scale, mass)
+        return cls(center, state, change / _logarithmic_means(eigenvalues), mass)
 
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""
@@ -186,6 +193,17 @@ class Surrogate:
             measured=None if state.measured is None else carried.T @ state.measured,
         )
         return Neighbour(moved, self, step, mixture)
+
+
+def _logarithmic_means(values: FloatArray) -> FloatArray:
+    """Logarithmic mean of each two of some positive values, shape (n, n): (a - b) / ln(a / b), and a where a = b.
+
+    With x = ½ ln(a / b) it is √(a b) sinh(x) / x, which stays accurate where both are nearly the same.
+    """
+    logarithms = np.log(values)
+    half = 0.5 * (logarithms[:, None] - logarithms)
+    ratio = np.divide(np.sinh(half), half, out=np.ones_like(half), where=half != 0.0)
+    return np.asarray(np.sqrt(values[:, None] * values) * ratio)
 
 
 def _weighted(weights: FloatArray, matrices: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Updating of a housing that nothing holds: rigid modes take no part, and no number of a mode is shifted by them.
+"""Updating of a housing that nothing holds, or hardly anything: rigid modes take no part and shift no number of a mode.
 
 Reference is the housing solved anew beside the design, its modes followed by frequency.
 """
@@ -128,6 +128,28 @@ def test_no_measured_shape_is_paired_with_a_rigid_motion(
     misfit = measure(Target(frequencies, np.full(3, NOISE), (1.0, 1e6), shapes), state, design.coordinates)
     assert misfit.pairs.tolist()[1:] == [0, 1]
     assert np.isfinite(misfit.value)
+
+
+def test_a_soft_suspension_takes_part_with_the_modes_far_above_it() -> None:
+    """On springs of 1e5 N/m, six modes of 17 to 45 Hz below 1.7 kHz, a wall one standard deviation thicker.
+
+    The walls' mass couples them all: modes a hundred times apart barely mix by it, and all are predicted.
+    """
+    document = case_document(free_box(np.array([HERTZ])))
+    document["housing"]["support"] = [
+        {"name": f"spring {n}", "surface": f"foot-{n}", "stiffness": {"x": 1e5, "y": 2e5, "z": 1.3e5}}
+        for n in range(1, 5)
+    ]
+    designs = ParametricHousing(fitted_case(parse_case(document)), MODES, threads=1)
+    start = designs.solve(designs.start)
+    there = designs.start + [1.0, 0.0]
+    solved, predicted = designs.solve(there, start).state, start.surrogate().at(there).state
+    assert start.state.n_rigid == 0
+    assert start.state.frequencies[6] > 30.0 * start.state.frequencies[5]
+    moved = np.abs(np.log(solved.frequencies / start.state.frequencies))
+    errors = np.abs(np.log(predicted.frequencies / solved.frequencies))
+    assert moved[:14].max() > 0.02
+    assert errors[:14].max() < 0.003
 
 
 def test_a_surrogate_of_rigid_modes_alone_is_refused(designs: ParametricHousing) -> None:

@@ -55,6 +55,31 @@ def test_it_errs_by_the_square_of_the_step(center: list[float], seed: int) -> No
     assert errors[1] < 0.4 * errors[0] or errors[0] < 1e-9
 
 
+def test_shapes_go_as_those_of_systems_solved_anew() -> None:
+    """Slopes of the motions where shapes are measured, by differences of systems whose λ are up to 16 times apart."""
+    z, step = np.array([0.05, -0.08, 0.03]), 1e-4
+    near = surrogate_about(z).at(z)
+    assert near.state.frequencies[-1] > 4.0 * near.state.frequencies[0]
+    assert near.state.measured is not None
+    slopes = near.measured_slopes(np.arange(N))
+    for number, way in enumerate(np.eye(P)):
+        shapes = []
+        for state in (solved(z + sign * step * way)[0] for sign in (1.0, -1.0)):
+            assert state.measured is not None
+            shapes.append(state.measured * np.sign((state.measured * near.state.measured).sum(axis=1))[:, None])
+        difference = (shapes[0] - shapes[1]) / (2.0 * step)
+        assert np.abs(slopes[number] - difference).max() < 1e-5 * np.abs(difference).max()
+
+
+def test_modes_of_one_frequency_have_the_slopes_of_their_mixture() -> None:
+    """Two springs of λ = 1 that a parameter couples by 0.1 e: ln λ go by ±0.1, at λ together and 1e-9 apart alike."""
+    for apart in (0.0, 1e-9):
+        state = ModalState(np.array([1.0, 1.0 + apart]), np.zeros((2, 1, 2)), np.eye(2))
+        coupled = ModalSensitivities(np.array([[[0.0, 0.1], [0.1, 0.0]]]), np.zeros((1, 2, 2)))
+        far = Surrogate.about(np.zeros(1), state, coupled).at(np.ones(1)).state
+        assert 2.0 * np.log(far.frequencies) == pytest.approx([-0.1, 0.1], rel=1e-6)
+
+
 def test_at_the_design_it_is_the_design() -> None:
     z = np.array([0.2, -0.1, 0.4])
     state, near = solved(z)[0], surrogate_about(z).at(z).state
