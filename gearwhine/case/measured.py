@@ -203,7 +203,7 @@ class UpdateParameter(Table):
     range: tuple[Amount, Amount]
     """Two quantities that it stays between."""
     nominal: Amount | None = None
-    """Mean of the prior. Default: the case's own value."""
+    """Mean of the prior. Default: the case's own value, 1 of a factor."""
     spread: Amount | None = None
     """Standard deviation of the prior. Default: a third of the larger distance from `nominal` to an end of the
     range."""
