@@ -199,7 +199,7 @@ class UpdateParameter(Table):
     name: Name
     """Name of the parameter."""
     keys: tuple[KeyPath, ...] = Field(min_length=1, max_length=1000)
-    """Key paths that take the value, `*` for any entry."""
+    """Key paths that take the value, `*` for any entry; without `factor` they have one value in the case already."""
     range: tuple[Amount, Amount]
     """Two quantities that it stays between."""
     nominal: Amount | None = None

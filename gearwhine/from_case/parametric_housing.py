@@ -31,6 +31,7 @@ from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from meshes.box.morph import MorphError
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
+_SAME = 1e-9  # relative difference of numbers written in different units
 FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
@@ -125,7 +126,8 @@ def fitted_case(
     Raises
     ------
     CaseError
-        With every key that leads to no number, is set twice, or whose number is outside its range.
+        With every key that leads to no number, is set twice, or whose number is outside its range, and every parameter
+        whose keys have different numbers and no factor.
     """
     if parameters is None:
         assert case.update is not None
@@ -175,6 +177,14 @@ def _number(
     problems: list[Problem],
 ) -> FittedNumber | None:
     low, high = entry.bounds
+    if not entry.factor and not np.allclose(values, values[0], rtol=_SAME, atol=0.0):
+        other = next(
+            place for place, value in enumerate(values) if not np.isclose(value, values[0], rtol=_SAME, atol=0.0)
+        )
+        shown = " and ".join(f"{key_of(places[place])} is {values[place]:g}" for place in (0, other))
+        expected = f"keys with one number in the case, or 'factor = true'; {shown} (SI)"
+        problems.append(Problem(f"update.parameter[{index}].keys", list(entry.keys), expected, label))
+        return None
     start = 1.0 if entry.factor else values[0]
     nominal = start if entry.nominal is None else amount(entry.nominal)
     if not low <= start <= high or not low <= nominal <= high:
