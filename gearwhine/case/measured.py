@@ -199,11 +199,11 @@ class UpdateParameter(Table):
     name: Name
     """Name of the parameter."""
     keys: tuple[KeyPath, ...] = Field(min_length=1, max_length=1000)
-    """Key paths that take the value, `*` for any entry."""
+    """Key paths that take the value, `*` for any entry; without `factor` they have one value in the case already."""
     range: tuple[Amount, Amount]
     """Two quantities that it stays between."""
     nominal: Amount | None = None
-    """Mean of the prior. Default: the case's own value."""
+    """Mean of the prior. Default: the case's own value, 1 of a factor."""
     spread: Amount | None = None
     """Standard deviation of the prior. Default: a third of the larger distance from `nominal` to an end of the
     range."""
@@ -276,9 +276,10 @@ class Update(Table):
     gap: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = 0.15
     """Least gap of dominance, ln(strength of the last chosen mode / of the first left out)."""
     model_modes: ModelModes | None = None
-    """Number of modes that the model must have."""
+    """Number of modes that the model must have, the rigid ones of a free housing counted."""
     modes: Annotated[int, Whole(2, 1000)] = 48
-    """Number of modes in the surrogate: about twice those in the band."""
+    """Number of modes that each design is solved for, the rigid ones of a free housing counted: about twice those up to
+    the band's end."""
     solves: Annotated[int, Whole(1, 10_000)] = 40
     """Largest number of designs solved on the search's mesh, shared by all starts; the own mesh takes some more."""
     explore: Annotated[int, Whole(0, 10_000)] = 0

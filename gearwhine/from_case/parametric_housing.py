@@ -31,6 +31,7 @@ from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from meshes.box.morph import MorphError
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
+_SAME = 1e-9  # relative difference of numbers written in different units
 FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
@@ -125,7 +126,8 @@ def fitted_case(
     Raises
     ------
     CaseError
-        With every key that leads to no number, is set twice, or whose number is outside its range.
+        With every key that leads to no number, is set twice, or whose number is outside its range, and every parameter
+        whose keys have different numbers and no factor.
     """
     if parameters is None:
         assert case.update is not None
@@ -175,6 +177,14 @@ def _number(
     problems: list[Problem],
 ) -> FittedNumber | None:
     low, high = entry.bounds
+    if not entry.factor and not np.allclose(values, values[0], rtol=_SAME, atol=0.0):
+        other = next(
+            place for place, value in enumerate(values) if not np.isclose(value, values[0], rtol=_SAME, atol=0.0)
+        )
+        shown = " and ".join(f"{key_of(places[place])} is {values[place]:g}" for place in (0, other))
+        expected = f"keys with one number in the case, or 'factor = true'; {shown} (SI)"
+        problems.append(Problem(f"update.parameter[{index}].keys", list(entry.keys), expected, label))
+        return None
     start = 1.0 if entry.factor else values[0]
     nominal = start if entry.nominal is None else amount(entry.nominal)
     if not low <= start <= high or not low <= nominal <= high:
@@ -303,7 +313,7 @@ class ParametricHousing:
     ----------
     case : FittedCase
     modes : int
-        Number of modes.
+        Number of modes, rigid ones counted.
     measured : callable, optional
         Returns for a mesh the matrix of the degrees of freedom where shapes were measured, shape (n_dofs, 3 n_nodes).
     threads : int
@@ -364,7 +374,12 @@ class ParametricHousing:
         """Solve the modes of the case on a mesh of its housing."""
         parted, material, materials = materials_of(case, mesh)
         matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
-        solved = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
+        every = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
+        n_rigid = int(np.count_nonzero(every.frequencies == 0.0))
+        if n_rigid == len(every.frequencies):
+            raise HousingError(f"all {n_rigid} modes are rigid: expected elastic ones too; ask for more (update.modes)")
+        # Rigid modes are left out once, here: state, shapes and rates number the same modes.
+        solved = replace(every, frequencies=every.frequencies[n_rigid:], shapes=every.shapes[n_rigid:])
         table = case.housing
         assert table is not None
         ports = [seat_matrix(mesh, seat.build()) for seat in table.seat]
@@ -376,7 +391,7 @@ class ParametricHousing:
         bounds = None if table.box is None else np.array([table.box.lower, table.box.upper])
         skin = survey_grid(mesh, bounds).normal_motion(solved.shapes)
         measured = None if self.measured is None else solved.project(self.measured(mesh))
-        state = ModalState(solved.frequencies, seats, skin, measured)
+        state = ModalState(solved.frequencies, seats, skin, measured, n_rigid)
         return HousingAtParameters(self, np.asarray(coordinates), case, mesh, state, solved.shapes)
 
 
@@ -393,7 +408,7 @@ class HousingAtParameters:
     mesh : Mesh
     state : housing.updating.ModalState
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
-        Mass-normalised mode shapes [1/√kg]; None once they are dropped.
+        Mass-normalised shapes of the state's modes [1/√kg]; None once they are dropped.
     known : Surrogate or None
         Surrogate about these coordinates, where it is computed already.
     """

@@ -329,7 +329,7 @@ class UpdatedPair:
     before_error, error : float
         Errors ln(model / measured); NaN without a partner.
     mode : int or None
-        Number of its partner after the update, from 1.
+        Number of its partner in the housing after the update, from 1, rigid modes counted.
     before_mac, mac : float or None
         MAC with the partner; None without shapes.
     strength : float or None
@@ -457,7 +457,7 @@ class SolvedUpdate:
                 measured=float(measured),
                 before_error=float(before.errors[place]),
                 error=float(after.errors[place]),
-                mode=None if mode == UNPAIRED else int(mode) + 1,
+                mode=None if mode == UNPAIRED else self.after.state.number(int(mode)),
                 before_mac=None if before.mac is None else float(before.mac[place]),
                 mac=None if after.mac is None else float(after.mac[place]),
                 strength=None if mode == UNPAIRED else float(strengths[mode]),
@@ -621,7 +621,7 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
             document = with_entry(document, location, float(text) if _is_number(text) else text)
             changed.add(location)
             provenance[key_of(location)] = why
-        prior[place] = _prior(number)
+        prior[place] = _prior(number, number.as_written(fitted_number.value))
     before = fitted.document
     for place, entry in prior.items():
         document = with_entry(
@@ -638,16 +638,31 @@ def _clear(misfit: Misfit) -> str:
     return f"gap of dominance {misfit.gap:.2f}"
 
 
-def _prior(number: FittedNumber) -> dict[str, Any]:
-    """Return the prior about the old number of the case, as entries of the updated case."""
+def _prior(number: FittedNumber, value: float) -> dict[str, Any]:
+    """Return the prior about the old number of the case, as entries of the case with a new value.
+
+    A factor multiplies the numbers of its keys, which are the fitted ones in the new case: there nominal value, spread
+    and range are parts of these.
+    """
     parameter, entry = number.parameter, number.given
-    if entry.factor:
-        return {}
-    return {"nominal": _exact(parameter.nominal, entry), "spread": _exact(parameter.spread, entry)}
+    if not entry.factor:
+        return {"nominal": _exact(parameter.nominal, entry), "spread": _exact(parameter.spread, entry)}
+    low, nominal, high, spread = (
+        _exact(quantity / value, entry)
+        for quantity in (
+            min(parameter.low, value),  # the digits of a value at the end of its range are fewer than those of that end
+            parameter.nominal,
+            max(parameter.high, value),
+            parameter.spread,
+        )
+    )
+    return {"range": [low, high], "nominal": nominal, "spread": spread}
 
 
 def _exact(value: float, entry: UpdateParameter) -> str | float:
-    return f"{value / unit_in_si(entry):.12g} {entry.unit}" if entry.unit else value
+    """Return a value in the unit of its range, to as many digits as files need."""
+    text = f"{value / unit_in_si(entry):.12g}"
+    return f"{text} {entry.unit}" if entry.unit else float(text)
 
 
 def _shown(value: float, entry: UpdateParameter) -> str:

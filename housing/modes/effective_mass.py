@@ -1,27 +1,33 @@
 """Effective modal mass, and modal damping by dashpots, mounts and joints.
 
 The effective mass is the share of each mode in the housing's mass under rigid motion of the ground. For a ground that
-moves rigidly, u = q + R s(t), the free degrees of freedom are driven by -M R s''. In the mode r that is the
-participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
+moves rigidly, u = q + R s(t), the free degrees of freedom f are driven by -(M R)_f s'', R over all degrees of freedom:
+the fixed ones s move with the ground and pull by the consistent mass, (M R)_f = M_ff R_f + M_fs R_s. In the mode r that
+is the participation factor L_r = φ_rᵀ M R, and with φᵀ M φ = 1 its square is the mass of the oscillator of the mode's
 frequency that exerts the same force on the ground. Over all modes of the free degrees of freedom
 
-    Σ_r L_r² = Rᵀ M R,
+    Σ_r L_r² = (M R)_fᵀ M_ff⁻¹ (M R)_f = Rᵀ M R - R_sᵀ (M_ss - M_sf M_ff⁻¹ M_fs) R_s,
 
-by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of it; elastic
-modes are M-orthogonal to R and carry none. A fixed patch moves with the ground: its own mass is in no mode.
+by completeness, so that the share of the discarded modes is known. A free body's rigid modes carry all of Rᵀ M R;
+elastic modes are M-orthogonal to R and carry none. The last term is the mass of the fixed patches that is in no mode.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import linalg
 
-from housing.fem.matrices import Matrices
+from housing.errors import HousingError
+from housing.fem.matrices import FreeMass, Matrices
 from housing.model.patches import rigid_body, rigid_motions
 from housing.modes.natural_modes import ModeSet
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+_TOLERANCE = 1e-12  # relative residual of M_ff x = (M R)_f
+_ITERATIONS = 2000  # far more than the well conditioned mass takes
 
 
 def modal_damping(modes: ModeSet, matrices: Matrices) -> FloatArray:
@@ -78,7 +84,7 @@ class EffectiveMass:
     total : ndarray, shape (6,)
         Mass of the whole body.
     free : ndarray, shape (6,)
-        Mass of the degrees of freedom that no support fixes: the sum over all modes.
+        Sum of the effective masses over all modes: the whole less what the fixed patches carry themselves.
     center : ndarray, shape (3,)
         Centre of gravity [m].
     """
@@ -120,15 +126,34 @@ def effective_mass(matrices: Matrices, points: FloatArray, modes: ModeSet) -> Ef
         Places of the nodes [m].
     modes : ModeSet
         Modes of these matrices.
+
+    Raises
+    ------
+    HousingError
+        Where the sum over all modes is not found to twelve digits.
     """
     center = rigid_body(points, matrices).center
     fields = rigid_motions(points, center).reshape(-1, 6)
-    total = np.einsum("ij,ij->j", fields, matrices.mass @ fields)
-    fields[matrices.fixed] = 0.0
     moved = matrices.mass @ fields
+    total = np.einsum("ij,ij->j", fields, moved)
     return EffectiveMass(
         participation=np.asarray(modes.shapes.reshape(len(modes.shapes), -1) @ moved),
         total=total,
-        free=np.einsum("ij,ij->j", fields, moved),
+        free=_over_all_modes(matrices, moved) if len(matrices.fixed) else total,
         center=center,
     )
+
+
+def _over_all_modes(matrices: Matrices, moved: FloatArray) -> FloatArray:
+    """Sum of L² over all modes, the diagonal of (M R)_fᵀ M_ff⁻¹ (M R)_f, by conjugate gradients, shape (6,)."""
+    free = np.setdiff1d(np.arange(len(moved)), matrices.fixed)
+    mass, diagonal = FreeMass(matrices, free), matrices.mass_diagonal()[free]
+    operator = linalg.LinearOperator(mass.shape, matvec=mass.__matmul__, dtype=np.float64)
+    scaled = linalg.LinearOperator(mass.shape, matvec=lambda vector: vector / diagonal, dtype=np.float64)
+    sums = []
+    for column in moved[free].T:
+        solution, failed = linalg.cg(operator, column, rtol=_TOLERANCE, maxiter=_ITERATIONS, M=scaled)
+        if failed:
+            raise HousingError(f"effective masses: M x = M R is not solved to {_TOLERANCE:g} in {_ITERATIONS} steps")
+        sums.append(column @ solution)
+    return np.array(sums)

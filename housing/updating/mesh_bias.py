@@ -12,7 +12,7 @@ coarse mesh ends where one on the fine mesh would (space mapping: Bandler et al.
 Theory and Techniques 52(1), 337-361).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Generic
 
@@ -22,7 +22,7 @@ from scipy import linalg
 from scipy.optimize import linear_sum_assignment
 
 from housing.correlation import modal_assurance_criterion
-from housing.updating.surrogate import ModalState, Surrogate, elastic
+from housing.updating.surrogate import ModalState, Surrogate
 from housing.updating.trust_region import AnyDesign, Solve
 
 FloatArray = npt.NDArray[np.float64]
@@ -52,7 +52,7 @@ class MeshBias:
         motions, fine_motions = _motions(coarse), _motions(fine)
         table = modal_assurance_criterion(motions, fine_motions)
         rows, columns = linear_sum_assignment(-table)
-        sound = (table[rows, columns] >= _LEAST_MAC) & (coarse.frequencies[rows] > 0.0)
+        sound = table[rows, columns] >= _LEAST_MAC
         rows, columns = rows[sound], columns[sound]
         differences = np.log(fine.frequencies[columns] / coarse.frequencies[rows])
         shifts = np.full(len(motions), differences.mean() if len(differences) else 0.0)
@@ -66,7 +66,7 @@ class MeshBias:
         return np.asarray(mean * np.eye(len(parts)) + (parts * (self.shifts - mean)) @ parts.T)
 
     def turned(self, state: ModalState) -> tuple[FloatArray, FloatArray]:
-        """Frequencies [rad/s] of elastic modes on the fine mesh, and their coefficients: (n,) and (n, n)."""
+        """Frequencies [rad/s] of the modes on the fine mesh, and their coefficients: (n,) and (n, n)."""
         whole = 2.0 * self.matrix(state)
         diagonal = np.arange(len(whole))
         whole[diagonal, diagonal] += 2.0 * np.log(state.frequencies)
@@ -96,24 +96,12 @@ class Debiased(Generic[AnyDesign]):
     @cached_property
     def _turned(self) -> tuple[FloatArray, FloatArray]:
         assert self.bias is not None
-        return self.bias.turned(elastic(self.design.state)[0])
+        return self.bias.turned(self.design.state)
 
     @cached_property
     def _state(self) -> ModalState:
         state = self.design.state
-        if self.bias is None:
-            return state
-        elastic_state, is_elastic = elastic(state)
-        whole = _mixed(elastic_state, *self._turned)
-        # Rigid modes are kept unchanged.
-        frequencies, seats, skin = state.frequencies.copy(), state.seats.copy(), state.skin.copy()
-        frequencies[is_elastic], seats[is_elastic], skin[is_elastic] = whole.frequencies, whole.seats, whole.skin
-        measured = None
-        if state.measured is not None:
-            assert whole.measured is not None
-            measured = state.measured.copy()
-            measured[is_elastic] = whole.measured
-        return ModalState(frequencies, seats, skin, measured)
+        return state if self.bias is None else _mixed(state, *self._turned)
 
     @property
     def state(self) -> ModalState:
@@ -149,7 +137,8 @@ def debiased(solve: Solve[AnyDesign], bias: MeshBias | None) -> Solve[Debiased[A
 
 def _mixed(state: ModalState, frequencies: FloatArray, mixture: FloatArray) -> ModalState:
     n = len(frequencies)
-    return ModalState(
+    return replace(
+        state,
         frequencies=frequencies,
         seats=(mixture.T @ state.seats.reshape(n, -1)).reshape(state.seats.shape),
         skin=mixture.T @ state.skin,

@@ -40,7 +40,7 @@ _UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside that o
 
 @dataclass(frozen=True)
 class ModeCount:
-    """A known number of modes: from ``least`` to ``most`` below ``limit`` [rad/s]."""
+    """A known number of modes: from ``least`` to ``most`` below ``limit`` [rad/s], rigid ones counted."""
 
     limit: float
     least: int
@@ -114,7 +114,8 @@ class Misfit:
     value : float
         J.
     pairs : ndarray of int, shape (n,)
-        The model's mode for each measured one, from 0; :data:`UNPAIRED` where it has none.
+        The place of each measured mode's partner in the design's :class:`ModalState`, from 0; :data:`UNPAIRED` where it
+        has none.
     errors : ndarray, shape (n,)
         ln(model / measured); NaN where unpaired.
     gap : float
@@ -204,7 +205,7 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
         penalty += target.shapes.shape[1] / target.shape_noise**2 * float(unlike[included].sum())
     count = 0
     if target.count is not None:
-        count = int(np.count_nonzero(state.frequencies < target.count.limit))
+        count = state.n_below(target.count.limit)
         beyond = target.firmness * misplaced_modes(target.count, state)[1]
         penalty += float(beyond @ beyond)
     errors = np.where(pairs == UNPAIRED, np.nan, np.log(state.frequencies[pairs]) - target.logarithms)
@@ -231,6 +232,8 @@ def is_met(target: Target, misfit: Misfit) -> bool:
 def misplaced_modes(bounds: ModeCount, state: ModalState) -> tuple[IntArray, FloatArray]:
     """Return the modes that violate a known number of modes below a limit, or nearly do.
 
+    The rigid modes are below it and count first.
+
     Returns
     -------
     modes : ndarray of int, shape (n,)
@@ -239,8 +242,9 @@ def misplaced_modes(bounds: ModeCount, state: ModalState) -> tuple[IntArray, Flo
     """
     beyond = np.log(state.frequencies / bounds.limit)
     shortfall = np.zeros(len(beyond))
-    shortfall[: bounds.least] = np.maximum(beyond[: bounds.least] + _COUNT_CLEAR, 0.0)
-    shortfall[bounds.most :] = np.minimum(beyond[bounds.most :] - _COUNT_CLEAR, 0.0)
+    least, most = (max(bound - state.n_rigid, 0) for bound in (bounds.least, bounds.most))
+    shortfall[:least] = np.maximum(beyond[:least] + _COUNT_CLEAR, 0.0)
+    shortfall[most:] = np.minimum(beyond[most:] - _COUNT_CLEAR, 0.0)
     modes = np.flatnonzero(shortfall)
     return modes, shortfall[modes] / _COUNT_SCALE
 
@@ -277,7 +281,7 @@ def residuals(
     misfit : Misfit
         Misfit of the design: pairs, errors of the frequencies and shortfalls of the mode choice.
     near : Neighbour
-        The design's modes, and their slopes.
+        The design's modes, those that the misfit numbers, and their slopes.
     penalties : bool
         Whether the violations of the known number of modes and the shortfalls of the mode choice are residuals too: a
         search needs these, but they are no measurements.

@@ -127,7 +127,7 @@ class Posterior:
     directions : ndarray, shape (n, n)
         Eigenvectors of A, a row each.
     slopes : ndarray, shape (n_modes, n)
-        d ln ω of every mode of the design.
+        d ln ω of every elastic mode of the design.
     """
 
     coordinates: FloatArray
@@ -165,7 +165,7 @@ class Posterior:
         return sorted(strong, key=lambda entry: -abs(entry[2]))
 
     def frequency_deviations(self) -> FloatArray:
-        """Relative standard deviation of each model frequency due to the parameters, shape (n_modes,)."""
+        """Relative standard deviation of each elastic frequency due to the parameters, shape (n_modes,)."""
         return np.asarray(np.sqrt(np.einsum("mi,ij,mj->m", self.slopes, self.covariance, self.slopes)))
 
     def distance(self, coordinates: FloatArray) -> float:

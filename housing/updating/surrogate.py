@@ -1,68 +1,89 @@
 """Surrogate of a housing's modes about a design: modes of neighbouring designs in a millisecond.
 
 Fixed modes fail where two of them cross or exchange their dominance. The surrogate lets all modes at hand mix: with
-Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters,
+Λ = diag(λ) of the design's mass-normalised modes Φ and d the step in the parameters, the modes of the neighbour are
+those of the symmetric matrix
 
-    H(d) = diag(ln λ) + Σ_j d_j Λ^-½ [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] Λ^-½,
+    A(d) = Λ + Σ_j d_j [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)] + O(d²),
 
-whose eigenvalues are ln λ at the neighbour and whose eigenvectors C make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. It
-is exact to first order (shapes except for contributions of modes above those at hand), and in logarithms: a frequency
-that is a power of a parameter is reproduced exactly where that parameter's coordinate is its logarithm.
+with eigenvalues λ and with eigenvectors C that make its shapes Φ (I - ½ Σ_j d_j Φᵀ dM_j Φ) C. The surrogate expands
+the logarithm of A,
+
+    H(d) = diag(ln λ) + Σ_j d_j [Φᵀ dK_j Φ - ½ (Λ Φᵀ dM_j Φ + Φᵀ dM_j Φ Λ)]_ab / L(λ_a, λ_b),
+
+which has the same eigenvectors and the eigenvalues ln λ. L is the logarithmic mean (λ_a - λ_b) / (ln λ_a - ln λ_b), the
+inverse of the divided difference of ln, by which a function of a symmetric matrix is differentiated (theorem of
+Daleckii and Krein: Higham 2008, Functions of Matrices, section 3.2). So H is exact to first order in frequencies and
+shapes (shapes except for contributions of modes above those at hand), and in logarithms: a frequency that is a power of
+a parameter is reproduced exactly where that parameter's coordinate is its logarithm.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from housing.errors import HousingError
 from housing.modes.dominance import Dominance, dominance
 from housing.updating.sensitivities import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
 _STILL = 1e-300  # motion of seats and skin at rest
-_RIGID = 1e-6  # part of the highest eigenvalue at hand below which a mode is rigid and left out
 
 
 @dataclass(frozen=True)
 class ModalState:
-    """A design's modes in the quantities that a fit compares, ascending in frequency.
+    """A design's elastic modes in the quantities that a fit compares, ascending in frequency.
+
+    Rigid modes, which no parameter moves and no survey measures, are left out. A fit numbers modes by their place here,
+    from 0; :meth:`number` is a mode's number in the housing.
 
     Attributes
     ----------
     frequencies : ndarray, shape (n_modes,)
-        Circular frequencies [rad/s].
+        Circular frequencies, positive [rad/s].
     seats : ndarray, shape (n_modes, n_seats, 2)
         x and y translation of each bearing seat in the mass-normalised shapes [1/√kg].
     skin : ndarray, shape (n_modes, n_points)
         Outward normal motion at the survey's points [1/√kg].
     measured : ndarray, shape (n_modes, n_dofs), or None
         Motion at the degrees of freedom where shapes were measured [1/√kg].
+    n_rigid : int
+        Number of the housing's rigid modes, below all of these.
+
+    Raises
+    ------
+    HousingError
+        Where a frequency is not positive.
     """
 
     frequencies: FloatArray
     seats: FloatArray
     skin: FloatArray
     measured: FloatArray | None = None
+    n_rigid: int = 0
+
+    def __post_init__(self) -> None:
+        """Check that no mode is rigid: its ln ω is infinite, and its place would shift those of the others."""
+        if not (self.frequencies > 0.0).all():
+            raise HousingError(f"frequencies {self.frequencies} rad/s: expected positive ones, of elastic modes")
+
+    def number(self, mode: int) -> int:
+        """Return the number of a mode in the housing, from 1, the rigid ones counted."""
+        return self.n_rigid + mode + 1
+
+    def n_below(self, limit: float) -> int:
+        """Count the housing's modes below a circular frequency [rad/s], the rigid ones among them."""
+        return self.n_rigid + int(np.count_nonzero(self.frequencies < limit))
 
     @property
     def dominance(self) -> Dominance:
         """Each mode's strength between seats and skin."""
         return dominance(self.frequencies, self.seats, self.skin)
-
-
-def elastic(state: ModalState) -> tuple[ModalState, BoolArray]:
-    """Return the elastic modes, and a mask of which modes they are, shape (n_modes,)."""
-    eigenvalues = state.frequencies**2
-    is_elastic = eigenvalues > _RIGID * eigenvalues[-1]
-    measured = None if state.measured is None else state.measured[is_elastic]
-    return ModalState(
-        state.frequencies[is_elastic], state.seats[is_elastic], state.skin[is_elastic], measured
-    ), is_elastic
 
 
 @dataclass(frozen=True)
@@ -135,9 +156,9 @@ class Surrogate:
     center : ndarray, shape (n_parameters,)
         The design's coordinates.
     state : ModalState
-        State at the design, elastic modes only.
+        State at the design.
     rates : ndarray, shape (n_parameters, n_modes, n_modes)
-        Λ^-½ [...] Λ^-½ of each coordinate.
+        Derivatives of H by each coordinate.
     mass : ndarray, shape (n_parameters, n_modes, n_modes)
         Φᵀ dM Φ of each coordinate.
     """
@@ -149,13 +170,10 @@ class Surrogate:
 
     @classmethod
     def about(cls, center: FloatArray, state: ModalState, rates: ModalSensitivities) -> "Surrogate":
-        """Build the surrogate about a design; rigid modes, which no parameter moves, are left out."""
-        elastic_state, is_elastic = elastic(state)
-        eigenvalues = elastic_state.frequencies**2
-        stiffness, mass = rates.stiffness[:, is_elastic][:, :, is_elastic], rates.mass[:, is_elastic][:, :, is_elastic]
-        change = stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
-        scale = 1.0 / np.sqrt(eigenvalues)
-        return cls(center, elastic_state, scale[:, None] * change * scale, mass)
+        """Build the surrogate about a design, from its modes and the derivatives by the same modes."""
+        eigenvalues, mass = state.frequencies**2, rates.mass
+        change = rates.stiffness - 0.5 * (eigenvalues[:, None] * mass + mass * eigenvalues)
+        return cls(center, state, change / _logarithmic_means(eigenvalues), mass)
 
     def at(self, coordinates: FloatArray) -> Neighbour:
         """Modes at other coordinates."""
@@ -167,13 +185,25 @@ class Surrogate:
         carried = mixture - 0.5 * _weighted(step, self.mass) @ mixture
         state = self.state
         n = len(carried)
-        moved = ModalState(
+        moved = replace(
+            state,
             frequencies=np.exp(0.5 * values),
             seats=(carried.T @ state.seats.reshape(n, -1)).reshape(state.seats.shape),
             skin=carried.T @ state.skin,
             measured=None if state.measured is None else carried.T @ state.measured,
         )
         return Neighbour(moved, self, step, mixture)
+
+
+def _logarithmic_means(values: FloatArray) -> FloatArray:
+    """Logarithmic mean of each two of some positive values, shape (n, n): (a - b) / ln(a / b), and a where a = b.
+
+    With x = ½ ln(a / b) it is √(a b) sinh(x) / x, which stays accurate where both are nearly the same.
+    """
+    logarithms = np.log(values)
+    half = 0.5 * (logarithms[:, None] - logarithms)
+    ratio = np.divide(np.sinh(half), half, out=np.ones_like(half), where=half != 0.0)
+    return np.asarray(np.sqrt(values[:, None] * values) * ratio)
 
 
 def _weighted(weights: FloatArray, matrices: FloatArray) -> FloatArray:

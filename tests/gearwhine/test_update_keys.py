@@ -56,6 +56,20 @@ def test_a_factor_multiplies_what_stands_there() -> None:
     )
 
 
+def test_keys_with_different_numbers_need_a_factor() -> None:
+    """One value for all would change the case before it is fitted: a housing that nobody has would be "before"."""
+    keys = {"keys": ["housing.box.wall.top", "housing.box.feet.size[1]"], "range": ["5 mm", "30 mm"]}
+    with pytest.raises(CaseError, match=r"wall.top is 0.012 and housing.box.feet.size\[1\] is 0.02 \(SI\)"):
+        fitted(keys)
+    (number,) = fitted({**keys, "range": [0.5, 2.0], "factor": True}).numbers
+    assert list(number.entries(1.0)) == list(zip(number.places, (0.012, 0.02), strict=True))
+    inches = load_case("steel-box", ["housing.box.wall=0.5 in", "measured.frequencies=['700 Hz']"]).case
+    document = inches.model_dump(mode="json", by_alias=True, exclude_none=True)
+    document["housing"]["box"]["feet"]["size"][1] = "12.7 mm"
+    document["update"] = {"parameter": [{"name": "p", **keys}]}
+    assert fitted_case(parse_case(document)).numbers[0].start == pytest.approx(0.0127)
+
+
 def test_one_wall_for_all_becomes_a_wall_for_each_face() -> None:
     made = fitted_case(
         load_case(

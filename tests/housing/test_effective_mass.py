@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import Certificate, Material, ModeSet, Support, assemble, effective_mass, solve_modes
+from housing import Certificate, Housing, Material, ModeSet, Support, assemble, effective_mass, solve_modes
 from housing.fem.matrices import Matrices
 from housing.model.patches import rigid_body, rigid_motions
 from housing.model.supports import fixed_freedoms
@@ -60,8 +60,14 @@ def test_cantilever_bending(cantilever: tuple[Mesh, Matrices, npt.NDArray[np.int
     assert fractions[np.argmax(fractions)] == fractions[fractions > 1e-6][0]  # the first of its plane
 
 
-def test_sums_reach_the_mass_that_is_free(block: Callable[..., Mesh], steel: Material) -> None:
-    """All the modes of a small clamped block by dense algebra: Parseval's sum leaves nothing."""
+def test_modes_and_fixed_patch_press_on_a_shaken_ground_as_the_whole_block(
+    block: Callable[..., Mesh], steel: Material
+) -> None:
+    """Reference: u of all degrees of freedom with the clamped ones moved by e^iωt, by dense algebra, without modes.
+
+    The ground feels Rᵀ_s (K - ω² M) u there; by all modes it is -ω² times the patch's own mass and the oscillators'
+    L² / (1 - ω² / ω_r²). Below the first mode and between modes, and Parseval's sum leaves nothing.
+    """
     mesh = block((0.05, 0.06, 0.08))
     matrices = assemble(mesh, steel)
     fixed = fixed_freedoms(mesh, [Support("root", surface="bottom", fixed=(True, True, True))])
@@ -76,11 +82,25 @@ def test_sums_reach_the_mass_that_is_free(block: Callable[..., Mesh], steel: Mat
     np.testing.assert_allclose(result.mass.sum(axis=0), result.free, rtol=1e-9)
     np.testing.assert_allclose(result.missing, 0.0, atol=1e-9)
     assert (result.captured < 1.0).all()  # the patch's own mass is in no mode
-    unit = np.zeros((matrices.n_nodes, 3))
-    unit[:, 0] = 1.0
-    held = unit.ravel().copy()
-    held[fixed] = 0.0
-    assert result.free[0] == pytest.approx(held @ (matrices.mass @ held), rel=1e-12)
+    fields = rigid_motions(mesh.points, result.center).reshape(-1, 6)
+    for omega in (0.6 * modes.frequencies[0], 0.5 * (modes.frequencies[3] + modes.frequencies[4])):
+        dynamic = matrices.stiffness.toarray() - omega**2 * matrices.mass.toarray()
+        motion = fields.copy()
+        motion[free] = -np.linalg.solve(dynamic[np.ix_(free, free)], dynamic[np.ix_(free, fixed)] @ fields[fixed])
+        force = np.einsum("ij,ij->j", fields[fixed], dynamic[fixed] @ motion)
+        oscillators = (result.mass / (1.0 - (omega / modes.frequencies) ** 2)[:, None]).sum(axis=0)
+        np.testing.assert_allclose(force, -(omega**2) * (result.total - result.free + oscillators), rtol=1e-7)
+
+
+def test_participation_is_that_of_the_moving_ground(block: Callable[..., Mesh], steel: Material) -> None:
+    """The same φᵀ M R as that by which a machine's housing is shaken, about the same point."""
+    mesh = block((0.05, 0.06, 0.08))
+    housing = Housing(mesh, steel, fixtures=(Support("root", surface="bottom", fixed=(True, True, True)),))
+    matrices = housing.matrices()
+    modes = solve_modes(matrices, count=6)
+    result = effective_mass(matrices, mesh.points, modes)
+    about_origin = housing.participation(matrices, modes)
+    np.testing.assert_allclose(result.participation[:, :3], about_origin[:, :3], rtol=1e-9, atol=1e-12)
 
 
 def test_a_free_bodys_rigid_modes_carry_all(box: Mesh, box_matrices: Matrices) -> None:

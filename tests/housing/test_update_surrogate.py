@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import linalg
 
+from housing import HousingError
 from housing.updating import ModalState, Surrogate
 from housing.updating.sensitivities import ModalSensitivities
 
@@ -54,6 +55,31 @@ def test_it_errs_by_the_square_of_the_step(center: list[float], seed: int) -> No
     assert errors[1] < 0.4 * errors[0] or errors[0] < 1e-9
 
 
+def test_shapes_go_as_those_of_systems_solved_anew() -> None:
+    """Slopes of the motions where shapes are measured, by differences of systems whose λ are up to 16 times apart."""
+    z, step = np.array([0.05, -0.08, 0.03]), 1e-4
+    near = surrogate_about(z).at(z)
+    assert near.state.frequencies[-1] > 4.0 * near.state.frequencies[0]
+    assert near.state.measured is not None
+    slopes = near.measured_slopes(np.arange(N))
+    for number, way in enumerate(np.eye(P)):
+        shapes = []
+        for state in (solved(z + sign * step * way)[0] for sign in (1.0, -1.0)):
+            assert state.measured is not None
+            shapes.append(state.measured * np.sign((state.measured * near.state.measured).sum(axis=1))[:, None])
+        difference = (shapes[0] - shapes[1]) / (2.0 * step)
+        assert np.abs(slopes[number] - difference).max() < 1e-5 * np.abs(difference).max()
+
+
+def test_modes_of_one_frequency_have_the_slopes_of_their_mixture() -> None:
+    """Two springs of λ = 1 that a parameter couples by 0.1 e: ln λ go by ±0.1, at λ together and 1e-9 apart alike."""
+    for apart in (0.0, 1e-9):
+        state = ModalState(np.array([1.0, 1.0 + apart]), np.zeros((2, 1, 2)), np.eye(2))
+        coupled = ModalSensitivities(np.array([[[0.0, 0.1], [0.1, 0.0]]]), np.zeros((1, 2, 2)))
+        far = Surrogate.about(np.zeros(1), state, coupled).at(np.ones(1)).state
+        assert 2.0 * np.log(far.frequencies) == pytest.approx([-0.1, 0.1], rel=1e-6)
+
+
 def test_at_the_design_it_is_the_design() -> None:
     z = np.array([0.2, -0.1, 0.4])
     state, near = solved(z)[0], surrogate_about(z).at(z).state
@@ -99,10 +125,16 @@ def test_slopes_of_frequencies_and_shapes_are_those_of_differences() -> None:
         assert np.abs(slopes[number] - difference[modes]).max() < 1e-6 * np.abs(difference).max()
 
 
-def test_rigid_modes_are_left_out() -> None:
-    state = ModalState(np.array([0.0, 1e-4, 100.0, 200.0]), np.zeros((4, 1, 2)), np.ones((4, 3)))
-    surrogate = Surrogate.about(np.zeros(1), state, ModalSensitivities(np.zeros((1, 4, 4)), np.zeros((1, 4, 4))))
-    assert surrogate.state.frequencies.tolist() == [100.0, 200.0]
+def test_rigid_modes_are_none_of_a_state() -> None:
+    with pytest.raises(HousingError, match="of elastic modes"):
+        ModalState(np.array([0.0, 100.0, 200.0]), np.zeros((3, 1, 2)), np.ones((3, 3)))
+
+
+def test_modes_are_numbered_and_counted_behind_the_rigid_ones() -> None:
+    state = ModalState(np.array([100.0, 200.0]), np.zeros((2, 1, 2)), np.ones((2, 3)), n_rigid=6)
+    near = Surrogate(np.zeros(1), state, np.zeros((1, 2, 2)), np.zeros((1, 2, 2))).at(np.ones(1)).state
+    assert [near.number(mode) for mode in (0, 1)] == [7, 8]
+    assert [near.n_below(limit) for limit in (1.0, 150.0, 300.0)] == [6, 7, 8]
 
 
 def test_slopes_of_strengths_are_those_of_differences() -> None:
