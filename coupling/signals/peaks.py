@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.signals.spectrum import Spectrum
-from coupling.signals.tones import hann_line, tone_offset
+from coupling.signals.tones import hann_line, tone_offset, tone_weights
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -111,7 +111,7 @@ def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, Compl
     known = (beside > 0) & (beside < len(a))
     lines = np.where(known, hann_line(around - offset), 0.0)
     heights = np.where(known, a[np.clip(beside, 0, len(a) - 1)], 0.0)
-    weights = lines[1:3].conj() / (np.abs(lines[1:3]) ** 2).sum(axis=0)
+    weights = tone_weights(offset)
     size = (np.abs(weights) * heights[1:3]).sum(axis=0)
     lone = np.abs(heights - np.abs(lines) * size).max(axis=0, initial=0.0) <= _LONE * size
     own = _own_lines(places)

@@ -26,6 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _PASSES = 4  # number of passes that subtract the leakage of other tones
+_ON_LINE = 1e-6  # distance from a line within which a tone is the line, in line spacings
 _LEAKING = 200  # number of the highest tones whose leakage is subtracted
 
 
@@ -95,15 +96,58 @@ def _interpolated(lower: ComplexArray, upper: ComplexArray, weights: FloatArray)
     """Distances above the lower of two neighbouring lines, shape (t,), and amplitudes of tones, shape (n, t)."""
     below, above = _size(lower, weights), _size(upper, weights)
     offset = tone_offset(below, above)
-    # Least squares over both lines, so that a small line counts little.
-    low, high = hann_line(-offset), hann_line(1.0 - offset)
-    return offset, (low.conj() * lower + high.conj() * upper) / (np.abs(low) ** 2 + np.abs(high) ** 2)
+    low, high = tone_weights(offset)
+    return offset, low * lower + high * upper
 
 
 def tone_offset(lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Distance δ of tones above the lower one of their two highest lines, by the heights of both, from 0 to 1."""
     ratio = upper / np.maximum(lower, np.finfo(float).tiny)
     return np.asarray(np.clip((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 1.0))
+
+
+def tone_weights(offset: FloatArray) -> ComplexArray:
+    """Weights of the two lines beside tones in their amplitudes, shape (2, t), by their distances above the lower one.
+
+    Least squares over both lines, so that a small line counts little.
+    """
+    low, high = hann_line(-offset), hann_line(1.0 - offset)
+    return np.asarray(np.stack([low.conj(), high.conj()]) / (np.abs(low) ** 2 + np.abs(high) ** 2))
+
+
+def tones_at(
+    lines: ComplexArray, spacing: float, frequencies: npt.ArrayLike, window: str
+) -> tuple[FloatArray, ComplexArray]:
+    """Tones of known frequencies from the lines beside them.
+
+    Without a window, and on a line, a tone is the nearest line.
+
+    Parameters
+    ----------
+    lines : ndarray of complex, shape (..., m)
+        Lines of some signals from 0 Hz on.
+    spacing : float
+        Spacing of the lines [Hz].
+    frequencies : array_like, shape (t,)
+        Between 0 Hz and the last line [Hz].
+    window : {"uniform", "hann"}
+
+    Returns
+    -------
+    frequencies : ndarray, shape (t,)
+        Frequencies of the tones [Hz].
+    amplitudes : ndarray of complex, shape (..., t)
+    """
+    places = np.asarray(frequencies, dtype=np.float64) / spacing
+    nearest = np.rint(places).astype(np.int64)
+    between = (np.abs(places - nearest) > _ON_LINE) & (window == "hann")
+    lower = np.where(between, np.floor(places), nearest).astype(np.int64)
+    offset = np.where(between, places - lower, 0.0)
+    weights = np.where(between, tone_weights(offset), np.array([[1.0], [0.0]]))
+    upper = np.minimum(lower + 1, lines.shape[-1] - 1)
+    return np.asarray(spacing * (lower + offset)), np.asarray(
+        lines[..., lower] * weights[0] + lines[..., upper] * weights[1]
+    )
 
 
 def hann_line(distance: FloatArray) -> ComplexArray:

@@ -1,6 +1,6 @@
 """Operating deflection shapes of a stored run at the spectral lines nearest to given frequencies."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from coupling.signals.tones import tones_at
 from gearwhine.case import CaseError, Problem
 from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from gearwhine.solve.signature import SolvedSignature
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi
@@ -86,20 +88,40 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
     lines = content["housing_line"].values
     spacing = float(lines[1] - lines[0])
     spectrum = content["housing_acceleration_spectrum"].values
-    chosen = set()
+    listed = content["line_frequency"].values if "line_frequency" in content else np.zeros(0)
+    chosen = dict[int, float]()
     for frequency in frequencies:
         place = int(np.argmin(np.abs(lines - frequency)))
         if place == 0 or abs(lines[place] - frequency) > 0.5 * spacing * (1.0 + 1e-9):
             span = f"a line from {lines[1]:.6g} to {lines[-1]:.6g} Hz, which stand {spacing:.4g} Hz apart"
             raise CaseError([Problem("--line", f"{frequency:g}", span)])
-        chosen.add(place)
+        # A tone of the sensors between the lines, where there is one.
+        near = listed[np.abs(listed - lines[place]) < 0.5 * spacing]
+        chosen[place] = float(near[0]) if near.size else float(lines[place])
+    window = content["housing_acceleration_spectrum"].attrs.get("window", "uniform")
+    named = [(chosen[place], _name(content, chosen[place], spacing)) for place in sorted(chosen)]
+    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, window, named)
+
+
+def _run_lines(
+    lines: ComplexArray, spacing: float, window: str, named: Sequence[tuple[float, str]]
+) -> list[RunLine]:
+    """Operating shapes at frequencies [Hz] with names, from the lines of the housing's modes, shape (n_modes, m)."""
+    frequencies, tones = tones_at(lines, spacing, [hertz for hertz, _ in named], window)
     return [
-        RunLine(
-            OperatingShape(_TWO_PI * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
-            _name(content, float(lines[place]), spacing),
-        )
-        for place in sorted(chosen)
+        RunLine(OperatingShape(_TWO_PI * hertz, modal), name)
+        for hertz, modal, (_, name) in zip(frequencies.tolist(), tones.T, named, strict=True)
+        if modal.any()
     ]
+
+
+def _chosen(listed: Iterable[tuple[float, str]], spacing: float, most: int) -> list[tuple[float, str]]:
+    """Return the first frequencies of a list with their names, ascending, each line or tone once."""
+    chosen: list[tuple[float, str]] = []
+    for hertz, name in listed:
+        if len(chosen) < most and all(abs(hertz - other) >= 0.5 * spacing for other, _ in chosen):
+            chosen.append((hertz, name))
+    return sorted(chosen)
 
 
 def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list[RunLine]:
@@ -117,18 +139,16 @@ def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list
     housing_lines = signature.housing_lines(limit)
     if housing_lines is None or len(housing_lines[0]) < 2:
         return []
-    frequencies, spectrum, _ = housing_lines
-    chosen: dict[int, str] = {}
-    for rank in range(max(map(len, signature.lines.values()), default=0)):
-        for lines in signature.lines.values():
-            if rank < len(lines) and len(chosen) < most:
-                place = int(np.argmin(np.abs(frequencies - lines[rank].frequency)))
-                if spectrum[:, place].any():
-                    chosen.setdefault(place, lines[rank].named.name)
-    return [
-        RunLine(OperatingShape(_TWO_PI * float(frequencies[place]), spectrum[:, place]), chosen[place])
-        for place in sorted(chosen)
-    ]
+    frequencies, spectrum, window = housing_lines
+    ranks = range(max(map(len, signature.lines.values()), default=0))
+    listed = (
+        (lines[rank].frequency, lines[rank].named.name)
+        for rank in ranks
+        for lines in signature.lines.values()
+        if rank < len(lines)
+    )
+    spacing = float(frequencies[1])
+    return _run_lines(spectrum, spacing, window, _chosen(listed, spacing, most))
 
 
 def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
@@ -153,19 +173,10 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     lines, spectrum, listed, names, shapes, positions = (stored[name].values for name in _OF_LINES)
     if not _same_shapes(shapes, positions, record):
         return []
-    chosen: dict[int, str] = {}
-    for frequency, name in zip(listed.T.ravel(), names.T.ravel(), strict=True):
-        if len(chosen) < most and np.isfinite(frequency):
-            place = int(np.argmin(np.abs(lines - frequency)))
-            if spectrum[:, place].any():
-                chosen.setdefault(place, str(name))
-    return [
-        RunLine(
-            OperatingShape(_TWO_PI * float(lines[place]), spectrum[:, place, 0] + 1j * spectrum[:, place, 1]),
-            chosen[place],
-        )
-        for place in sorted(chosen)
-    ]
+    pairs = zip(listed.T.ravel().tolist(), map(str, names.T.ravel()), strict=True)
+    spacing, window = float(lines[1]), stored["housing_acceleration_spectrum"].attributes.get("window", "uniform")
+    chosen = _chosen(((hertz, name) for hertz, name in pairs if np.isfinite(hertz)), spacing, most)
+    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, window, chosen)
 
 
 def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) -> bool:

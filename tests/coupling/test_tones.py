@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from coupling.errors import CouplingError
 from coupling.signals.spectrum import Spectrum, amplitude_spectrum
-from coupling.signals.tones import hann_tones
+from coupling.signals.tones import hann_tones, tones_at
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -85,3 +85,17 @@ def test_silence_has_no_tones() -> None:
 def test_a_large_mean_hides_no_tone() -> None:
     found = hann_tones(amplitude_spectrum(record({313.9: [1.0]}) + 1e7, _INTERVAL, "hann"), [1.0], floor=1e-3)
     assert found.frequencies == pytest.approx([313.9], abs=1e-3)
+
+
+def test_tones_of_known_frequencies_follow_from_the_lines_beside_them() -> None:
+    """Between lines under Hann's window, on a line, and the nearest line without a window."""
+    spacing = 1.0 / (_INTERVAL * _COUNT)
+    tones = {200.8: [3.0 * np.exp(0.7j), 1.0j], 400 * spacing: [0.5j, 0.8 - 0.3j]}
+    spectrum = spectrum_of(tones)
+    frequencies, amplitudes = tones_at(spectrum.lines, spectrum.spacing, list(tones), spectrum.window)
+    assert frequencies == pytest.approx(list(tones), rel=1e-12)
+    np.testing.assert_allclose(amplitudes.T, list(tones.values()), rtol=2e-3)
+    plain = amplitude_spectrum(record(tones), _INTERVAL)
+    frequencies, amplitudes = tones_at(plain.lines, spacing, [399.6 * spacing], "uniform")
+    assert frequencies == pytest.approx([400 * spacing])
+    assert amplitudes[:, 0].tolist() == plain.lines[:, 400].tolist()

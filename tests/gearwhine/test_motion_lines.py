@@ -293,6 +293,9 @@ def test_refuses_a_box_without_a_floor_and_its_names(changes: dict[str, Any], me
         gw.load("small-gearbox", changes)
 
 
+MESH = "1× pinion -> wheel"
+
+
 def test_titles_of_operating_shapes_have_arrows() -> None:
     solved = quick_run(24.0).solved
     assert solved.signature is not None
@@ -301,6 +304,15 @@ def test_titles_of_operating_shapes_have_arrows() -> None:
     titles = [operating_shape_of_line(line, sounding_housing().modes, surface).title for line in lines]
     assert "Operating shape at 2520.0 Hz   1× pinion → wheel" in titles
     assert not any("->" in title for title in titles)
+
+
+def test_operating_shapes_of_a_record_of_broken_turns_are_those_of_one_of_whole_turns() -> None:
+    """A mesh line between two lines of the spectrum has its frequency, and all of its amplitude, in every mode."""
+    signatures = [quick_run(turns).solved.signature for turns in (24.0, 24.37)]
+    whole, broken = ([line for line in highest_lines(one, 3000.0, 6) if line.name == MESH] for one in signatures if one)
+    assert broken[0].hertz == pytest.approx(whole[0].hertz, abs=0.05)
+    sizes, others = (np.abs(lines[0].shape.modal) for lines in (whole, broken))
+    np.testing.assert_allclose(others, sizes, rtol=0.01, atol=0.01 * sizes.max())
 
 
 @pytest.mark.parametrize(("amplitude", "shown"), [(147.0, "150"), (0.0583, "0.058"), (3.0, "3"), (12345.0, "12000")])
