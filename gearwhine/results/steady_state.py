@@ -99,9 +99,10 @@ def _lines(
 ) -> list[dict[str, Any]]:
     """Return the highest lines of all motions together up to a limit [Hz], each with the name of its excitation."""
     lines = [
-        {"frequency_hz": frequency, key: amplitude} | ({"excitation": motion.excitation} if motion.excitation else {})
+        {"frequency_hz": frequency, key: amplitude, "phase_rad": phase}
+        | ({"excitation": motion.excitation} if motion.excitation else {})
         for motion, signal in zip(motions, signals, strict=True)
-        for frequency, amplitude in motion.lines(signal, limit)
+        for frequency, amplitude, phase in motion.lines(signal, limit)
     ]
     return sorted(lines, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 

@@ -103,9 +103,7 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
     return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, window, named)
 
 
-def _run_lines(
-    lines: ComplexArray, spacing: float, window: str, named: Sequence[tuple[float, str]]
-) -> list[RunLine]:
+def _run_lines(lines: ComplexArray, spacing: float, window: str, named: Sequence[tuple[float, str]]) -> list[RunLine]:
     """Operating shapes at frequencies [Hz] with names, from the lines of the housing's modes, shape (n_modes, m)."""
     frequencies, tones = tones_at(lines, spacing, [hertz for hertz, _ in named], window)
     return [

@@ -78,16 +78,16 @@ class SteadyMotion:
         """Number of the highest lines of a signal that are reported."""
         return _LINES
 
-    def lines(self, signal: FloatArray, limit: float = np.inf) -> list[tuple[float, float]]:
-        """Frequencies [Hz] and amplitudes of a signal's highest lines up to a limit [Hz].
+    def lines(self, signal: FloatArray, limit: float = np.inf) -> list[tuple[float, float, float]]:
+        """Frequencies [Hz], amplitudes and phases [rad] of a signal's highest lines up to a limit [Hz].
 
-        Each is a whole number of times the period's frequency.
+        Each is a whole number of times the period's frequency; the phase is that of its cosine at t = 0.
         """
         spectrum = self.spectrum(signal)
         inside = np.flatnonzero((spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit * (1.0 + 1e-9)))
         highest = inside[np.argsort(-spectrum.amplitude[inside], kind="stable")][:_LINES]
         return [
-            (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]))
+            (float(spectrum.frequencies[i]), float(spectrum.amplitude[i]), float(spectrum.phase[i]))
             for i in highest
             if spectrum.amplitude[i] > 0.0
         ]
@@ -312,7 +312,7 @@ def _loudest(
             if places.get(name) != place:
                 continue
             spectrum = motion.spectrum(motion.histories.sensor_acceleration[name])
-            frequency, amplitude = motion.lines(motion.histories.sensor_acceleration[name], motion.trusted_limit)[0]
+            frequency, amplitude, _ = motion.lines(motion.histories.sensor_acceleration[name], motion.trusted_limit)[0]
             number = int(np.argmin(np.abs(spectrum.frequencies - frequency)))
             line = spectrum.lines[number]
             shares = (row[: len(modal.lines)] * modal.lines[:, number] * line.conj()).real / abs(line) ** 2
