@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
+from coupling.gears.contact.contact_law import places_on_line_of_action
 from coupling.machine.coupled_system import HarmonicLoad
 
 FloatArray = npt.NDArray[np.float64]
@@ -52,8 +53,7 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     arms = np.zeros((mesh.phases.size, 2))
     if contact.faces is None or mesh.line_loads is None:
         return arms
-    z, shift = contact.faces.z, contact.faces.shift
-    along = (mesh.positions[:, :, None] + shift - geometry.pitch_point_position) * geometry.base_pitch
+    z, along = contact.faces.z, places_on_line_of_action(contact, geometry, mesh.positions)
     shares = mesh.line_loads / mesh.line_loads.sum(axis=(1, 2))[:, None, None]
     arms[:, 0] = (shares * z).sum(axis=(1, 2))
     # Slots without a pair carry no load, whatever their position.
