@@ -280,11 +280,13 @@ def load_gear_pair(
     ).under_load(math.copysign(force, torque))
     carrying = contact.carrying_flanks
     static = loaded_transmission_error(carrying, force)
-    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
-    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
+    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
+    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
+    # mesh periods, which are not alike with pitch deviations or damaged teeth.
+    loaded = (hunting or static).mean_mesh_stiffness
+    mean_mesh_stiffness = loaded if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
-    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 
