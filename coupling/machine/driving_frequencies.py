@@ -60,7 +60,7 @@ def _inside(times: FloatArray, begin: float, end: float) -> npt.NDArray[np.bool_
 
 def _varies(contact: ToothContact) -> bool:
     """Whether a contact law depends on the phase: a mesh with one constant spring does not."""
-    if contact.faces is not None or contact.hunting_numbers or contact.variants:
+    if contact.enters_by_slices or contact.hunting_numbers or contact.variants:
         return True
     start, end = contact.contact_range
     curves = (contact.stiffness.coefficients, contact.deviation.coefficients)

@@ -13,17 +13,23 @@ of the force over F, a force F (e, h) at that place has the moment of the same f
 
 about the driven gear's centre; the moment on the driver is opposite. Both arms are those of static equilibrium under
 the mean force, which stands for F in M: the dynamic part of the force would add a product of two small quantities.
+
+Teeth that are not alike, by pitch deviations or damage, have other arms in each mesh period. The harmonics of the mesh
+are those of the mean of all mesh periods of the hunting period; the sidebands of the arms about them are left out.
 """
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
+from coupling.gears.contact.contact_law import places_on_line_of_action
+from coupling.gears.loaded.transmission_error import different_periods
 from coupling.machine.coupled_system import HarmonicLoad
 
 FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 128  # number of phases of a mesh period
+_PERIODS = 128  # largest number of mesh periods that are solved for the mean over the hunting period
 _HARMONICS = 6  # largest number of mesh harmonics
 _SMALL = 0.01  # part of the greatest harmonic below which the last ones are left out
 _NO_ARM = 1e-9  # part of the face width that is rounding
@@ -52,13 +58,32 @@ def load_arms(contact: ToothContact, geometry: GearPairGeometry, force: float, p
     arms = np.zeros((mesh.phases.size, 2))
     if contact.faces is None or mesh.line_loads is None:
         return arms
-    z, shift = contact.faces.z, contact.faces.shift
-    along = (mesh.positions[:, :, None] + shift - geometry.pitch_point_position) * geometry.base_pitch
+    z, along = contact.faces.z, places_on_line_of_action(contact, geometry, mesh.positions)
     shares = mesh.line_loads / mesh.line_loads.sum(axis=(1, 2))[:, None, None]
     arms[:, 0] = (shares * z).sum(axis=(1, 2))
     # Slots without a pair carry no load, whatever their position.
     arms[:, 1] = np.where(shares > 0.0, shares * along, 0.0).sum(axis=(1, 2))
     return arms
+
+
+def mean_load_arms(
+    contact: ToothContact, geometry: GearPairGeometry, force: float, phases: npt.ArrayLike
+) -> FloatArray:
+    """Load arms at phases of a mesh period, each the mean over all mesh periods of the hunting period, shape (n, 2).
+
+    See `load_arms`; `phases` (n,) are those of the first mesh period. Where more than `_PERIODS` mesh periods differ,
+    as with pitch deviations of both gears, the mean is that of as many, evenly spread over the hunting period.
+    """
+    at = np.asarray(phases, dtype=np.float64)
+    if contact.hunting_period == 1:
+        return load_arms(contact, geometry, force, at)
+    first, which = different_periods(contact)
+    periods, counts = first, np.bincount(which)
+    if first.size > _PERIODS:
+        periods = np.arange(_PERIODS) * which.size // _PERIODS
+        counts = np.ones(_PERIODS, dtype=np.int64)
+    arms = np.array([load_arms(contact, geometry, force, at + period) for period in periods])
+    return np.asarray(np.tensordot(counts / counts.sum(), arms, axes=1))
 
 
 def shuttling_loads(
@@ -97,11 +122,15 @@ def shuttling_loads(
     nothing = np.zeros_like(tilting)
     if contact.faces is None or not np.any(tilting):
         return nothing, []
-    phases = np.arange(_POINTS) / _POINTS if mesh_frequency != 0.0 else np.array([phase])
     try:
-        arm = load_arms(contact, geometry, force, phases) @ [1.0, -axial]
+        arms = (
+            mean_load_arms(contact, geometry, force, np.arange(_POINTS) / _POINTS)
+            if mesh_frequency != 0.0
+            else load_arms(contact, geometry, force, [phase])
+        )
     except GearError:
         return nothing, []
+    arm = arms @ [1.0, -axial]
     if np.abs(arm).max() <= _NO_ARM * contact.faces.face_width:
         return nothing, []
     spectrum = np.fft.rfft(arm) / len(arm)

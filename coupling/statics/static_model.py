@@ -225,10 +225,6 @@ def static_pair(
     driver, driven = (replace(gear, faults=(), pitch_deviations=()) for gear in (geometry.driver, geometry.driven))
     sound = replace(geometry, driver=driver, driven=driven)
     faces = face_slices(sound, sense=rotation)
-    if not pair.has_single_teeth:
-        # The spring of a whole mesh, spread evenly over the face, with no coupling of its slices.
-        stiffness = float(model.pair_stiffness(geometry).mean)
-        faces = replace(faces, flattening=2.0 * stiffness / geometry.face_width, coupling=0.0)
     contact = tooth_contact(sound, model, corner_contact=pair.has_corner_contact, faces=faces)
     backwards = torque < 0.0
     sense = -rotation if backwards else rotation

@@ -460,7 +460,8 @@ class ToothStiffness(Table):
     ] = "elastic-ring"
     """Model of the tooth stiffness; see [gear stiffness](gear-stiffness.md)."""
     value: PositiveStiffness | None = None
-    """Mean stiffness, of models "constant" and "square"."""
+    """Stiffness of the whole mesh, of model "constant"; of one pair of teeth while it touches, of "square": in the mean
+    the mesh has the value times the contact ratio."""
     file: CaseFile | None = None
     """File of a table, of model "table"."""
 

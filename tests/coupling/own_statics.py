@@ -21,7 +21,7 @@ from rotors import Bearing, Rotor, Segment, ShaftMaterial
 
 FloatArray = npt.NDArray[np.float64]
 
-SLICES, PHASES, STATIONS = 61, 48, 5
+SLICES, STATIONS = 61, 5
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.07e11, 0.3, 7850.0)  # that of gears by default
 MODULE, PRESSURE, HELIX, WIDTH = 3e-3, math.radians(20.0), math.radians(15.0), 25e-3
@@ -346,29 +346,19 @@ class OwnStatics:
         return over @ at_stations, tilt
 
     def mesh(self, pair: GearPair, stiffness: float) -> FloatArray:
-        """Energy's matrix (n, n) of a spring spread over the face, mean over the phases of a mesh period.
+        """Energy's matrix (n, n) of a spring spread over the face: k times the mean of a² over the slices.
 
-        At a phase the approach of a slice is a = delta + g - h xi tilt, with the force F = k mean(a) the same at all
-        phases; so the energy is k/2 (mean of all a)² + k/2 times the mean over the phases of a's variance.
+        The approach of a slice is a = delta + g - h xi tilt, xi the place of the spring on the path.
         """
         width = self.width(pair)
         z = width * ((np.arange(SLICES) + 0.5) / SLICES - 0.5)
         over, tilt = self.approach(pair, z)
-        h = self.plane(pair)[1]
-        rows = np.zeros((PHASES, SLICES, self.size))
-        for phase, xi in enumerate(self.along_path(pair, z)):
-            rows[phase] = over - h * xi[:, None] * tilt
-        mean = rows.mean(axis=(0, 1))
-        found = np.outer(mean, mean)
-        for each in rows:
-            away = each - each.mean(axis=0)
-            found += away.T @ away / (SLICES * PHASES)
-        return stiffness * found
+        rows = over - self.plane(pair)[1] * self.middle_of_path(pair) * tilt
+        return stiffness * rows.T @ rows / SLICES
 
-    def along_path(self, pair: GearPair, z: FloatArray) -> FloatArray:
-        """Places of slices along the path of contact from the pitch point [m], (phases, s): the path is covered."""
+    def middle_of_path(self, pair: GearPair) -> float:
+        """Place of the middle of the path of contact from the pitch point [m], where the spring of a mesh stands."""
         driver, driven = self.gears[pair.driver].gear, self.gears[pair.driven].gear
-        h = self.plane(pair)[1]
         transverse = math.atan(math.tan(driver.pressure_angle) / math.cos(driver.helix_angle))
         bases = [self.base_radius(one) for one in (driver, driven)]
         shafts = [self.machine.shaft(self.gears[name].shaft) for name in (pair.driver, pair.driven)]
@@ -379,12 +369,7 @@ class OwnStatics:
         # From the pitch point: approach up to the driven gear's tip, recess up to the driver's.
         recess = math.sqrt(tips[0] ** 2 - bases[0] ** 2) - bases[0] * math.tan(working)
         approach = math.sqrt(tips[1] ** 2 - bases[1] ** 2) - bases[1] * math.tan(working)
-        pitch = math.pi * driver.module / math.cos(driver.helix_angle)
-        lead = -np.sign(h) if h else 0.0  # the flank of larger z is ahead where the driver is pushed to +z
-        shift = lead * z * math.tan(abs(driver.helix_angle)) / pitch
-        phases = (np.arange(PHASES) + 0.5) / PHASES
-        part = (phases[:, None] + shift) % 1.0
-        return -approach + part * (approach + recess)
+        return 0.5 * (recess - approach)
 
     def springs(self) -> FloatArray:
         """Stiffness (n, n) of the linear bearings and of gear pairs with a constant stiffness."""

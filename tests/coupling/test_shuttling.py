@@ -3,13 +3,21 @@
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from helical_pairs import couple_pairs, helical
 
 from coupling import static_equilibrium
-from coupling.gears import SquareStiffness, tooth_contact
+from coupling.gears import (
+    GearPair,
+    GearPairGeometry,
+    PotentialEnergyStiffness,
+    SquareStiffness,
+    load_gear_pair,
+    tooth_contact,
+)
 from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.load_shuttling import load_arms
+from coupling.machine.load_shuttling import load_arms, mean_load_arms, shuttling_loads
 
 FORCE = 4000.0
 
@@ -70,3 +78,74 @@ def test_bearings_bear_the_moment_of_the_load_where_it_acts(hand: float) -> None
     # The loads end with the sixth harmonic; the curve has steep flanks where lines of contact enter.
     assert np.linalg.norm(missed) < 0.15 * np.linalg.norm(moved)
     assert np.abs(moved).max() > 0.01 * size * mesh.geometry.face_width
+
+
+TEETH = np.arange(41)
+WAVE = 6e-6 * np.sin(2.0 * np.pi * TEETH / 41.0)
+
+
+def with_pitch_deviations(deviations: npt.NDArray[np.float64], driver: tuple[float, ...] = ()) -> GearPairGeometry:
+    """Helical pair with pitch deviations of its wheel [m], and of its pinion."""
+    pair = helical(1.0)
+    return replace(
+        pair,
+        driver=replace(pair.driver, pitch_deviations=driver),
+        driven=replace(pair.driven, pitch_deviations=tuple(deviations.tolist())),
+    )
+
+
+def shuttling_of(pair: GearPairGeometry) -> tuple[float, npt.NDArray[np.complex128]]:
+    """Constant load and six mesh harmonics of one coordinate [N m]."""
+    contact = tooth_contact(pair, PotentialEnergyStiffness(), corner_contact=True, faces=face_slices(pair))
+    constant, harmonics = shuttling_loads(contact, pair, FORCE, 0.27, np.ones(1), 0.1, 300.0)
+    orders = [round(one.frequency / (2.0 * np.pi * 300.0)) for one in harmonics]
+    spectrum = np.zeros(7, dtype=np.complex128)
+    spectrum[orders] = [one.amplitude[0] for one in harmonics]
+    return float(constant[0]), spectrum
+
+
+def test_shuttling_does_not_know_which_tooth_is_the_first() -> None:
+    """The same wheel, its teeth numbered from another: the mesh harmonics are those of all its mesh periods."""
+    constant, harmonics = shuttling_of(with_pitch_deviations(WAVE))
+    for first in (10, 27):
+        other = shuttling_of(with_pitch_deviations(np.roll(WAVE, first)))
+        assert other[0] == pytest.approx(constant, rel=1e-6)
+        np.testing.assert_allclose(other[1], harmonics, rtol=0.0, atol=1e-6 * np.abs(harmonics).max())
+
+
+def test_shuttling_is_even_in_the_amplitude_of_a_long_wave() -> None:
+    """Half a turn of the wheel changes the wave's sign: what goes in proportion has no part in the mesh harmonics."""
+    constant, harmonics = shuttling_of(with_pitch_deviations(WAVE))
+    negative = shuttling_of(with_pitch_deviations(-WAVE))
+    alike = shuttling_of(helical(1.0))
+    largest = float(np.abs(harmonics).max())
+    np.testing.assert_allclose(negative[1], harmonics, rtol=0.0, atol=2e-3 * largest)
+    assert negative[0] == pytest.approx(constant, abs=2e-3 * largest)
+    # Half the wave has a quarter of the change.
+    half = shuttling_of(with_pitch_deviations(0.5 * WAVE))
+    whole_change, half_change = abs(harmonics[1] - alike[1][1]), abs(half[1][1] - alike[1][1])
+    assert 3.0 * half_change < whole_change < 0.1 * largest
+
+
+def test_many_different_mesh_periods_have_the_mean_of_some() -> None:
+    """23 and 41 teeth that differ make 943 mesh periods; a part of them, evenly spread, has nearly the mean of all."""
+    driver = tuple((2e-6 * np.cos(2.0 * np.pi * np.arange(23) / 23.0)).tolist())
+    pair = with_pitch_deviations(WAVE, driver)
+    contact = tooth_contact(pair, SquareStiffness(4e8), faces=face_slices(pair, count=15))
+    phases = np.array([0.2, 0.7])
+    every = load_arms(contact, pair, FORCE, (np.arange(943)[:, None] + phases).ravel())
+    expected = every.reshape(943, 2, 2).mean(axis=0)
+    found = mean_load_arms(contact, pair, FORCE, phases)
+    np.testing.assert_allclose(found, expected, atol=0.02 * every.std(axis=0).max())
+
+
+def test_the_damping_ratio_does_not_know_which_tooth_is_the_first() -> None:
+    """It refers to the mean stiffness of all mesh periods."""
+    pair = GearPair("pinion", "wheel", damping_ratio=0.05)
+    damping = [
+        load_gear_pair(
+            pair, with_pitch_deviations(np.roll(WAVE, first)), torque=100.0, inertias=(1e-3, 5e-3)
+        ).contact.damping
+        for first in (0, 11, 30)
+    ]
+    assert damping == pytest.approx([damping[0]] * 3, rel=1e-9)

@@ -74,7 +74,7 @@ def test_shuttling_goes_through_the_mesh_period_with_the_rotation(rate: float, m
         lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))]),
     )
     assert callable(load_arms)
-    contact: Any = SimpleNamespace(faces=SimpleNamespace(face_width=0.02))
+    contact: Any = SimpleNamespace(faces=SimpleNamespace(face_width=0.02), hunting_period=1)
     tilting, force, phase = np.array([2.0, -1.0]), 500.0, 0.23
     constant, harmonics = shuttling_loads(contact, helical(), force, 0.0, tilting, phase, rate)
     for time in (0.0, 0.0004, 0.0011):

@@ -70,6 +70,7 @@ from coupling.gears.contact.lookup_tables import FaceSliceStates, face_force_tab
 from coupling.gears.contact.tooth_pair import (
     Flattening,
     ToothPairCurves,
+    is_whole_mesh,
     pair_deviation,
     slope_jumps,
     tooth_pair_curves,
@@ -81,7 +82,7 @@ from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
 from coupling.gears.stiffness.hertz import hertz_compliance
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
+from coupling.gears.stiffness.models import GIVEN_SPRINGS, StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -89,6 +90,8 @@ KernelArguments = tuple[FloatArray, int]
 
 _MEAN_PHASES = 256
 """Phases for the mean stiffness of helical teeth, whose mesh stiffness is smooth."""
+_TRIED = 5
+"""Points of an interval of a given stiffness at which its greatest value is looked for."""
 _TILT_PHASES, _TILT_HARMONICS, _TILT_KNOTS = 128, 20, 80
 """Phases at which the tilt of the bodies is solved, number of mesh harmonics retained, and knots of their spline."""
 
@@ -319,7 +322,7 @@ class ToothContact:
     def contact_range(self) -> tuple[float, float]:
         """Range of contact of a pair [base pitches]: from 0 to the contact ratio, or wider with corner contact."""
         start, end = self._slice_range
-        reach = 0.0 if self.faces is None else float(np.abs(self.faces.shift).max())
+        reach = 0.0 if self.faces is None else self.faces.reach
         return start - reach, end + reach
 
     @property
@@ -377,23 +380,23 @@ class ToothContact:
         sound : bool
             Whether to treat all teeth as sound.
         """
-        places = self.pair_positions(phases)
-        shift, half = (np.zeros(1), 0.0) if self.faces is None else (self.faces.shift, self.faces.half_span)
-        at = places.position[..., None] + shift
-        end = self.contact_ratio
-        if half > 0.0:
-            # The fraction of a slice that lies on the path.
-            part = (np.clip(at + half, 0.0, end) - np.clip(at - half, 0.0, end)) / (2.0 * half)
+        start, end = self.contact_range
+        half = 0.0 if self.faces is None else self.faces.half_span
+        # The end slices of a face are on the path in part before their middles are.
+        places = self._positions(phases, start - half, end + half)
+        if self.faces is not None and half > 0.0:
+            at = places.position[..., None] + self.faces.shift
+            part = self.faces.part_within(at, 0.0, self.contact_ratio)
         else:
-            part = ((at >= 0.0) & (at < end)).astype(np.float64)
-        part *= places.present[..., None]
+            at = places.position[..., None]
+            part = ((at >= 0.0) & (at < self.contact_ratio)).astype(np.float64)
         total = np.zeros(at.shape[0])
         for number, curves in enumerate(self.variant_curves[:1] if sound else self.variant_curves):
             these = part > 0.0
             if not sound:
                 these &= (places.variant == number)[..., None]
             total += np.bincount(np.nonzero(these)[0], part[these] * curves.stiffness(at[these]), total.size)
-        total /= shift.size
+        total /= at.shape[-1]
         return np.asarray(total / (1.0 + self.shared_compliance * total), dtype=np.float64)
 
     @property
@@ -468,12 +471,15 @@ class ToothContact:
 
     def pair_positions(self, phases: npt.ArrayLike) -> PairPositions:
         """Positions of the pairs at `phases` (n,)."""
+        return self._positions(phases, *self.contact_range)
+
+    def _positions(self, phases: npt.ArrayLike, start: float, end: float) -> PairPositions:
+        """Positions of the pairs at `phases` (n,); those from `start` to `end` are present."""
         phase = np.atleast_1d(np.asarray(phases, dtype=np.float64))
         number = np.floor(phase)
         fraction = phase - number
         number = np.where(fraction >= 1.0, number + 1.0, number)
         fraction = np.where(fraction >= 1.0, 0.0, fraction)
-        start, end = self.contact_range
         behind = np.arange(math.floor(start), math.ceil(end))
         position = fraction[:, None] + behind
         present = (position >= start) & (position < end)
@@ -528,8 +534,18 @@ def contact_flattening(model: StiffnessModel, geometry: GearPairGeometry) -> Fla
 def slices_of_teeth(faces: FaceSlices, model: StiffnessModel, geometry: GearPairGeometry) -> FaceSlices:
     """Return slices with the contact flattening and the shared body compliance of a tooth model.
 
-    Other models leave the slices as they are, with the flattening of Yang and Sun's constant.
+    Given springs lie evenly over the face, each slice for itself; one of the whole mesh is everywhere at the same part
+    of its period, whatever the helix. Other models leave the slices as they are, with the flattening of Yang and Sun's
+    constant.
     """
+    if isinstance(model, GIVEN_SPRINGS):
+        stiffness = model.pair_stiffness(geometry)
+        knots = stiffness.knots
+        between = knots[:-1, None] + np.linspace(0.0, 1.0, _TRIED) * np.diff(knots)[:, None]
+        # The law of the slices splits a spring into teeth and flattening: any split with the same sum does.
+        flattening = 2.0 * float(stiffness(between).max()) / geometry.face_width
+        shift = 0.0 * faces.shift if is_whole_mesh(float(knots[-1]), geometry) else faces.shift
+        return replace(faces, flattening=flattening, coupling=0.0, shift=shift)
     if not isinstance(model, CompliantTeeth):
         return faces
     return replace(
@@ -595,12 +611,34 @@ def tooth_contact(
     )
 
 
+def places_on_line_of_action(contact: ToothContact, geometry: GearPairGeometry, positions: FloatArray) -> FloatArray:
+    """Places of the slices along the line of action, from the pitch point [m], shape (..., s).
+
+    The spring of a whole mesh stands in the middle of the path of contact, as it has no place of its own.
+
+    Parameters
+    ----------
+    contact : ToothContact
+        Contact with slices of its face.
+    geometry : GearPairGeometry
+    positions : ndarray, shape (...)
+        Positions of the middle of the face [base pitches].
+    """
+    assert contact.faces is not None
+    at = positions[..., None] + contact.faces.shift
+    if is_whole_mesh(contact.contact_ratio, geometry):
+        at = np.full_like(at, 0.5)
+    # A model with a contact ratio of its own has its load on the teeth's whole path.
+    path = geometry.base_pitch * geometry.contact_ratio / contact.contact_ratio
+    return np.asarray(at * path - geometry.base_pitch * geometry.pitch_point_position)
+
+
 def with_flanks_of(contact: ToothContact, geometry: GearPairGeometry) -> ToothContact:
     """Return a contact with the deviations of a pair that differs only in the modifications of its flanks.
 
     The result equals `tooth_contact` of that pair; stiffness and reach of the teeth are reused.
     """
-    if contact.contact_ratio == 1.0 and geometry.contact_ratio != 1.0:
+    if is_whole_mesh(contact.contact_ratio, geometry):
         return contact  # the deviation of a whole-mesh model is zero
     start, end = float(contact.stiffness.knots[0]), float(contact.stiffness.knots[-1])
     sound, *others = (

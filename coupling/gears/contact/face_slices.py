@@ -15,6 +15,10 @@ their coupling; contact adds, wherever there is any,
 k_h the stiffness of the flattening per width. So a loaded slice deflects its neighbours, and the free ends of a
 tooth are softer. Uniform across the face it is the spur gear's law exactly.
 
+A given spring knows no teeth that could deflect their neighbours: its slices have no coupling, T = 0, and each acts
+with the part of it that lies on the path of contact. The force of such a pair is then in proportion to the length of
+its contact line, without steps as slices come into touch.
+
 T is that of both teeth in series, each of them from the shear coupling of neighbouring slices.
 
 A tooth whose deflection varies across the face, ``W(z) phi(y)``, is a plate of thickness t(y) held at its foot. phi is
@@ -118,7 +122,7 @@ class FaceSlices:
     flattening : float
         k_h, load per width over the flattening of the contact [N/m per m].
     coupling : float
-        T, shear force over slope [N].
+        T, shear force over slope [N]; 0 for independent slices.
     shared : ndarray, shape (m, m)
         Compliance that pairs in contact at once share, of loads and deflections like `shapes` [m/N]; (0, 0) for none.
     """
@@ -152,6 +156,25 @@ class FaceSlices:
         """Half the span of a slice along the path of contact [base pitches]; 0 for a spur gear."""
         span = float(np.ptp(self.shift))
         return 0.5 * span / (self.z.size - 1) if span > _NO_SPAN else 0.0
+
+    @property
+    def reach(self) -> float:
+        """Distance along the path from the middle of the face to its last point in contact [base pitches].
+
+        Coupled slices are on the path or off it with their middles, independent ones with their ends.
+        """
+        return float(np.abs(self.shift).max()) + (0.0 if self.coupling > 0.0 else self.half_span)
+
+    def part_within(self, position: FloatArray, start: float, end: float) -> FloatArray:
+        """Part of slices with middles at `position` that lies on the range of the path from `start` to `end`.
+
+        All or nothing at both ends of the range for slices without a span along the path.
+        """
+        half = self.half_span
+        if half == 0.0:
+            return np.asarray((position >= start) & (position <= end), dtype=np.float64)
+        first, last = np.clip(position - half, start, end), np.clip(position + half, start, end)
+        return np.asarray((last - first) / (2.0 * half), dtype=np.float64)
 
     def halved(self) -> FaceSlices:
         """Return the same face in twice as many slices; the gap is interpolated linearly.

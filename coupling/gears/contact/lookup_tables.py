@@ -59,6 +59,8 @@ _DEEPEST = 0.02
 """Depth of the table in modules, in addition to the compression that evens out the face."""
 _FEWEST = 4
 """Least number of intervals between corners."""
+_LEAST_PART = 1e-9
+"""Part of an independent slice on the path below which it does not meet: rounding exceeds its compression."""
 _APART = 1e-6
 """Corners nearer to each other than this, in base pitches, are one."""
 
@@ -99,7 +101,7 @@ class FaceSliceStates:
     gap : ndarray
         [m]
     meeting : ndarray of bool
-        Whether the slice is in the range of contact.
+        Whether the slice, or of independent slices a part of it, is in the range of contact.
     """
 
     whole: FloatArray
@@ -118,7 +120,12 @@ def face_slice_states(
     for number, curves in enumerate(variants):
         these = variant == number if len(variants) > 1 else slice(None)
         whole[these], gap[these] = curves.stiffness(at[these]), curves.deviation(at[these])
-    return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, (at >= start) & (at <= end))
+    meeting = (at >= start) & (at <= end)
+    if slices.coupling == 0.0:
+        part = slices.part_within(at, start, end)
+        meeting = part > _LEAST_PART
+        whole = np.where(meeting, part, 1.0) * whole
+    return FaceSliceStates(whole, slice_stiffness(slices, whole), gap + slices.gap, meeting)
 
 
 def face_force_table(
@@ -142,8 +149,10 @@ def face_force_table(
     breaks : sequence of float
         Positions on the path at which a weight has a corner [base pitches].
     """
-    reach = float(np.abs(slices.shift).max()) if slices.z.size > 1 else 0.0
-    pieces = _pieces(_breaks(variants, reach, breaks))
+    # The length of the contact line has corners where independent slices enter the path and leave it.
+    turning = slices.coupling == 0.0 and slices.half_span > 0.0
+    ends = variants[0].stiffness.knots[[0, -1]] if turning else np.zeros(0)
+    pieces = _pieces(_breaks(variants, slices.reach, [*breaks, *ends]))
     knots = np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
     deepest = _DEEPEST * module + 1.5 * float(np.ptp(slices.gap))
     unit = deepest / _DEPTHS**2

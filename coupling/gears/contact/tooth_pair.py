@@ -39,6 +39,11 @@ SAME_CORNER = 1e-9
 """Corners nearer to each other than this, in base pitches, are one."""
 
 
+def is_whole_mesh(length: float, geometry: GearPairGeometry) -> bool:
+    """Whether a stiffness over `length` base pitches is that of the whole mesh over its period, not of one pair."""
+    return length == 1.0 and geometry.contact_ratio != 1.0
+
+
 def flank_gap(gear: Gear, roll_angle: FloatArray) -> FloatArray:
     """Material missing from a gear's flank below the involute [m], at roll angles [rad]; negative for excess."""
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
@@ -160,7 +165,7 @@ def tooth_pair_curves(
         tooth without corner contact.
     """
     length = float(stiffness.knots[-1])
-    whole_mesh = length == 1.0 and geometry.contact_ratio != 1.0
+    whole_mesh = is_whole_mesh(length, geometry)
     if whole_mesh and (corner_contact or any(any(variant_faults) for variant_faults in faults)):
         raise GearError(
             f"{geometry.label}: the stiffness model describes the whole mesh as one spring, without single pairs that "

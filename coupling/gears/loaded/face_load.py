@@ -43,7 +43,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.contact_law import ToothContact
+from coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
 from coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
 from coupling.gears.errors import ContactAccuracyError, GearError
 from coupling.gears.geometry.pair import GearPairGeometry
@@ -173,9 +173,6 @@ class FaceContact:
         self._faces = contact.faces
         self._axial = axial
         self._geometry = geometry
-        # The spring of a whole mesh has a range of one base pitch, and its load lies on the teeth's whole path.
-        self._path = geometry.base_pitch * geometry.contact_ratio / contact.contact_ratio
-        self._pitch_point = geometry.base_pitch * geometry.pitch_point_position
         self.z = contact.faces.z
         """Slices of the face, from its middle [m], shape (s,)."""
         self.stations = stations
@@ -393,7 +390,7 @@ class _Prepared:
     """Slices of the pairs at n phases, with the approach of each by the components, (p, s, m)."""
 
     def __init__(self, mesh: FaceContact, phases: FloatArray) -> None:
-        contact, faces = mesh._contact, mesh._faces
+        contact = mesh._contact
         states = contact.pairs(phases)
         assert states.faces is not None
         self.phases = phases
@@ -402,9 +399,8 @@ class _Prepared:
         self.first = np.searchsorted(self.owner, np.arange(phases.size))
         self.base, self.meeting = states.faces.base, states.faces.meeting
         self.gap = states.faces.gap
-        position = states.position[self.owner, self.column][:, None] + faces.shift
-        along = position * mesh._path - mesh._pitch_point
-        basis = np.empty((*position.shape, mesh.size))
+        along = places_on_line_of_action(contact, mesh._geometry, states.position[self.owner, self.column])
+        basis = np.empty((*along.shape, mesh.size))
         basis[:, :, :-1] = mesh.over_face
         basis[:, :, -1] = -mesh._axial * along
         self.basis = basis

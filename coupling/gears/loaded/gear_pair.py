@@ -20,10 +20,9 @@ from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, pair_
 from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
 from coupling.gears.stiffness.crack import ToothCrack
 from coupling.gears.stiffness.models import (
-    ConstantStiffness,
+    GIVEN_SPRINGS,
     SquareStiffness,
     StiffnessModel,
-    TableStiffness,
     stiffness_under_load,
 )
 
@@ -72,7 +71,6 @@ def mesh_damping(ratio: float, mean_mesh_stiffness: float, equivalent_mass: floa
 
 _FADING = 0.1  # part of the mean compression above which the mesh is fully damped
 _BACKLASH_DIFFERENCE = 0.1  # part of the designed backlash by which a given one may differ without a warning
-_MESH_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)  # models of the mesh, not of a pair of teeth
 
 
 @dataclass(frozen=True)
@@ -128,7 +126,7 @@ class GearPair:
     @property
     def has_single_teeth(self) -> bool:
         """Whether the stiffness model describes pairs of teeth, not the mesh as one spring."""
-        return not isinstance(self.stiffness, _MESH_SPRINGS)
+        return not isinstance(self.stiffness, GIVEN_SPRINGS)
 
     def backlash_of(self, geometry: GearPairGeometry) -> float | None:
         """Gap of the back flanks along the line of action [m]; None where they never touch.
@@ -282,11 +280,13 @@ def load_gear_pair(
     ).under_load(math.copysign(force, torque))
     carrying = contact.carrying_flanks
     static = loaded_transmission_error(carrying, force)
-    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses.
-    mean_mesh_stiffness = static.mean_mesh_stiffness if force > 0.0 else contact.unloaded_mean_mesh_stiffness
+    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
+    # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
+    # mesh periods, which are not alike with pitch deviations or damaged teeth.
+    loaded = (hunting or static).mean_mesh_stiffness
+    mean_mesh_stiffness = loaded if force > 0.0 else contact.unloaded_mean_mesh_stiffness
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
-    hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
     return LoadedGearPair(pair, geometry, model, contact, static, hunting, frequency)
 

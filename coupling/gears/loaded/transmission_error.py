@@ -286,7 +286,7 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
         See `loaded_transmission_error`.
     """
     period = mesh_period_phases(contact, points)
-    first, which = _different_periods(contact)
+    first, which = different_periods(contact)
     at = (first[:, None] + period).ravel()
     parts = [
         loaded_transmission_error(contact, force, at[begin : begin + _AT_ONCE]) for begin in range(0, at.size, _AT_ONCE)
@@ -309,8 +309,11 @@ def hunting_period_mesh(contact: ToothContact, force: float, points: int = 60) -
     )
 
 
-def _different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
-    """First mesh period of every variant, and the variant of each mesh period of the hunting period."""
+def different_periods(contact: ToothContact) -> tuple[IntArray, IntArray]:
+    """First mesh period of every variant, and the variant of each mesh period of the hunting period.
+
+    Mesh periods are of one variant where the same pitch gaps and damaged teeth can touch in them.
+    """
     start, end = contact.contact_range
     entered = np.arange(contact.hunting_period)[:, None] - np.arange(math.floor(start), math.ceil(end))
     by_pair = [

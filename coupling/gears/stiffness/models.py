@@ -19,7 +19,7 @@ name                          model
 
 The first four, subclasses of `CompliantTeeth`, know the bodies of the gears, which pairs in contact at once share
 (`shared_compliance`).  The others state the stiffness of a pair or of the mesh as it is given, and the pairs act in
-parallel.
+parallel. The given springs, `GIVEN_SPRINGS`, lie evenly over the face, without coupling of its slices.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> floa
 
 @dataclass(frozen=True)
 class SquareStiffness:
-    """Each pair has the same stiffness while it touches.
+    """Each pair has the same stiffness while it touches; of helical teeth in proportion to the part that touches.
 
     Parameters
     ----------
@@ -181,6 +181,10 @@ STIFFNESS_MODELS: dict[str, Callable[..., StiffnessModel]] = {
     )
 }
 """All models by their names in cases: a new model is added here."""
+
+
+GIVEN_SPRINGS = (ConstantStiffness, SquareStiffness, TableStiffness)
+"""Models that state a spring as it is given, of the mesh or of every pair, in place of the teeth."""
 
 
 def stiffness_model(name: str, **parameters: object) -> StiffnessModel:

@@ -18,7 +18,7 @@ from coupling.gears import (
     tooth_contact,
 )
 from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.transmission_error import _different_periods, hunting_period_mesh, mesh_period_phases
+from coupling.gears.loaded.transmission_error import different_periods, hunting_period_mesh, mesh_period_phases
 
 PINION = Gear("pinion", 17, 3e-3, math.radians(20.0), 20e-3, profile_shift=0.2)
 WHEEL = Gear("wheel", 22, 3e-3, math.radians(20.0), 20e-3, profile_shift=-0.2)
@@ -52,7 +52,7 @@ def test_every_phase_is_that_of_the_mesh_by_itself(helix: float, pitched: bool) 
 
 
 def test_damage_makes_few_mesh_periods_differ() -> None:
-    first, which = _different_periods(contact_of())
+    first, which = different_periods(contact_of())
     assert which.size == 17 * 22
     assert first.size < 40
     none = np.zeros(0, dtype=np.int64)
