@@ -82,7 +82,8 @@ STRIP = 34
 _COLOURS, _SIGNED_COLOURS = "viridis", "RdBu_r"
 _INK = "#202428"
 _FINER = 1.5  # pictures are drawn this many times larger than shown
-_LOWER = 0.06  # how far below the middle the housing stands, as a part of half the height: captions are above it
+_LOWER = 0.1  # how far below the middle the housing stands, as a part of half the height: captions are above it
+_HIGHEST, _LOWEST = 0.72, -0.97  # where the housing ends below the captions and above the edge, likewise
 _FULL, _GROWTH = 1000.0, 0.6  # letters have their full size at this width [pixels], and grow slower than the picture
 _SHARP = 30.0  # angle between faces from which an edge is drawn as one [degrees]
 
@@ -251,8 +252,23 @@ class Scene:
         self._plotter.view_vector(_VIEWS[view], viewup=(0.0, 1.0, 0.0))
         self._plotter.enable_parallel_projection()
         self._plotter.reset_camera(bounds=_frame(self._bounds))
-        self._plotter.camera.zoom(1.2)
-        self._plotter.camera.SetWindowCenter(0.0, _LOWER)
+        camera = self._plotter.camera
+        camera.zoom(1.2)
+        camera.SetWindowCenter(0.0, _LOWER)
+        corners = np.stack(np.meshgrid(*np.reshape(self._bounds, (3, 2))), axis=-1).reshape(-1, 3)
+        upwards = (corners - np.array(camera.focal_point)) @ _upwards(camera)
+        # Few shapes move the highest corner most, and straight upwards.
+        room = 0.4 * DRAWN_SCALE * float(np.linalg.norm(np.diff(self._bounds)[::2]))
+        fitting = max((upwards.max() + room) / (_HIGHEST + _LOWER), (upwards.min() - room) / (_LOWEST + _LOWER))
+        camera.parallel_scale = max(camera.parallel_scale, fitting)
+
+
+def _upwards(camera: Any) -> FloatArray:
+    """Return the unit vector in space that points upwards in the picture."""
+    towards = np.subtract(camera.position, camera.focal_point)
+    towards /= np.linalg.norm(towards)
+    up = np.array(camera.up) - np.dot(camera.up, towards) * towards
+    return np.asarray(up / np.linalg.norm(up))
 
 
 def _font_file() -> str:

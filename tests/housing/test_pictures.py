@@ -59,6 +59,18 @@ def test_two_modes_make_two_different_pictures(box: Mesh, modes: ModeSet, tmp_pa
 
 
 @pytest.mark.usefixtures("renderer")
+def test_a_tall_housing_stands_below_its_captions(block: Callable[..., Mesh], tmp_path: Path) -> None:
+    """Captions take the highest seventh of a picture, whatever the proportions of the housing."""
+    for size in ((0.2, 0.5, 0.2), (0.3, 0.3, 0.3), (0.1, 0.8, 0.6)):
+        surface = drawn_housing(block(size, (2, 2, 2)))
+        shape = DrawnShape("high", "", "", 0.0 * surface.rest, "I", 1.0, np.ones(len(surface.rest)))
+        image = _pixels(render_shapes(surface, [shape], tmp_path, size=(320, 240))[0])[:, :280]
+        rows = np.flatnonzero((image < 250).any(axis=(1, 2)))
+        assert 34 <= rows[0] < 100
+        assert rows[-1] < 238
+
+
+@pytest.mark.usefixtures("renderer")
 def test_views_differ_and_a_picture_is_repeatable(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
     images = {
         name: _pixels(render_modes(box, modes, [7], tmp_path / name, size=(160, 120), view=view)[0])
