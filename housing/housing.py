@@ -279,11 +279,11 @@ class Housing:
         HousingError
             With everything that is wrong.
         """
-        joined = any(isinstance(fixture, Joint) for fixture in self.fixtures)
+        joined = [fixture.nodes(self.mesh) for fixture in self.fixtures if isinstance(fixture, Joint)]
         wrong = [
             defect
-            for defect in diagnose(self.mesh)
-            if (not joined if defect.name == "disconnected" else defect.severity == "error")
+            for defect in diagnose(self.mesh, joined=joined)
+            if defect.name == "disconnected" or defect.severity == "error"
         ]
         if wrong:
             raise HousingError(
