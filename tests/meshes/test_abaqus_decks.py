@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from housing.model.patches import patch_center
 from meshes import GeometryError, mesh_quality, read_mesh, write_mesh
 from meshes.elements import KINDS, facet_nodes
 from meshes.formats.companions import companion_files
@@ -195,6 +196,17 @@ def test_lines_of_data_in_files_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "keyword.txt").write_text("*ELSET\n")
     with pytest.raises(GeometryError, match=r"keyword\.txt has a keyword, '\*ELSET'; expected lines of data alone"):
         read_mesh(_deck(tmp_path, CUBES + "*ELSET, ELSET=a, INPUT=keyword.txt\n"))
+
+
+def test_a_face_that_is_listed_twice_counts_once(tmp_path: Path) -> None:
+    """The lid of both cubes: its middle is that of a rectangle 2 x 1, whatever sets name its elements."""
+    more = "*ELSET, ELSET=all\n9, 5\n*SURFACE, NAME=lid\nall, S2\n5, S2\n*SURFACE, NAME=skin\n9, S1\n5, S1\n5, S1\n"
+    mesh = read_mesh(_deck(tmp_path, CUBES + more))
+    np.testing.assert_allclose(patch_center(mesh, mesh.surface("lid")), [1.0, 0.5, 1.0], atol=1e-12)
+    # The surface of the same name as the set of shells has the facet of the shell as well.
+    np.testing.assert_allclose(patch_center(mesh, mesh.surface("skin")), [1.0, 0.5, 0.0], atol=1e-12)
+    (facets,) = mesh.surface("lid")
+    assert mesh.points[facets.nodes[0], 0].max() == 2.0  # in the order of the file
 
 
 def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
