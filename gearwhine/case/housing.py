@@ -320,8 +320,8 @@ class Housing(Table):
         | Annotated[dict[str, DampingRatio], Tag("~table"), Field(min_length=1, max_length=MOST_ENTRIES)],
         Discriminator(_shape),
     ] = 0.01
-    """Modal damping ratio: one for all modes, a list with one for each mode, or a table from frequency to ratio such as
-    `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between."""
+    """Modal damping ratio: one for all modes, a list with one for each mode from the lowest on, or a table from
+    frequency to ratio such as `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between."""
     frequency_limit: PositiveFrequency | None = None
     """Every mode below this frequency is found. One of this and `modes`."""
     modes: Annotated[int, Whole(1, 5000)] | None = None
