@@ -279,11 +279,11 @@ class Housing:
         HousingError
             With everything that is wrong.
         """
-        joined = any(isinstance(fixture, Joint) for fixture in self.fixtures)
+        joined = [fixture.nodes(self.mesh) for fixture in self.fixtures if isinstance(fixture, Joint)]
         wrong = [
             defect
-            for defect in diagnose(self.mesh)
-            if (not joined if defect.name == "disconnected" else defect.severity == "error")
+            for defect in diagnose(self.mesh, joined=joined)
+            if defect.name == "disconnected" or defect.severity == "error"
         ]
         if wrong:
             raise HousingError(
@@ -401,23 +401,36 @@ def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
     return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
 
 
-def cover_joints(box: BoxGeometry, material: Material, bolt_material: Material | None = None) -> list[Joint]:
+def cover_joints(
+    box: BoxGeometry,
+    material: Material,
+    bolt_material: Material | None = None,
+    cover_material: Material | None = None,
+) -> list[Joint]:
     """Preloaded bolts of a box's cover, each a joint between its patches on rim and cover.
 
     Parameters
     ----------
     box : meshes.BoxGeometry
     material : Material
-        Material of the housing and its cover.
-    bolt_material : Material, optional
-        Material of the bolts; that of the housing by default.
+        Material of the housing.
+    bolt_material, cover_material : Material, optional
+        Materials of the bolts and of the cover; that of the housing by default.
     """
-    return [_bolted(bolt, material, bolt_material or material, box.rim_width) for bolt in box.bolts]
+    return [cover_joint(box, bolt, material, bolt_material, cover_material) for bolt in box.bolts]
 
 
-def _bolted(bolt: Bolt, clamped: Material, bolt_material: Material, rim: float) -> Joint:
-    outer = max(rim, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
-    springs = bolted_joint(bolt.diameter, bolt.grip, clamped, bolt_material, outer=outer).stiffness
+def cover_joint(
+    box: BoxGeometry,
+    bolt: Bolt,
+    material: Material,
+    bolt_material: Material | None = None,
+    cover_material: Material | None = None,
+) -> Joint:
+    """Preloaded bolt of a box's cover, as :func:`cover_joints` has all of them."""
+    outer = max(box.rim_width, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
+    cover = None if cover_material is None else (cover_material, bolt.cover_grip)
+    springs = bolted_joint(bolt.diameter, bolt.grip, material, bolt_material, cover=cover, outer=outer).stiffness
     first, second = Patch(bolt.body_surface), Patch(bolt.cover_surface)
     return Joint(bolt.name, first, second, Bushing.along(bolt.axis, springs), bolt.position)
 

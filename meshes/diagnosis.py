@@ -4,7 +4,7 @@ Conformity: neighbouring elements share the nodes of their common edges, and no 
 the bodies of the mesh, and the places where elements are not connected as they should be.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,8 +80,8 @@ def covered_quadrilaterals(mesh: Mesh) -> IntArray:
     return np.asarray(corners[covered])
 
 
-def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
-    """Find where parts of the surface lie on each other without sharing nodes.
+def touching_nodes(mesh: Mesh, body: IntArray, assembly: IntArray) -> Touching:
+    """Find where parts of the surface lie on each other without sharing nodes, unless joints connect their bodies.
 
     Corners alone are compared with facets, which are taken as plane triangles between their corners: where curved
     facets conform, no corner lies within another facet.
@@ -90,9 +90,7 @@ def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
 
     corners = facet_corners(mesh.boundary)
     tree = KDTree(mesh.points[corners])
-    of_node = np.zeros(len(mesh.points), dtype=np.int64)
-    for block, members in zip(mesh.blocks, np.split(body, mesh.block_ends), strict=True):
-        of_node[block.nodes] = members[:, None]
+    of_node = _body_of_nodes(mesh, body)
     triangles = np.concatenate(
         [block.nodes[:, triangle] for block in mesh.boundary for triangle in block.of.corner_triangles]
     )
@@ -103,10 +101,11 @@ def touching_nodes(mesh: Mesh, body: IntArray) -> Touching:
     lengths = np.array([len(found) for found in near])
     which = np.repeat(np.arange(len(triangles)), lengths)
     node = corners[np.concatenate([np.asarray(found, dtype=np.int64) for found in near])]
-    foreign = (triangles[which] != node[:, None]).all(axis=1)
-    which, node = which[foreign], node[foreign]
+    first, second = of_node[triangles[which, 0]], of_node[node]
+    joined = (first != second) & (assembly[first] == assembly[second])
+    foreign = (triangles[which] != node[:, None]).all(axis=1) & ~joined
+    which, node, other = which[foreign], node[foreign], (first != second)[foreign]
     within, at_corner = _within(places[which], mesh.points[node])
-    other = of_node[triangles[which, 0]] != of_node[node]
     # Where a facet's own corner is at the place, the nodes coincide and hang nowhere.
     matched = np.zeros(len(mesh.points), dtype=bool)
     matched[node[at_corner]] = True
@@ -159,13 +158,14 @@ def bodies(mesh: Mesh) -> IntArray:
     return _parts(mesh, mesh.incidence)
 
 
-def connection_defects(mesh: Mesh) -> Iterator[MeshDefect]:
-    """Find the defects of a mesh's connectivity."""
+def connection_defects(mesh: Mesh, joined: Sequence[IntArray] = ()) -> Iterator[MeshDefect]:
+    """Find the defects of a mesh's connectivity, with the nodes of each joint as in :func:`diagnose`."""
     yield from _faces(mesh)
     body = bodies(mesh)
-    mismatches = [*_conformity(mesh, body)]
+    assembly = _assemblies(mesh, body, joined)
+    mismatches = [*_conformity(mesh, body, assembly)]
     yield from mismatches
-    yield from _bodies(mesh, body)
+    yield from _bodies(mesh, assembly[body], "share no node and no joint" if joined else "share no node")
     if not any(mismatch.name == "non-conforming" for mismatch in mismatches):
         yield from _hinges(mesh, body)
 
@@ -177,11 +177,36 @@ def _parts(mesh: Mesh, shared: sparse.csr_array) -> IntArray:
     """
     both = sparse.block_array([[None, shared], [shared.T, None]], format="csr", dtype=np.int8)
     _, labels = connected_components(both, directed=False)
-    _, part = np.unique(labels[: mesh.n_elements], return_inverse=True)
+    return _ranked(mesh, labels[: mesh.n_elements])
+
+
+def _ranked(mesh: Mesh, labels: npt.NDArray[np.integer]) -> IntArray:
+    """Renumber the labels of elements, that of the largest volume as 0."""
+    _, part = np.unique(labels, return_inverse=True)
     size = np.bincount(part, mesh.corner_volumes)
     rank = np.empty(len(size), dtype=np.int64)
     rank[np.argsort(-size, kind="stable")] = np.arange(len(size))
     return np.asarray(rank[part])
+
+
+def _body_of_nodes(mesh: Mesh, body: IntArray) -> IntArray:
+    of_node = np.zeros(len(mesh.points), dtype=np.int64)
+    for block, members in zip(mesh.blocks, np.split(body, mesh.block_ends), strict=True):
+        of_node[block.nodes] = members[:, None]
+    return of_node
+
+
+def _assemblies(mesh: Mesh, body: IntArray, joined: Sequence[IntArray]) -> IntArray:
+    """Find the assembly of each body, the largest 0: bodies that joints connect, one after the other."""
+    of_node, count = _body_of_nodes(mesh, body), int(body.max()) + 1
+    ends = [np.unique(of_node[nodes]) for nodes in joined]
+    first = np.concatenate([np.empty(0, dtype=np.int64), *(np.broadcast_to(end[:1], len(end)) for end in ends)])
+    second = np.concatenate([np.empty(0, dtype=np.int64), *ends])
+    graph = sparse.coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+    _, labels = connected_components(graph, directed=False)
+    assembly = np.empty(count, dtype=np.int64)
+    assembly[body] = _ranked(mesh, labels[body])
+    return assembly
 
 
 def _faces(mesh: Mesh) -> Iterator[MeshDefect]:
@@ -214,8 +239,8 @@ def _turn(corners: IntArray) -> npt.NDArray[np.bool_]:
     return np.asarray(after < before)
 
 
-def _bodies(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
-    """Several disconnected bodies."""
+def _bodies(mesh: Mesh, body: IntArray, which: str) -> Iterator[MeshDefect]:
+    """Several disconnected bodies, or assemblies of bodies."""
     count = int(body.max()) + 1
     if count > 1:
         sizes = np.bincount(body, mesh.corner_volumes)
@@ -225,7 +250,7 @@ def _bodies(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
             for number, middle in enumerate(middles, start=1)
         )
         more = f" and {count - 1 - _LISTED} more" if count > 1 + _LISTED else ""
-        finding = f"the mesh falls into {count} bodies that share no node: beside the largest {listed}{more}"
+        finding = f"the mesh falls into {count} bodies that {which}: beside the largest {listed}{more}"
         yield MeshDefect("disconnected", "warning", f"{finding}; what joins them?", count, middles[0])
 
 
@@ -243,8 +268,8 @@ def _hinges(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
         yield mesh_defect("hinged", "warning", finding, advice, parts - count, middle, which="the smallest around")
 
 
-def _conformity(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
-    """Neighbours that touch and do not share their nodes."""
+def _conformity(mesh: Mesh, body: IntArray, assembly: IntArray) -> Iterator[MeshDefect]:
+    """Neighbours that touch and do not share their nodes, unless joints connect them."""
     unequal = unequal_edges(mesh)
     if len(unequal):
         finding = f"{len(unequal)} edges have a middle node in one element and not in its neighbour"
@@ -259,9 +284,9 @@ def _conformity(mesh: Mesh, body: IntArray) -> Iterator[MeshDefect]:
         yield mesh_defect(
             "non-conforming", "error", finding, advice, len(covered), mesh.points[covered[0]].mean(axis=0)
         )
-    touching = touching_nodes(mesh, body)
+    touching = touching_nodes(mesh, body, assembly)
     if number := len(touching.across):
-        finding = f"the mesh falls into {body.max() + 1} bodies whose nodes coincide at {number} places"
+        finding = f"the mesh falls into {assembly.max() + 1} bodies whose nodes coincide at {number} places"
         advice = "merge them, unless the bodies are meant to be loose"
         yield mesh_defect("disconnected", "error", finding, advice, number, mesh.points[touching.across[0]])
     if number := len(touching.within):
@@ -282,7 +307,7 @@ _LIKELY = 0.5  # size of a housing [m]; of several possible units, the one that 
 _NO_VOLUME = 1e-9  # least volume, as a part of the cube of an element's longest edge
 
 
-def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[MeshDefect, ...]:
+def diagnose(mesh: Mesh, *, unit: float | None = None, joined: Sequence[IntArray] = ()) -> tuple[MeshDefect, ...]:
     """Find the defects of a mesh, errors first.
 
     Parameters
@@ -290,12 +315,14 @@ def diagnose(mesh: Mesh, *, unit: float | None = None) -> tuple[MeshDefect, ...]
     mesh : Mesh
     unit : float, optional
         The unit of length of the file that it came from [m]; with it, implausible sizes are reported too.
+    joined : sequence of ndarray of int
+        Nodes of each joint. Bodies that joints connect, one after the other, may touch without sharing nodes.
 
     Notes
     -----
     Inverted and flat elements are not among them, because :class:`Mesh` refuses them.
     """
-    defects = [*_elements(mesh), *connection_defects(mesh), *_nodes(mesh), *_unit(mesh, unit)]
+    defects = [*_elements(mesh), *connection_defects(mesh, joined), *_nodes(mesh), *_unit(mesh, unit)]
     return tuple(sorted(defects, key=lambda one: one.severity != "error"))
 
 

@@ -123,7 +123,7 @@ class Cover(Table):
     flange: Flange | None = None
     """Frame that widens the rim under the cover."""
     bolts: CoverBolts | None = None
-    """Bolts of the cover; needed unless `bonded`."""
+    """Bolts of the cover; needed unless `bonded`. They clamp what `[[housing.region]]` says of the materials there."""
     bonded: StrictBool = False
     """Cover and rim share their nodes, in place of bolts."""
 

@@ -183,7 +183,8 @@ class MeshFile(Turned):
     """`[housing.mesh]`: a finite-element mesh file and the unit of its coordinates."""
 
     file: CaseFile
-    """Mesh file of a format that meshio reads, or an Abaqus or CalculiX deck (`.inp`), relative to the case file."""
+    """Mesh file of a format that meshio reads, or a deck of Abaqus or CalculiX (`.inp`) or Nastran (`.bdf`, `.fem`,
+    `.nas`), relative to the case file."""
     unit: Literal["m", "mm", "cm", "in"] = "m"
     """Unit of its coordinates."""
 
@@ -319,8 +320,8 @@ class Housing(Table):
         | Annotated[dict[str, DampingRatio], Tag("~table"), Field(min_length=1, max_length=MOST_ENTRIES)],
         Discriminator(_shape),
     ] = 0.01
-    """Modal damping ratio: one for all modes, a list with one for each mode, or a table from frequency to ratio such as
-    `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between."""
+    """Modal damping ratio: one for all modes, a list with one for each mode from the lowest on, or a table from
+    frequency to ratio such as `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between."""
     frequency_limit: PositiveFrequency | None = None
     """Every mode below this frequency is found. One of this and `modes`."""
     modes: Annotated[int, Whole(1, 5000)] | None = None

@@ -12,7 +12,7 @@ from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, did_you_mean
 from gearwhine.case.housing import Region
 from housing import Joint, Material
-from housing import cover_joints as housing_cover_joints
+from housing.housing import cover_joint
 from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 from meshes.bores import CylindricalBore
 from meshes.errors import MeshSizeError
@@ -113,9 +113,25 @@ def cover_joints(case: Case) -> list[Joint]:
     if table is None or table.box is None or table.box.cover is None or table.box.cover.bolts is None:
         return []
     box = box_geometry(table.box, table.seat)
-    parts = material_of(case, table.material)
     bolt_material = material_of(case, table.box.cover.bolts.material or table.material)
-    return housing_cover_joints(box, parts, bolt_material)
+    joints = []
+    for bolt in box.bolts:
+        # The middles of what the bolt clamps say in which region each part is.
+        middle, axis, of_body = np.array(bolt.position), np.array(bolt.axis), bolt.grip - bolt.cover_grip
+        body = _material_at(case, "body", middle - axis * of_body / 2.0)
+        cover = _material_at(case, "cover", middle + axis * bolt.cover_grip / 2.0)
+        joints.append(cover_joint(box, bolt, body, bolt_material, cover))
+    return joints
+
+
+def _material_at(case: Case, volume: str, place: npt.NDArray[np.float64]) -> Material:
+    """Return the material at a place within a volume of a box: that of its region, else that of the housing."""
+    assert case.housing is not None
+    for region in case.housing.region:
+        low, high = np.sort(np.array(region.box or np.full((2, 3), np.nan)), axis=0)
+        if region.volume == volume or ((place >= low) & (place <= high)).all():
+            return material_of(case, region.material)
+    return material_of(case, case.housing.material)
 
 
 def material_of(case: Case, name: str) -> Material:

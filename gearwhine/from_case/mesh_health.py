@@ -16,8 +16,8 @@ from gearwhine.from_case.fixtures import check_places
 from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from housing import Joint
-from meshes import Mesh, MeshDefect, diagnose, resolution_defects
+from housing import HousingError, Joint
+from meshes import GeometryError, Mesh, MeshDefect, diagnose, resolution_defects
 from meshes.gmsh_meshing import expected_elements
 from meshes.lengths import UNITS
 from meshes.quality import WaveCarrier
@@ -32,8 +32,8 @@ _MANY_UNKNOWNS = 1.5e6
 def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     """Warnings about the mesh of a case.
 
-    Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless the case
-    has joints, which may join them.
+    Bodies that touch without being joined, or whose elements do not match there, are wrong or doubtful unless joints of
+    the case connect them.
 
     Raises
     ------
@@ -44,9 +44,7 @@ def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     assert table is not None
     source = table.mesh or table.cad
     unit = None if source is None or source.unit is None else UNITS[source.unit]
-    defects = diagnose(mesh, unit=unit)
-    if table.joint or cover_joints(case):
-        defects = tuple(defect for defect in defects if not _of_loose_bodies(defect))
+    defects = diagnose(mesh, unit=unit, joined=list(_joined_nodes(case, mesh)))
     wrong = [defect for defect in defects if defect.severity == "error"]
     if wrong:
         key = "housing.mesh.file" if table.mesh else "housing.cad.file" if table.cad else "housing.box"
@@ -55,9 +53,15 @@ def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
     return _warnings(defects)
 
 
-def _of_loose_bodies(defect: MeshDefect) -> bool:
-    """Whether a defect lies between bodies; elements of one body that do not match are an error."""
-    return defect.name == "disconnected" or (defect.name == "non-conforming" and defect.severity == "warning")
+def _joined_nodes(case: Case, mesh: Mesh) -> Iterator[npt.NDArray[np.int64]]:
+    """Yield the nodes of each joint."""
+    assert case.housing is not None
+    for joint in (*(table.build() for table in case.housing.joint), *cover_joints(case)):
+        try:
+            yield joint.nodes(mesh)
+        except (HousingError, GeometryError):
+            # What it was to connect is not known; that it has no place is said where fixtures are placed.
+            yield np.arange(len(mesh.points))
 
 
 def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[dict[str, Any]]:

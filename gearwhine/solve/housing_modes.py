@@ -335,7 +335,9 @@ def solve_housing(
         record=record,
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
-        warnings=warnings + ([] if spoilt is None else [warning("modes file", spoilt)]),
+        warnings=warnings
+        + ([] if spoilt is None else [warning("modes file", spoilt)])
+        + _surplus_damping(case, len(modes.frequencies)),
     )
 
 
@@ -430,6 +432,19 @@ def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
         return np.array(ratio[: len(frequencies_hz)])
     assert isinstance(ratio, float | int)
     return np.full(len(frequencies_hz), float(ratio))
+
+
+def _surplus_damping(case: Case, n_modes: int) -> list[dict[str, Any]]:
+    """Warn of a list of damping ratios that is longer than the modes below the frequency limit."""
+    assert case.housing is not None
+    ratios = case.housing.damping_ratio
+    if not isinstance(ratios, tuple) or len(ratios) <= n_modes:
+        return []
+    message = (
+        f"damping_ratio lists {len(ratios)} ratios for {n_modes} modes: the first {n_modes} are taken in order, "
+        "the others are not used; the list needs one for each mode from the lowest on, rigid motions included"
+    )
+    return [warning("damping", message, count=len(ratios) - n_modes)]
 
 
 def bearing_places(case: Case) -> dict[str, tuple[str, float]]:

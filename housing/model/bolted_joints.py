@@ -97,10 +97,30 @@ def frustum_stiffness(
     return youngs_modulus / flexibility
 
 
+def _cone_flexibility(
+    diameter: float, height: float, layers: tuple[tuple[float, Material], ...], outer: float
+) -> float:
+    """Axial flexibility of a cone of pressure through layers, from under the head on [m/N]: pieces in series."""
+    flexibility, depth = 0.0, 0.0
+    for length, material in layers:
+        piece = min(length, height - depth)
+        if piece > 0.0:
+            wide = min(_HEAD * diameter + 2 * depth * _TAN, max(outer, _HEAD * diameter))
+            flexibility += 1.0 / frustum_stiffness(piece, wide, diameter, material.youngs_modulus, outer=outer)
+            depth += piece
+    return flexibility
+
+
 def bolted_joint(
-    diameter: float, grip: float, parts: Material, bolt: Material | None = None, *, outer: float = math.inf
+    diameter: float,
+    grip: float,
+    parts: Material,
+    bolt: Material | None = None,
+    *,
+    cover: tuple[Material, float] | None = None,
+    outer: float = math.inf,
 ) -> BoltedJoint:
-    """Compute the stiffness of a bolt through two parts of one material, a cone of pressure in each half of the grip.
+    """Compute the stiffness of a bolt through two parts, a cone of pressure from each end to the middle of the grip.
 
     Parameters
     ----------
@@ -111,13 +131,16 @@ def bolted_joint(
         engaged depth (Shigley, Table 8-7).
     parts, bolt : Material
         Materials; the bolt's is that of the parts where not given.
+    cover : tuple of Material and float, optional
+        Material of the part at one end and its length in the grip [m], where it is another one: the cones are cut where
+        the materials meet, and their pieces are springs in series (Shigley, Example 8-2).
     outer : float
         Diameter around the bolt that the parts fill [m]; at least the head's, 1.5 of the bolt's.
 
     Raises
     ------
     HousingError
-        Where a length is not positive, or the parts are narrower than the head.
+        Where a length is not positive, the cover is as long as the grip, or the parts are narrower than the head.
     """
     if not (diameter > 0.0 and grip > 0.0):
         raise HousingError(f"a bolt of {diameter} m diameter and {grip} m grip: both must be positive")
@@ -127,10 +150,18 @@ def bolted_joint(
             "diameter"
         )
     steel = parts if bolt is None else bolt
-    modulus, shear = parts.youngs_modulus, parts.shear_modulus
+    first, length = (parts, grip / 2) if cover is None else cover
+    if not 0.0 < length < grip:
+        raise HousingError(f"a cover of {length} m in a grip of {grip} m: expected a part of it")
+    layers = ((length, first), (grip - length, parts))
+    # One layer after the other: moduli of one part that deflects as much.
+    modulus = grip / sum(part / material.youngs_modulus for part, material in layers)
+    shear = grip / sum(part / material.shear_modulus for part, material in layers)
     bolt_only = bolt_stiffness(diameter, grip, steel.youngs_modulus)
-    half = frustum_stiffness(grip / 2, _HEAD * diameter, diameter, modulus, outer=outer)
-    clamped = half / 2  # two halves, one after the other
+    clamped = 1.0 / (
+        _cone_flexibility(diameter, grip / 2, layers, outer)
+        + _cone_flexibility(diameter, grip / 2, layers[::-1], outer)
+    )
     area = clamped * grip / modulus
     width = math.sqrt(4 * area / math.pi + diameter**2)
     bending, bolt_bending = math.pi / 64 * (width**4 - diameter**4), math.pi / 64 * diameter**4

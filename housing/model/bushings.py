@@ -11,6 +11,7 @@ from housing.fem.matrices import Additions
 from housing.model.fixtures import port_fixture_matrices
 from housing.model.patches import Patch, Point, patch_matrix
 from meshes import Mesh
+from meshes.elements import IntArray, facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
@@ -170,6 +171,10 @@ class Joint:
         """Check that the joint has two different patches."""
         if self.first == self.second:
             raise HousingError(f"joint {self.name!r} ties a patch to itself; give two patches")
+
+    def nodes(self, mesh: Mesh) -> IntArray:
+        """Return the nodes of both patches."""
+        return np.concatenate([facet_nodes(patch.facets(mesh)) for patch in (self.first, self.second)])
 
     def additions(self, mesh: Mesh) -> Additions:
         """(P₂ - P₁)ᵀ K₆ (P₂ - P₁) and the same with C₆; see :class:`housing.model.fixtures.Fixture`."""

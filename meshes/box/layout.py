@@ -228,6 +228,7 @@ def cover_bolts(box: Box) -> tuple[Bolt, ...]:
                 diameter=pattern.diameter,
                 grip=thickness + depth / 2 if pattern.grip is None else pattern.grip,
                 patch_diameter=2 * pattern.diameter if pattern.patch_diameter is None else pattern.patch_diameter,
+                cover_thickness=thickness,
             )
         )
     return tuple(bolts)

@@ -211,6 +211,8 @@ class Bolt:
         Unit vector from the body to the cover.
     diameter, grip, patch_diameter : float
         Lengths of :class:`CoverBolts`, defaults resolved [m].
+    cover_thickness : float
+        Thickness of the cover [m].
     """
 
     name: str
@@ -219,6 +221,12 @@ class Bolt:
     diameter: float
     grip: float
     patch_diameter: float
+    cover_thickness: float
+
+    @property
+    def cover_grip(self) -> float:
+        """Part of the grip in the cover [m]: its thickness, or half the grip where that is no longer (a sunk head)."""
+        return self.cover_thickness if self.grip > self.cover_thickness else self.grip / 2.0
 
     @property
     def cover_surface(self) -> str:

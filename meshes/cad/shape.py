@@ -218,12 +218,12 @@ def _sewn(gmsh: Any, path: str, kind: str, n_faces: int) -> list[int]:
     shells = _shells(gmsh, n_faces)
     outer = sorted(shells, key=lambda shell: -_diagonal(gmsh, shell))
     voids: dict[int, list[list[int]]] = {}
-    for place, shell in enumerate(outer):
-        around = next((i for i in range(place) if i in voids and _lies_within(gmsh, shell, outer[i])), None)
-        if around is None:
-            voids[place] = []
+    for place, around in enumerate(_shells_around(gmsh, outer)):
+        # A void is in the material of one shell more than of voids; a shell within a void is a solid of its own.
+        if len(around) % 2:
+            voids[around[-1]].append(outer[place])
         else:
-            voids[around].append(shell)
+            voids[place] = []
     solids = []
     for place, inside in voids.items():
         loops = [gmsh.model.occ.addSurfaceLoop(shell, sewing=False) for shell in (outer[place], *inside)]
@@ -274,9 +274,29 @@ def _diagonal(gmsh: Any, faces: list[int]) -> float:
     return float(np.linalg.norm(high - low))
 
 
-def _lies_within(gmsh: Any, inner: list[int], outer: list[int]) -> bool:
-    (a, b), (c, d) = _bounds(gmsh, inner), _bounds(gmsh, outer)
-    return bool(np.all(a > c) and np.all(b < d))
+def _shells_around(gmsh: Any, shells: list[list[int]]) -> list[list[int]]:
+    """Return the places of the shells around each, in the order of the list, which goes from the largest down.
+
+    A shell in a recess of another one is in the box around it and not within it, which its corners say.
+    """
+    if len(shells) == 1:
+        return [[]]
+    filled = [gmsh.model.occ.addVolume([gmsh.model.occ.addSurfaceLoop(shell, sewing=False)]) for shell in shells]
+    gmsh.model.occ.synchronize()
+    around = []
+    for place, shell in enumerate(shells):
+        below = gmsh.model.getBoundary([(2, face) for face in shell], combined=False, oriented=False, recursive=True)
+        corners = np.array([gmsh.model.getValue(0, point, []) for dimension, point in below if dimension == 0])
+        around.append(
+            [
+                other
+                for other in range(place)
+                if len(corners) and gmsh.model.isInside(3, filled[other], corners.ravel()) == len(corners)
+            ]
+        )
+    gmsh.model.occ.remove([(3, solid) for solid in filled])
+    gmsh.model.occ.synchronize()
+    return around
 
 
 def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:

@@ -1,13 +1,15 @@
 """Input decks of Abaqus and CalculiX: keyword cards; reader and writer of nodes, solid elements, sets and surfaces.
 
 meshio reads these files too, but gives an element set to the wrong block of elements where some blocks have none, and
-knows no ``*SURFACE``. The reader takes flat decks, and decks of one part and one instance.
+knows no ``*SURFACE``. The reader takes flat decks, and decks with one instance of one of their parts.
 """
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -18,6 +20,12 @@ from meshes.mesh import Mesh
 
 _DEPTH = 20  # levels of files that include files
 _INCLUDE, _INPUT = "INCLUDE", "INPUT"
+# Keywords that are read here, whose lines of data may stand in a file of their own.
+_READ = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
+# Keywords that make, move or take away nodes or elements, and what to write in place of them.
+_FLAT = "write the deck with every node and element in it (as preprocessors do), without this keyword"
+_REFUSED = {"NGEN", "NCOPY", "NFILL", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION", "IMPORT"}
+_Member = TypeVar("_Member")
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
 
 
@@ -33,11 +41,14 @@ class Card:
         Values without quotes; empty where a parameter has none.
     lines : list of list of str
         Items of each line; a comma at its end makes no item.
+    place : str
+        File and line, for messages.
     """
 
     keyword: str
     parameters: dict[str, str]
     lines: list[list[str]]
+    place: str
 
 
 def read_cards(path: Path) -> Iterator[Card]:
@@ -46,16 +57,16 @@ def read_cards(path: Path) -> Iterator[Card]:
     Raises
     ------
     GeometryError
-        Where an included file is missing, or a file includes itself.
+        Where an included file or one of data is missing, or a file includes itself.
     """
     yield from _cards(path, 0)
 
 
 def included_files(path: Path) -> Iterator[Path]:
-    """Yield the files that a file itself includes, whether they exist or not."""
+    """Yield the files that a file itself includes or takes lines of data from, whether they exist or not."""
     # Most decks include nothing and are long: their cards are made only where the word is in them.
-    if _INCLUDE.encode() in path.read_bytes().upper():
-        yield from (_included(card, path) for card in _own_cards(path) if card.keyword == _INCLUDE)
+    if _INPUT.encode() in path.read_bytes().upper():
+        yield from (_included(card, path) for card in _own_cards(path) if _takes_file(card))
 
 
 def _cards(path: Path, depth: int) -> Iterator[Card]:
@@ -69,7 +80,7 @@ def _own_cards(path: Path) -> Iterator[Card]:
     """Yield the cards of a file itself, INCLUDE among them."""
     card: Card | None = None
     pending = ""
-    for raw in path.read_text(encoding="utf-8", errors="replace").splitlines():
+    for number, raw in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), start=1):
         line = raw.strip()
         if not line or line.startswith("**"):
             continue
@@ -79,7 +90,7 @@ def _own_cards(path: Path) -> Iterator[Card]:
                 continue
             if card is not None:
                 yield card
-            card, pending = _card(pending), ""
+            card, pending = _card(pending, f"mesh file {path}, line {number}"), ""
         elif card is not None:
             card.lines.append(_items(line))
     if card is not None:
@@ -87,25 +98,39 @@ def _own_cards(path: Path) -> Iterator[Card]:
 
 
 def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
-    """Yield the card itself, or the cards of the file that it includes."""
-    if card.keyword != _INCLUDE:
+    """Yield the card itself, with its lines of data from another file, or the cards of the file that it includes."""
+    if not _takes_file(card):
         yield card
         return
     other = _included(card, path)
     if not other.is_file():
         raise GeometryError(f"mesh file {path} includes {card.parameters.get(_INPUT, '')!r}: no such file")
-    yield from _cards(other, depth + 1)
+    if card.keyword == _INCLUDE:
+        yield from _cards(other, depth + 1)
+        return
+    for raw in other.read_text(encoding="utf-8", errors="replace").splitlines():
+        line = raw.strip()
+        if line.startswith("*") and not line.startswith("**"):
+            raise GeometryError(f"{card.place}: {other} has a keyword, {line!r}; expected lines of data alone")
+        if line and not line.startswith("**"):
+            card.lines.append(_items(line))
+    yield card
+
+
+def _takes_file(card: Card) -> bool:
+    return card.keyword == _INCLUDE or (card.keyword in _READ and _INPUT in card.parameters)
 
 
 def _included(card: Card, path: Path) -> Path:
-    """Return the file that an INCLUDE names, relative to the file that it stands in; its folder where it names none."""
+    """Return the file that a card names, relative to the file that it stands in; its folder where it names none."""
     return path.parent / card.parameters.get(_INPUT, "")
 
 
-def _card(line: str) -> Card:
+def _card(line: str, place: str) -> Card:
     word, *rest = _items(line[1:])
     pairs = [part.partition("=") for part in rest]
-    return Card(word.upper(), {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}, [])
+    parameters = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
+    return Card(" ".join(word.upper().split()), parameters, [], place)
 
 
 def _items(line: str) -> list[str]:
@@ -145,7 +170,6 @@ class _Deck:
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     faces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     internal: set[str] = field(default_factory=set)
-    instances: int = 0
 
 
 def read_abaqus(path: Path) -> MeshContent:
@@ -157,21 +181,48 @@ def read_abaqus(path: Path) -> MeshContent:
     Raises
     ------
     GeometryError
-        Where the deck holds pyramids or other unknown solids, several instances, or references to missing numbers.
+        Where the deck holds pyramids or other unknown solids, several instances or a moved one, keywords that generate
+        nodes or elements, or references to missing numbers.
     """
     deck = _Deck()
-    for card in read_cards(path):
+    for card in _instanced(list(read_cards(path)), path):
         _take(deck, card)
-    if deck.instances > 1:
-        raise GeometryError(f"mesh file {path} assembles {deck.instances} instances; write one flat deck of them")
     return _content(deck, path)
 
 
+def _instanced(cards: list[Card], path: Path) -> Iterator[Card]:
+    """Yield the cards outside of parts, and those of the part that is instanced; numbers are those of each part."""
+    instances = [card for card in cards if card.keyword == "INSTANCE"]
+    if len(instances) > 1:
+        raise GeometryError(f"mesh file {path} assembles {len(instances)} instances; write one flat deck of them")
+    parts = [card.parameters.get("NAME", "").upper() for card in cards if card.keyword == "PART"]
+    for card in instances:
+        if card.lines:
+            raise GeometryError(f"{card.place}: an instance is moved; write a flat deck, where it stands in its place")
+        part = card.parameters.get("PART", "")
+        if parts and part.upper() not in parts:
+            raise GeometryError(f"{card.place}: instance of part {part!r}, which is not there")
+        parts = [part.upper()]
+    if len(parts) > 1:
+        raise GeometryError(f"mesh file {path} has {len(parts)} parts and no instance; write one flat deck of them")
+    within: str | None = None
+    for card in cards:
+        if card.keyword == "PART":
+            within = card.parameters.get("NAME", "").upper()
+        elif card.keyword == "END PART":
+            within = None
+        elif within is None or within in parts:
+            yield card
+
+
 def _take(deck: _Deck, card: Card) -> None:
+    if card.keyword in _REFUSED or (card.keyword == "SYSTEM" and card.lines):
+        raise GeometryError(f"{card.place}: *{card.keyword} is not known here; {_FLAT}")
     if card.keyword == "NODE":
         numbers = []
         for number, *place in card.lines:
-            deck.points[int(number)] = [float(value.upper().replace("D", "E") or 0.0) for value in (*place, "", "")[:3]]
+            coordinates = [float(value.upper().replace("D", "E") or 0.0) for value in (*place, "", "")[:3]]
+            deck.points[int(number)] = _rectangular(coordinates, card)
             numbers.append(int(number))
         _add(deck.node_sets, card.parameters.get("NSET"), numbers)
     elif card.keyword == "ELEMENT":
@@ -188,11 +239,18 @@ def _take(deck: _Deck, card: Card) -> None:
             for first, *_ in card.lines:
                 _add(deck.node_sets, name, _numbers(first, deck.node_sets))
         elif name is not None:
-            deck.faces.setdefault(name, []).extend((line[0], (line + [""])[1].upper()) for line in card.lines)
-    elif card.keyword == "INSTANCE":
-        deck.instances += 1
-        if card.lines:
-            raise GeometryError("an instance is moved; write a flat deck, where it stands in its place")
+            _add(deck.faces, name, [(line[0], (line + [""])[1].upper()) for line in card.lines])
+
+
+def _rectangular(place: list[float], card: Card) -> list[float]:
+    """Return the rectangular coordinates of a node; with SYSTEM=C it has radius, angle in degrees and height."""
+    system = (card.parameters.get("SYSTEM") or "R").upper()
+    if system == "R":
+        return place
+    if system == "C":
+        radius, angle, height = place
+        return [radius * math.cos(math.radians(angle)), radius * math.sin(math.radians(angle)), height]
+    raise GeometryError(f"{card.place}: *NODE, SYSTEM={system} is not known here; write nodes with SYSTEM=R or C")
 
 
 def _take_elements(deck: _Deck, card: Card) -> None:
@@ -224,9 +282,11 @@ def _kind(name: str) -> str | None:
     return "shell" if re.match(r"(S|STRI|M3D|SFM3D|CPS|CPE|R3D|DS)\d", name) else None
 
 
-def _add(sets: dict[str, list[int]], name: str | None, members: list[int]) -> None:
+def _add(sets: dict[str, list[_Member]], name: str | None, members: list[_Member]) -> None:
+    """Add members to a set; names that differ in case alone are one, spelt as first written."""
     if name:
-        sets.setdefault(name, []).extend(members)
+        known = name if name in sets else next((other for other in sets if other.upper() == name.upper()), name)
+        sets.setdefault(known, []).extend(members)
 
 
 def _members(card: Card, sets: dict[str, list[int]]) -> list[int]:
@@ -320,6 +380,11 @@ def write_abaqus(mesh: Mesh, path: Path) -> None:
     GeometryError
         Where a facet of a named surface is no face of an element, or a name cannot stand in a deck.
     """
+    for regions in (mesh.volumes, mesh.surfaces):
+        spellings: dict[str, str] = {}
+        for name in regions:
+            if (other := spellings.setdefault(name.upper(), name)) != name:
+                raise GeometryError(f"the names {other!r} and {name!r} differ in case alone, and are one in a deck")
     names = {kind: f"C3D{number}" for number, kind in SOLID_TYPES.items()}
     with path.open("w", encoding="utf-8") as file:
         file.write("*NODE\n")

@@ -5,6 +5,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from meshes.formats.abaqus import included_files
+from meshes.formats.nastran import ENDINGS, included_decks
 
 _TETGEN = (".node", ".ele")
 
@@ -12,9 +13,9 @@ _TETGEN = (".node", ".ele")
 def companion_files(path: Path) -> tuple[Path, ...]:
     """Return the existing files that are read with a mesh file, ascending by their paths.
 
-    They are the decks that an Abaqus or CalculiX deck includes, however deep; the arrays of XDMF; the other file of
-    TetGen's pair; and the cell data beside a mesh of DOLFIN. A file of any other kind has none, nor has a broken one,
-    which its reader refuses.
+    They are the decks and lines of data that a deck of Abaqus, CalculiX or Nastran includes, however deep; the arrays
+    of XDMF; the other file of TetGen's pair; and the cell data beside a mesh of DOLFIN. A file of any other kind has
+    none, nor has a broken one, which its reader refuses.
     """
     ending, whole, found = path.suffix.lower(), path.resolve(), set[Path]()
     waiting = [whole]
@@ -29,6 +30,8 @@ def _named_by(path: Path, ending: str) -> Iterator[Path]:
     """Yield the files that a file refers to itself, whether they exist or not, as the ending of the mesh file says."""
     if ending == ".inp":
         yield from included_files(path)
+    elif ending in ENDINGS:
+        yield from included_decks(path)
     elif ending == ".xdmf":
         yield from _arrays_of_xdmf(path)
     elif ending in _TETGEN:

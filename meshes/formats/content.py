@@ -65,7 +65,9 @@ class MeshContent:
         for name, corners in self.facets.items():
             faces = find_faces(bare, renumbered[corners])
             if (faces >= 0).all() and len(faces):
-                surfaces[name] = faces_as_facets(bare.blocks, bare.faces, faces)
+                # A facet that is listed twice, as by two sets with an element in both, is one.
+                once = np.sort(np.unique(faces, return_index=True)[1])
+                surfaces[name] = faces_as_facets(bare.blocks, bare.faces, faces[once])
             elif (faces >= 0).any():
                 x, y, z = self.points[corners[np.argmin(faces)][:3]].mean(axis=0) * unit
                 raise GeometryError(

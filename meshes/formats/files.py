@@ -1,53 +1,18 @@
-"""Mesh files: read and write every format that meshio knows, and input decks of Abaqus and CalculiX.
-
-Nastran decks are completed for meshio: the bulk data are framed, and every continuation is marked.
-"""
+"""Mesh files: read and write every format that meshio knows, and input decks of Abaqus, CalculiX and Nastran."""
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from collections.abc import Mapping
+from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from meshes.errors import GeometryError
 from meshes.formats.abaqus import read_abaqus, write_abaqus
 from meshes.formats.content import MeshContent
 from meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
+from meshes.formats.nastran import ENDINGS, read_nastran
 from meshes.mesh import Mesh
-
-ENDINGS = (".bdf", ".fem", ".nas")
-
-_BEGIN, _END = "BEGIN BULK", "ENDDATA"
-_FIELD = 8 * " "
-
-
-def framed_deck(text: str) -> str:
-    """Frame the bulk data of a deck by BEGIN BULK and ENDDATA, with a plus sign before each continuation.
-
-    gmsh and others write bulk data alone, as for an INCLUDE; and a continuation may begin with a blank field, which
-    meshio takes for one only where the line before it is filled up to 80 letters.
-    """
-    lines = [f"+{line[1:]}" if line.startswith(_FIELD) and line.strip() else line for line in text.splitlines()]
-    if not any(line.strip().startswith(_BEGIN) for line in lines):
-        lines.insert(0, _BEGIN)
-    if not any(line.startswith(_END) for line in lines):
-        lines.append(_END)
-    return "\n".join([*lines, ""])
-
-
-@contextmanager
-def framed_file(path: Path) -> Iterator[Path]:
-    """Write a temporary copy of a deck in this form; files of other formats stay as they are."""
-    if path.suffix.lower() not in ENDINGS:
-        yield path
-        return
-    with TemporaryDirectory(prefix="gearwhine-nastran-") as folder:
-        copy = Path(folder) / path.name
-        copy.write_text(framed_deck(path.read_text(encoding="utf-8", errors="replace")), encoding="utf-8")
-        yield copy
-
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
 WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")
@@ -60,7 +25,8 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     Parameters
     ----------
     path : path
-        A file of any format that meshio reads, or an input deck of Abaqus or CalculiX (``.inp``).
+        A file of any format that meshio reads, or an input deck of Abaqus or CalculiX (``.inp``) or Nastran
+        (``.bdf``, ``.fem``, ``.nas``).
     unit : float
         The file's unit of length [m], such as 1e-3 for millimetres.
 
@@ -81,7 +47,7 @@ def read_mesh(path: str | Path, *, unit: float = 1.0) -> Mesh:
     if not path.is_file():
         raise GeometryError(f"mesh file {path}: no such file")
     try:
-        content = read_abaqus(path) if path.suffix.lower() == ".inp" else _through_meshio(path)
+        content = _read(path)
     except GeometryError:
         raise
     except SystemExit as error:  # meshio leaves through sys.exit where no reader takes the file
@@ -137,6 +103,13 @@ def _write(mesh: Mesh, path: Path) -> None:
         meshio.write(path, meshio_from_mesh(mesh, path.suffix), file_format=format_name)
 
 
+def _read(path: Path) -> MeshContent:
+    ending = path.suffix.lower()
+    if ending == ".inp":
+        return read_abaqus(path)
+    return read_nastran(path) if ending in ENDINGS else _through_meshio(path)
+
+
 def _through_meshio(path: Path) -> MeshContent:
     meshio = load_meshio()
     _check_ending(path, meshio.extension_to_filetypes)
@@ -144,8 +117,8 @@ def _through_meshio(path: Path) -> MeshContent:
     if not path.stat().st_size:
         raise GeometryError(f"mesh file {path} is empty")
     # meshio prints warnings to standard output, which belongs to the caller.
-    with redirect_stdout(StringIO()), redirect_stderr(StringIO()), framed_file(path) as readable:
-        content = meshio.read(readable)
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        content = meshio.read(path)
     return content_from_meshio(content, path)
 
 

@@ -125,22 +125,39 @@ def test_unmerged_bodies_are_an_error_that_names_the_file(gearwhine: Any, case: 
     assert "Traceback" not in outcome.err
 
 
-def test_bodies_that_a_joint_may_tie_are_no_error(gearwhine: Any, case: Any) -> None:
-    def with_ends(mesh: Mesh) -> Mesh:
-        halves = _halves(mesh)
-        at_joint = np.isclose(facet_centers(halves.points, halves.boundary)[:, 0], 200.0)
-        first = np.flatnonzero(at_joint)
-        chosen = [np.isin(np.arange(len(at_joint)), part) for part in np.split(first, 2)]
-        ends = {name: pick_facets(halves.boundary, mask) for name, mask in zip(("a", "b"), chosen, strict=True)}
-        return replace(halves, surfaces=ends)
+def _with_ends(mesh: Mesh) -> Mesh:
+    """Name the two facets where the first two bodies touch ``a`` and ``b``."""
+    at_joint = np.isclose(facet_centers(mesh.points, mesh.boundary)[:, 0], 200.0)
+    chosen = [np.isin(np.arange(len(at_joint)), part) for part in np.split(np.flatnonzero(at_joint), 2)]
+    ends = {name: pick_facets(mesh.boundary, mask) for name, mask in zip(("a", "b"), chosen, strict=True)}
+    return replace(mesh, surfaces=ends)
 
-    joint = '[[housing.joint]]\nname = "bolts"\nsurfaces = ["a", "b"]\n'
-    joint += "stiffness = { x = 1e9, y = 1e9, z = 1e9, rx = 1e6, ry = 1e6, rz = 1e6 }\n"
-    outcome = gearwhine("modes", case("hexahedron20", change=with_ends, more=joint), "--json", "-q")
+
+JOINT = """[[housing.joint]]
+name = "bolts"
+surfaces = ["a", "b"]
+stiffness = { x = 1e9, y = 1e9, z = 1e9, rx = 1e6, ry = 1e6, rz = 1e6 }
+"""
+
+
+def test_bodies_that_a_joint_may_tie_are_no_error(gearwhine: Any, case: Any) -> None:
+    mesh = case("hexahedron20", change=lambda one: _with_ends(_halves(one)), more=JOINT)
+    outcome = gearwhine("modes", mesh, "--json", "-q")
     assert outcome.code == 0, outcome.err
     hertz = [mode["frequency_hz"] for mode in json.loads(outcome.out)["modes"]]
     assert hertz[:6] == [0.0] * 6
     assert hertz[6] > 0.0
+
+
+def test_a_body_beside_joined_ones_is_an_error(gearwhine: Any, case: Any) -> None:
+    def three(mesh: Mesh) -> Mesh:
+        two = _halves(mesh)
+        third = ElementBlock(mesh.blocks[0].kind, mesh.blocks[0].nodes + len(two.points))
+        return _with_ends(Mesh(np.vstack([two.points, mesh.points + [400.0, 0.0, 0.0]]), (*two.blocks, third)))
+
+    outcome = gearwhine("check", case("hexahedron", change=three, more=JOINT), "-q")
+    assert outcome.code == 2
+    assert "2 bodies whose nodes coincide at 8 places, the first at (0.4, 0, 0) m; merge them" in outcome.err
 
 
 def test_files_that_hold_no_solids_are_errors_of_the_case(gearwhine: Any, tmp_path: Path) -> None:

@@ -1,11 +1,15 @@
 """Mounts, joints and masses of a case as the housing has them: which way they face, and where they weigh."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
+from gearwhine.case import parse_case
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
+from gearwhine.from_case.mesh import cover_joints
+from housing import Material, bolted_joint
 
 
 def test_a_bolt_between_two_faces_presses_each_from_its_own_side() -> None:
@@ -42,3 +46,41 @@ def test_a_fastened_body_weighs_where_it_is_and_turns_by_its_own_tensor() -> Non
     for key, value in inertia.items():
         row, column = ("xyz".index(axis) for axis in key)
         assert tensor[row, column] == value
+
+
+@pytest.mark.parametrize(
+    ("regions", "body", "cover"),
+    [
+        ([{"volume": "cover"}], "steel", "aluminium"),
+        ([{"volume": "body"}], "aluminium", "steel"),
+        ([{"box": [["1 m", "240 mm", "1 m"], ["-1 m", "1 m", "-1 m"]]}], "steel", "aluminium"),
+        # A half, of cover and body, with the first bolt and without: bolts go round from the lowest x.
+        ([{"box": [["-1 m", "-1 m", "-1 m"], ["0 m", "1 m", "1 m"]]}], "aluminium", "aluminium"),
+        ([{"box": [["0 m", "-1 m", "-1 m"], ["1 m", "1 m", "1 m"]]}], "steel", "steel"),
+    ],
+)
+def test_bolts_of_a_cover_clamp_the_materials_that_are_there(
+    regions: list[dict[str, Any]], body: str, cover: str
+) -> None:
+    """A cover of 10 mm on a flange: 10 mm of its material in the grip, and 4 mm, half the bolt's diameter, below."""
+    steel = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7800 kg/m^3"}
+    aluminium = {"youngs_modulus": "70 GPa", "poisson_ratio": 0.33, "density": "2700 kg/m^3"}
+    box = {
+        "size": ["300 mm", "250 mm", "200 mm"],
+        "wall": "10 mm",
+        "mesh_size": "40 mm",
+        "cover": {
+            "face": "top",
+            "flange": {"width": "20 mm", "thickness": "12 mm"},
+            "bolts": {"diameter": "8 mm", "per_edge": [3, 3]},
+        },
+    }
+    table = {"material": "steel", "modes": 8, "box": box}
+    table["region"] = [{"name": "other", "material": "aluminium"} | region for region in regions]
+    case = parse_case({"material": {"steel": steel, "aluminium": aluminium}, "housing": table})
+    materials = {"steel": Material(207e9, 0.3, 7800.0), "aluminium": Material(70e9, 0.33, 2700.0)}
+    expected = bolted_joint(
+        0.008, 0.014, materials[body], materials["steel"], cover=(materials[cover], 0.010), outer=0.030
+    ).stiffness
+    built = cover_joints(case)[0].bushing.stiffness
+    assert built == pytest.approx((*[expected.shear] * 2, expected.axial, *[expected.tilting] * 2, expected.torsional))

@@ -218,6 +218,27 @@ def test_masses_and_dashpots_of_a_case_reach_its_modes() -> None:
     np.testing.assert_allclose(undamped.modes.frequencies[:6], full.modes.frequencies[:6], rtol=1e-9)
 
 
+def test_damping_ratios_of_more_modes_than_there_are_are_warned_of() -> None:
+    """A free box below 500 Hz has its six rigid motions."""
+    steel = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
+    box = {"size": ["300 mm", "250 mm", "200 mm"], "wall": "10 mm", "mesh_size": "80 mm"}
+
+    def solved(count: int) -> Any:
+        ratios = [0.01 * number for number in range(1, 1 + count)]
+        table = {"material": "steel", "frequency_limit": "500 Hz", "box": box, "damping_ratio": ratios}
+        return solve_housing(parse_case({"material": {"steel": steel}, "housing": table}))
+
+    longer = solved(8)
+    (found,) = (warning for warning in longer.warnings if warning["name"] == "damping")
+    assert "lists 8 ratios for 6 modes: the first 6 are taken in order" in found["message"]
+    assert longer.damping_ratios.tolist() == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.05, 0.06])
+    assert not [warning for warning in solved(6).warnings if warning["name"] == "damping"]
+    with pytest.raises(
+        CaseError, match=r"damping_ratio: expected a ratio for each of the 6 modes found, got '5 ratios'"
+    ):
+        solved(5)
+
+
 @pytest.fixture(scope="module")
 def two_parts(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A mesh file of two separate hollow boxes, the second 5 mm above the first; facing surfaces lower and upper."""

@@ -9,7 +9,7 @@ from gearwhine.case import case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import ParametricHousing, _followed, fitted_case
 from housing import HousingError, assemble
-from housing.updating.parameters import coordinate_bounds
+from housing.updating.parameters import coordinate_bounds, values_at
 
 NUMBERS: list[tuple[list[str], list[Any], Any]] = [
     (["housing.box.wall.top"], ["6 mm", "20 mm"], "3 mm"),
@@ -96,3 +96,41 @@ def test_a_design_that_is_no_sound_housing_is_said(designs: ParametricHousing) -
     broken = ParametricHousing(designs.case, 10_000)
     with pytest.raises(HousingError):
         broken.solve(designs.start)
+
+
+@pytest.mark.parametrize("bolts", [None, "bolt"])
+def test_bolts_of_a_cover_change_with_their_material(bolts: str | None) -> None:
+    """Bolts of the housing's own material: f grows as √E whatever the shape. Of another one: as solved designs do."""
+    steel = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7800 kg/m^3"}
+    cover: dict[str, Any] = {"diameter": "4 mm", "patch_diameter": "9 mm", "per_edge": [2, 2], "material": bolts}
+    if bolts is None:
+        del cover["material"]
+    box = {
+        "size": ["300 mm", "200 mm", "250 mm"],
+        "wall": "10 mm",
+        "mesh_size": "80 mm",
+        "cover": {"face": "top", "bolts": cover},
+    }
+    key = f"material.{bolts or 'steel'}.youngs_modulus"
+    case = parse_case(
+        {
+            "material": {"steel": steel, "bolt": {**steel, "youngs_modulus": "150 GPa"}},
+            "housing": {"material": "steel", "modes": 8, "box": box},
+            "measured": {"frequencies": ["300 Hz"]},
+            "update": {"parameter": [{"name": "E", "keys": [key], "range": ["50 GPa", "300 GPa"]}]},
+        }
+    )
+    designs = ParametricHousing(fitted_case(case), 12, draft=True, threads=1)
+    start = designs.solve(designs.start)
+    slopes = start.surrogate().at(start.coordinates).slopes[0]
+    step = 0.01
+    beside = [designs.solve(designs.start + way * step, start) for way in (1.0, -1.0)]
+    if bolts is None:
+        (above,), (below,) = (values_at(designs.parameters, other.coordinates) for other in beside)
+        np.testing.assert_allclose(slopes, np.log(above / below) / (4.0 * step), rtol=1e-3)
+    else:
+        free = 6  # rigid motions
+        elastic = [np.log(other.state.frequencies[free:]) for other in beside]
+        quotients = (elastic[0] - elastic[1]) / (2.0 * step)
+        np.testing.assert_allclose(slopes, quotients, rtol=2e-2)
+        assert quotients.max() > 5e-4

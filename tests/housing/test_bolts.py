@@ -5,6 +5,7 @@ Example 8-4 (bolts of a cast-iron vessel). Stress areas: ISO 898-1, coarse threa
 """
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -25,6 +26,11 @@ def test_cones_through_steel_and_cast_iron() -> None:
     assert np.array([upper, middle, lower]) / MLBF_PER_INCH == pytest.approx([30.80, 285.5, 14.15], rel=4e-4)
     assert 1 / (1 / upper + 1 / middle + 1 / lower) / MLBF_PER_INCH == pytest.approx(9.378, rel=1e-4)
     assert frustum_stiffness(0.6725 * INCH, head, d, STEEL) / 2 / MLBF_PER_INCH == pytest.approx(14.64, rel=4e-4)
+    steel, iron = Material(STEEL, 0.3, 7850.0), Material(IRON, 0.25, 7200.0)
+    joint = bolted_joint(d, 1.345 * INCH, iron, steel, cover=(steel, 0.595 * INCH))
+    assert joint.clamped / MLBF_PER_INCH == pytest.approx(9.378, rel=1e-4)
+    turned = bolted_joint(d, 1.345 * INCH, steel, cover=(iron, 0.75 * INCH))
+    assert astuple(turned.stiffness) == pytest.approx(astuple(joint.stiffness))
 
 
 def test_bolt_and_vessel() -> None:
@@ -55,6 +61,20 @@ def test_parts_no_wider_than_the_head_are_a_sleeve() -> None:
     assert joint.stiffness.torsional == pytest.approx(2 * shear * (bending + own) / grip)
 
 
+def test_a_sleeve_of_two_materials_is_springs_in_series() -> None:
+    """Flexibilities Σ l / (E A), Σ l / (G A), Σ l / (E I) of its pieces, and the bolt beside them."""
+    steel, aluminium = Material(207e9, 0.3, 7850.0), Material(70e9, 0.33, 2700.0)
+    d, grip, outer, length = 0.010, 0.025, 0.015, 0.015
+    joint = bolted_joint(d, grip, steel, cover=(aluminium, length), outer=outer)
+    area, bending, own = math.pi / 4 * (outer**2 - d**2), math.pi / 64 * (outer**4 - d**4), math.pi / 64 * d**4
+    axial = 1 / (length / 70e9 + (grip - length) / 207e9)
+    shear = 1 / (length / (70e9 / 2.66) + (grip - length) / (207e9 / 2.6))
+    assert joint.clamped == pytest.approx(axial * area)
+    assert joint.stiffness.shear == pytest.approx(shear * area + 12 * 207e9 * own / grip**3)
+    assert joint.stiffness.tilting == pytest.approx(axial * bending + 207e9 * own / grip)
+    assert joint.stiffness.torsional == pytest.approx(2 * (shear * bending + 207e9 / 2.6 * own / grip))
+
+
 def test_a_wider_part_is_stiffer_up_to_the_free_cone() -> None:
     steel = Material(207e9, 0.3, 7850.0)
     widths = [0.015, 0.018, 0.022, 0.030, 0.040, 0.2, math.inf]
@@ -68,5 +88,7 @@ def test_bolts_that_cannot_be_are_refused() -> None:
     steel = Material(207e9, 0.3, 7850.0)
     with pytest.raises(HousingError, match="both must be positive"):
         bolted_joint(0.0, 0.02, steel)
+    with pytest.raises(HousingError, match=r"a cover of 0\.02 m in a grip of 0\.02 m: expected a part of it"):
+        bolted_joint(0.010, 0.02, steel, cover=(steel, 0.02))
     with pytest.raises(HousingError, match=r"10 mm on parts 12 mm wide: its head needs 1\.5 times"):
         bolted_joint(0.010, 0.02, steel, outer=0.012)

@@ -96,6 +96,14 @@ def test_loose_bodies_are_refused_unless_a_joint_connects_them() -> None:
     found = joined.modes(count=7)
     assert (found.frequencies_hz[:6] == 0.0).all()  # one free body, not two
     assert found.frequencies_hz[6] > 0.0
+    further = Mesh(
+        np.vstack([mesh.points, two_bodies().points + [0.0, 0.0, 0.5]]),
+        (*mesh.blocks, *(ElementBlock(block.kind, block.nodes + len(mesh.points)) for block in mesh.blocks)),
+    )
+    with pytest.raises(
+        HousingError, match=r"falls into 3 bodies that share no node and no joint: .* 25 % of the volume"
+    ):
+        Housing(further, STEEL, fixtures=[Joint("bolt", *ends, stiff)]).modes(count=1)
 
 
 def test_lumped_masses_count_once(box: Housing) -> None:

@@ -1,12 +1,15 @@
 """Input decks of Abaqus and CalculiX, written here by hand as the manuals have them."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from meshes import GeometryError, mesh_quality, read_mesh
+from housing.model.patches import patch_center
+from meshes import GeometryError, mesh_quality, read_mesh, write_mesh
 from meshes.elements import KINDS, facet_nodes
+from meshes.formats.companions import companion_files
 
 # Two unit cubes side by side along x, node numbers with gaps.
 CUBES = """\
@@ -149,9 +152,82 @@ def test_one_part_and_one_instance_are_read(tmp_path: Path) -> None:
     assert (mesh.points[facet_nodes(mesh.surface("side")), 0] == 0.0).all()
 
 
+def test_only_the_part_that_is_instanced_is_read(tmp_path: Path) -> None:
+    """Both parts count their nodes and elements from the same numbers; the shaft is twice as long."""
+    shaft = CUBES.replace("102, 2.,", "102, 3.,").replace("15, 0., 0., 1.", "15, 0., 0., 5.")
+    deck = f"*PART, NAME=Shaft\n{shaft}*ELEMENT, TYPE=C3D4\n500, 1, 2, 3, 15\n*END PART\n"
+    deck += f"*PART, NAME=Housing\n{CUBES}*END PART\n"
+    deck += "*ASSEMBLY, NAME=a\n*INSTANCE, NAME=h, PART=HOUSING\n*END INSTANCE\n*END ASSEMBLY\n"
+    for text in (deck, deck.replace("PART=HOUSING", 'PART="Housing"')):
+        mesh = read_mesh(_deck(tmp_path, text))
+        assert mesh.kinds == {"hexahedron": 2}
+        assert mesh.element_volumes == pytest.approx([1.0, 1.0])
+    with pytest.raises(GeometryError, match="line 58: instance of part 'gear', which is not there"):
+        read_mesh(_deck(tmp_path, deck.replace("PART=HOUSING", "PART=gear")))
+    with pytest.raises(GeometryError, match="2 parts and no instance; write one flat deck"):
+        read_mesh(_deck(tmp_path, deck.partition("*ASSEMBLY")[0]))
+
+
+def test_cylindrical_nodes(tmp_path: Path) -> None:
+    """A prism on a quarter of a ring, radius 1 to 2, height 1: its volume by chords is (4 - 1) / 2 sin 90°."""
+    ring = [(1, 0, 0), (2, 0, 0), (2, 90, 0), (1, 90, 0), (1, 0, 1), (2, 0, 1), (2, 90, 1), (1, 90, 1)]
+    nodes = "".join(f"{number}, {r}, {turn}, {z}\n" for number, (r, turn, z) in enumerate(ring, start=1))
+    element = "*ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+    mesh = read_mesh(_deck(tmp_path, f"*NODE, SYSTEM=C\n{nodes}{element}"))
+    assert mesh.element_volumes.sum() == pytest.approx(1.5)
+    np.testing.assert_allclose(mesh.points[2], [0.0, 2.0, 0.0], atol=1e-12)
+    with pytest.raises(GeometryError, match=r"line 1: \*NODE, SYSTEM=S is not known here"):
+        read_mesh(_deck(tmp_path, f"*NODE, SYSTEM=S\n{nodes}{element}"))
+
+
+def test_lines_of_data_in_files_of_their_own(tmp_path: Path) -> None:
+    """They are companions; those of keywords that are not read may be missing."""
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "second.txt").write_text("** the second\n\n9, 2, 102, 103, 3, 16, 106, 107, 17\n")
+    head, _, tail = CUBES.partition("9, 2, 102")
+    deck = head.replace('ELSET="right part"', "ELSET=right, INPUT=parts/second.txt") + tail.partition("\n")[2]
+    path = _deck(tmp_path, deck + "*AMPLITUDE, NAME=a, INPUT=absent.txt\n")
+    mesh = read_mesh(path)
+    assert mesh.element_volumes == pytest.approx([1.0, 1.0])
+    assert mesh.volumes["right"].tolist() == [1]
+    assert companion_files(path) == (tmp_path / "parts" / "second.txt",)
+    with pytest.raises(GeometryError, match=r"includes 'absent\.txt': no such file"):
+        read_mesh(_deck(tmp_path, CUBES + "*ELSET, ELSET=a, INPUT=absent.txt\n"))
+    (tmp_path / "keyword.txt").write_text("*ELSET\n")
+    with pytest.raises(GeometryError, match=r"keyword\.txt has a keyword, '\*ELSET'; expected lines of data alone"):
+        read_mesh(_deck(tmp_path, CUBES + "*ELSET, ELSET=a, INPUT=keyword.txt\n"))
+
+
+def test_a_face_that_is_listed_twice_counts_once(tmp_path: Path) -> None:
+    """The lid of both cubes: its middle is that of a rectangle 2 x 1, whatever sets name its elements."""
+    more = "*ELSET, ELSET=all\n9, 5\n*SURFACE, NAME=lid\nall, S2\n5, S2\n*SURFACE, NAME=skin\n9, S1\n5, S1\n5, S1\n"
+    mesh = read_mesh(_deck(tmp_path, CUBES + more))
+    np.testing.assert_allclose(patch_center(mesh, mesh.surface("lid")), [1.0, 0.5, 1.0], atol=1e-12)
+    # The surface of the same name as the set of shells has the facet of the shell as well.
+    np.testing.assert_allclose(patch_center(mesh, mesh.surface("skin")), [1.0, 0.5, 0.0], atol=1e-12)
+    (facets,) = mesh.surface("lid")
+    assert mesh.points[facets.nodes[0], 0].max() == 2.0  # in the order of the file
+
+
+def test_names_of_sets_are_one_in_any_case(tmp_path: Path) -> None:
+    more = "*ELSET, ELSET=Both\n5\n*ELSET, ELSET=BOTH\n9\n*SURFACE, NAME=top\nboth, S2\n*SURFACE, NAME=TOP\n9, S1\n"
+    mesh = read_mesh(_deck(tmp_path, CUBES + more))
+    assert {name: members.tolist() for name, members in mesh.volumes.items()} == {"right part": [1], "Both": [0, 1]}
+    assert {name for name in mesh.surfaces if name.upper() == "TOP"} == {"top"}
+    assert sum(len(block) for block in mesh.surface("top")) == 3
+    twice = replace(mesh, volumes={"a": mesh.volumes["Both"], "A": mesh.volumes["right part"]})
+    with pytest.raises(GeometryError, match="the names 'a' and 'A' differ in case alone"):
+        write_mesh(twice, tmp_path / "twice.inp")
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
+        ("*ELGEN, ELSET=a\n5, 2, 4, 1\n", r"deck\.inp, line 26: \*ELGEN is not known here; write the deck with every"),
+        ("*NCOPY, CHANGE NUMBER=100\n", r"\*NCOPY is not known here"),
+        ("*NGEN\n1, 3\n", r"\*NGEN is not known here"),
+        ("*ElCopy\n", r"\*ELCOPY is not known here"),
+        ("*System\n1., 0., 0.\n", r"\*SYSTEM is not known here"),
         ("*ELEMENT, TYPE=C3D5\n6, 1, 2, 3, 4, 15\n", "elements of type C3D5, which are not known here"),
         ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3\n", "elements of type C3D4 have 4 nodes each"),
         ("*ELEMENT, TYPE=C3D4\n6, 1, 2, 3, 999\n", "names node 999, which is not in it"),

@@ -64,6 +64,35 @@ def test_every_kind_of_file_is_the_same_solid(drawn: Any, ending: str) -> None:
     assert sorted(bore.center[2] for bore in bores) == pytest.approx([-0.055, 0.055])
 
 
+def _recess(gmsh: Any) -> None:
+    """A block of 20 mm in the recess of a U, free of it."""
+    occ = gmsh.model.occ
+    occ.cut([(3, occ.addBox(0, 0, 0, 100, 60, 40))], [(3, occ.addBox(20, 20, -1, 60, 60, 42))])
+    occ.addBox(40, 30, 10, 20, 20, 20)
+
+
+def _void_in_a_void(gmsh: Any) -> None:
+    """A hollow box, in it a loose block with a void of its own."""
+    occ = gmsh.model.occ
+    occ.cut([(3, occ.addBox(0, 0, 0, 100, 60, 40))], [(3, occ.addBox(10, 10, 10, 80, 40, 20))])
+    occ.cut([(3, occ.addBox(40, 20, 12, 20, 20, 16))], [(3, occ.addBox(45, 25, 16, 10, 10, 8))])
+
+
+@pytest.mark.parametrize(
+    ("name", "draw", "volume"),
+    [
+        ("recess", _recess, 100 * 60 * 40 - 60 * 40 * 40 + 20**3),
+        ("nested", _void_in_a_void, 100 * 60 * 40 - 80 * 40 * 20 + 20 * 20 * 16 - 10 * 10 * 8),
+    ],
+)
+@pytest.mark.parametrize("ending", ["step", "iges"])
+def test_solids_in_recesses_and_voids_of_others(drawn: Any, name: str, draw: Draw, volume: float, ending: str) -> None:
+    """The box around a recess is that of the whole; IGES has no solids, and STEP has these two."""
+    found = mesh_cad(drawn(f"{name}.{ending}", draw), 0.008)
+    assert len(found.solids) == 2
+    assert found.mesh.element_volumes.sum() == pytest.approx(1e-9 * volume, rel=1e-6)
+
+
 def test_seats_and_faces_are_found_by_where_they_lie(drawn: Any) -> None:
     mesh = mesh_cad(drawn("case.step", _case), 0.03).mesh
     bore = cylinder_facets(mesh, (-0.04, 0.075, -0.055), 0.04)

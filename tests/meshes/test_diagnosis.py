@@ -59,6 +59,29 @@ def test_unmerged_bodies_are_told_from_loose_ones(block_of: Callable[..., Mesh],
     assert diagnose(_join(*[block_of(kind, cells=(1, 2, 2))] * 2, (1.0, 0.0, 0.0), merge=True)) == ()
 
 
+def test_bodies_that_joints_connect_may_touch_and_others_are_told(block_of: Callable[..., Mesh]) -> None:
+    """Three cubes in a row, unmerged: each joint takes away the four places where its two cubes meet."""
+    one = block_of("hexahedron")
+    row = _join(_join(one, one, (1.0, 0.0, 0.0), merge=False), one, (2.0, 0.0, 0.0), merge=False)
+    first, second, third = np.split(np.arange(24), 3)
+    ends = [np.array([first[0], second[0]]), np.array([third[0], second[3]])]
+    assert [found.count for found in diagnose(row)] == [8, 3]
+    error, warning = diagnose(row, joined=ends[:1])
+    assert (error.name, error.severity, error.count, error.place[0]) == ("disconnected", "error", 4, 2.0)
+    assert (warning.name, warning.count) == ("disconnected", 2)
+    assert "2 bodies that share no node and no joint: beside the largest one of 33.3 % of the volume" in warning.message
+    assert diagnose(row, joined=ends) == ()
+    assert diagnose(row, joined=[np.array([first[0], third[0]]), ends[0]]) == ()
+    # A joint within a body connects nothing.
+    assert [found.count for found in diagnose(row, joined=[first[:2]])] == [8, 3]
+
+
+def test_unmatched_bodies_that_a_joint_connects_are_no_defect(block_of: Callable[..., Mesh]) -> None:
+    one = block_of("hexahedron", (2.0, 2.0, 1.0))
+    mesh = _join(one, one, (0.5, 0.5, 1.0), merge=False)
+    assert diagnose(mesh, joined=[np.array([0, 8])]) == ()
+
+
 def test_a_slit_within_one_body_is_told(block_of: Callable[..., Mesh]) -> None:
     """A ring of eight bricks whose last joint is not merged: one body, whose nodes meet in pairs."""
     mesh = block_of("hexahedron", (1.0, 1.0, 1.0), (8, 1, 1))
