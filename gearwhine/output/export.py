@@ -10,6 +10,7 @@ import csv
 import io
 import math
 import struct
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -105,12 +106,10 @@ def _cell(column: Column, row: Document) -> Any:
     return repr(value) if isinstance(value, float) else column.text(row)
 
 
-def write_universal_files(
-    folder: Path, place: Path, sensors: Sequence[tuple[str, Sequence[float], int]], signals: Signals = "sensors"
-) -> list[Document]:
+def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors") -> list[Document]:
     """Write histories, spectra and transmissibilities as universal files with datasets 58.
 
-    Microphones have the points after those of the sensors.
+    Each file has the points of its own result: those of the surface that the sensors were on, then the microphones.
 
     Parameters
     ----------
@@ -118,23 +117,20 @@ def write_universal_files(
         Results folder.
     place : path
         Folder for the files.
-    sensors : sequence of (str, (x, y, z), int)
-        Name, position [m] and direction of each sensor: 1, 2, 3 for x, y, z with a sign, 0 for another.
     signals : {"sensors", "all"}
         Whether to leave out all but sensors and microphones: forces and motions of bearings, gears and meshes.
 
     Returns
     -------
     list of dict
-        File and number of functions of each.
+        File and number of functions of each, and the sensors whose points the result does not hold.
     """
     from housing.measured.universal_writing import write_functions
 
-    points = [(float(x), float(y), float(z)) for _, (x, y, z), _ in sensors]
-    places = {("sensor", name): (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
     written: list[Document] = []
     for command, _, data in _datasets(folder):
         count = 0
+        places, points = _sensor_places(data)
 
         def counted(functions: Iterable[UniversalFunction]) -> Iterator[UniversalFunction]:
             nonlocal count
@@ -147,7 +143,8 @@ def write_universal_files(
         functions = chain(_functions(data, places | heard, signals), _heard_lines(data, heard))
         write_functions(path, counted(functions), [*points, *positions])
         if count:
-            written.append({"file": path.name, "functions": count})
+            without = [name for name in _labels(data, "sensor") if ("sensor", name) not in places]
+            written.append({"file": path.name, "functions": count} | ({"without_point": without} if without else {}))
         else:
             path.unlink()
     return written
@@ -163,11 +160,54 @@ def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
                 yield str(document.get("command", "results")), document, data
 
 
+def _labels(data: xr.Dataset, dimension: str) -> list[str]:
+    return [str(name) for name in data[dimension].values] if dimension in data.coords else []
+
+
+def _sensor_places(data: xr.Dataset) -> tuple[_Places, list[tuple[float, float, float]]]:
+    """Return points and directions of sensors by name, numbered from 1, and their positions [m].
+
+    A result of an earlier version holds them as its case has them: the points that were asked for.
+    """
+    if "sensor_position" in data and "sensor_direction" in data:
+        rows = [
+            (name, *(data[key].sel(sensor=name).values.tolist() for key in ("sensor_position", "sensor_direction")))
+            for name in _labels(data, "sensor")
+        ]
+    else:
+        rows = list(_sensors_of_case(str(data.attrs.get("case", ""))))
+    places = {("sensor", name): (number, _direction(unit)) for number, (name, _, unit) in enumerate(rows, start=1)}
+    return places, [(float(x), float(y), float(z)) for _, (x, y, z), _ in rows]
+
+
+def _sensors_of_case(text: str) -> Iterator[tuple[str, Sequence[float], Sequence[float] | None]]:
+    """Yield name, position [m] and unit vector of the sensors of a case, whether or not its files are there still."""
+    from pydantic import ValidationError
+
+    from gearwhine.case.housing import Sensor
+
+    try:
+        entries = tomllib.loads(text)["housing"]["sensor"]
+        sensors = [Sensor.model_validate(entry) for entry in entries]
+    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValidationError):
+        return
+    for sensor in sensors:
+        yield sensor.name, sensor.position, sensor.unit_vector
+
+
+def _direction(unit_vector: Sequence[float] | None) -> int:
+    """Return 1, 2, 3 for x, y, z with a sign; 0 for another direction, and for a normal that is not known."""
+    for number, share in enumerate(unit_vector or (), start=1):
+        if abs(share) > 1.0 - 1e-9:
+            return number if share > 0.0 else -number
+    return 0
+
+
 def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tuple[float, float, float]]]:
     """Return the points of microphones by name, numbered from ``before`` on, and their positions [m]."""
     if "microphone_position" not in data:
         return {}, []
-    names = [str(name) for name in data["microphone"].values]
+    names = _labels(data, "microphone")
     rows = data["microphone_position"].transpose("microphone", ...).values.tolist()
     places = {("microphone", name): (number, 0) for number, name in enumerate(names, start=before + 1)}
     return places, [(float(x), float(y), float(z)) for x, y, z in rows]

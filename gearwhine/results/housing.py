@@ -182,6 +182,22 @@ HOUSING: Fields = (
     Quantity(
         "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
     ),
+    Quantity(
+        "",
+        lambda solved: {name: port.position for name, port in solved.sensors.items()} or None,
+        "sensor_position",
+        ("sensor", "component"),
+        "m",
+        "point of the surface that the sensor is on",
+    ),
+    Quantity(
+        "",
+        lambda solved: {name: port.direction for name, port in solved.sensors.items()} or None,
+        "sensor_direction",
+        ("sensor", "component"),
+        "1",
+        "direction of the sensor's acceleration",
+    ),
     Part("", lambda solved: solved, ORIGIN),
 )
 """Quantities of a solved housing."""
