@@ -228,7 +228,7 @@ def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunctio
             parts[:, 0] + 1j * parts[:, 1],
             "Pa",
             "sound pressure",
-            (name, "sound pressure of the lines", "amplitudes are peaks"),
+            (name, "sound pressure of the lines", f"amplitudes are peaks, phases at {_phases_at(data)}"),
             (name, *places[("microphone", name)]),
         )
 
@@ -257,6 +257,7 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
             if phase is not None:
                 values = values * np.exp(1j * np.asarray(phase.sel(at).values))
             error = at.get("mesh_error")
+            phases_at = _phases_at(data) if phase is not None and error is None else ""
             label = next((at[dimension] for dimension in at if measured and measured in str(dimension)), labels[0])
             unit = str(variable.attrs.get("units", ""))
             long_name = str(variable.attrs.get("long_name", name))
@@ -266,7 +267,11 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
                 values,
                 _response_unit(unit) if error is not None else unit,
                 _quantity(str(name)),
-                (", ".join(map(str, labels)), long_name, *_remarks(variable, abscissa, _axis_unit(data, axis))),
+                (
+                    ", ".join(map(str, labels)),
+                    long_name,
+                    _remarks(variable, abscissa, _axis_unit(data, axis), phases_at),
+                ),
                 (str(label), *places.get((measured or "", str(label)), (0, 0))),
                 *(() if error is None else (("mesh", 0, 0), "m", "transmission error")),
             )
@@ -288,16 +293,22 @@ def _quantity(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[str, ...]:
+def _phases_at(data: xr.Dataset) -> str:
+    """Return the time that phases of spectra are of, as a title says it; earlier versions had another one."""
+    return "t = 0" if "phase_convention" in data.attrs else "the record's start"
+
+
+def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, phases_at: str) -> str:
+    """Return a title with what the values are; ``phases_at`` is empty where they have none of their own."""
     remarks = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
     if unit == "s":
         remarks.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
     else:
-        remarks.append("amplitudes are peaks")
+        remarks.append(f"amplitudes are peaks, phases at {phases_at}" if phases_at else "amplitudes are peaks")
     for key, words in (("trusted_below_hz", "complete below"), ("complete_below_hz", "complete below")):
         if key in variable.attrs:
             remarks.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
-    return ("; ".join(remarks),)
+    return "; ".join(remarks)
 
 
 def write_sounds(

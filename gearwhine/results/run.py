@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import h5netcdf
 import numpy as np
 
+from coupling.signals.spectrum import at_time_zero
 from coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
@@ -269,7 +270,8 @@ PAIR = (
 MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
 
 CONVENTIONS = {
-    "amplitude": "peak: a sine a sin(2 pi f t) has the amplitude a",
+    "amplitude": "peak: a cosine a cos(2 pi f t + phase) has the amplitude a",
+    "phase": "of the cosine at t = 0 of the histories' time axis, also where the record begins later",
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
@@ -326,6 +328,13 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
     def of_each(row: TracedTransient, part: str) -> dict[str, Any] | None:
         return {label: getattr(spectrum, part) for label, spectrum in of(row.transient).items()} or None
 
+    def phases(row: TracedTransient) -> dict[str, Any] | None:
+        start = row.transient.record_start
+        return {
+            label: np.angle(at_time_zero(spectrum.lines, spectrum.frequencies, start))
+            for label, spectrum in of(row.transient).items()
+        } or None
+
     def attributes(row: TracedTransient) -> dict[str, Any]:
         first, sampling = next(iter(of(row.transient).values())), row.transient.record.sampling
         values: dict[str, Any] = {"window": first.window} | _trusted(row)
@@ -356,11 +365,11 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
         ),
         Quantity(
             "",
-            lambda row: of_each(row, "phase"),
+            phases,
             f"{name}_phase",
             (dimension, "frequency"),
             "rad",
-            f"phase of {quantity}",
+            f"phase of {quantity}: the cosine's at t = 0",
             attributes=_trusted,
         ),
     )
@@ -470,7 +479,7 @@ HOUSING_LINES = (
         "housing_acceleration_spectrum",
         ("housing_mode", "housing_line", "part"),
         "m kg0.5 s-2",
-        "complex peak amplitude of a housing mode's acceleration, by unit modal mass",
+        "complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
         attributes=lambda row: {"window": row.window},
     ),
 )
