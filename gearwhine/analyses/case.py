@@ -212,6 +212,7 @@ def export_sections(document: Document) -> tuple[Section, ...]:
         Column("full scale", lambda row: f"{_either(row, 'full_scale'):g}"),
         Column("peak", lambda row: f"{_either(row, 'peak'):.3g}"),
         Column("rms", lambda row: f"{_either(row, 'rms'):.3g}"),
+        Column("complete below [Hz]", "complete_below_hz", ".0f"),
         Column("length [s]", "seconds", ".3f"),
         Column("periods", "periods", "d"),
     )

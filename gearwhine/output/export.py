@@ -48,7 +48,9 @@ _DATA = "results.nc"
 _FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # first digits of a full scale
 _RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right to 1e-8
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
-_ATTENUATION = 100.0  # attenuation of aliases [dB]
+_ATTENUATION = 100.0  # attenuation of aliases, and of what is cut off [dB]
+_TRANSITION = 0.1  # width of the cut, as a part of its frequency
+_LIMITS = ("trusted_below_hz", "complete_below_hz")  # attributes with the frequency below which a signal is complete
 _MEASURED = ("sensor", "microphone")  # dimensions of quantities that are measured on real machines
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
 
@@ -305,9 +307,8 @@ def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, phases_at:
         remarks.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
     else:
         remarks.append(f"amplitudes are peaks, phases at {phases_at}" if phases_at else "amplitudes are peaks")
-    for key, words in (("trusted_below_hz", "complete below"), ("complete_below_hz", "complete below")):
-        if key in variable.attrs:
-            remarks.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
+    if (limit := _limit(variable)) is not None:
+        remarks.append(f"complete below {limit:.0f} Hz")
     return "; ".join(remarks)
 
 
@@ -317,10 +318,12 @@ def write_sounds(
     """Write the histories of sensors and microphones as sound files in 32-bit floating point, to hear and to measure.
 
     A record of whole turns at steady speed is a period of the motion: it is repeated without a seam until the file is
-    as long as asked for. Any other record is as long as it is. The history less its mean is resampled to an audio rate
-    by a band-limited interpolation and divided by a full scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …)
+    as long as asked for. Any other record is as long as it is. The history less its mean is cut off at the frequency
+    below which the model's modes are complete, as rms and peaks of the run are, resampled to an audio rate by a
+    band-limited interpolation and divided by a full scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …)
     m/s² or Pa above its peak. The full scale stands in the file's name, in its comment (chunk LIST INFO ICMT) and in
-    what is returned: the signal is the sample times the full scale.
+    what is returned: the signal is the sample times the full scale. The frequency of the cut stands in the comment and
+    in what is returned.
 
     Parameters
     ----------
@@ -336,8 +339,8 @@ def write_sounds(
     Returns
     -------
     list of dict
-        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s], number of periods
-        and sampling rate [Hz].
+        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s], number of periods,
+        sampling rate [Hz] and the frequency below which the sound is complete [Hz], where it is cut off there.
     """
     written: list[Document] = []
     for command, document, data in _datasets(folder):
@@ -350,12 +353,16 @@ def write_sounds(
                 signal = np.asarray(data[kind.variable].sel({kind.label: name}).values, dtype=np.float64)
                 interval = (times[-1] - times[0]) / (len(times) - 1)
                 count = periods(len(times) * interval, seconds, rate) if _repeats(document) else 0
-                sound = repeated(signal - signal.mean(), interval, rate, count)
+                limit = _complete_below(data, kind)
+                signal -= signal.mean()
+                if limit is not None:
+                    signal = low_passed(signal, interval, limit, repeats=count > 0)
+                sound = repeated(signal, interval, rate, count)
                 scale = full_scale(float(np.abs(sound).max()))
                 path = place / f"{stem}-full-scale-{scale:g}-{kind.suffix.replace('_', '-')}.wav"
-                comment = (
-                    f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}; gearwhine {command}"
-                )
+                comment = f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}"
+                comment += "" if limit is None else f"; complete below {limit:.0f} Hz, cut off there"
+                comment += f"; gearwhine {command}"
                 _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
                 written.append(
                     {
@@ -368,6 +375,7 @@ def write_sounds(
                         "periods": max(count, 1),
                         "sampling_rate_hz": rate,
                     }
+                    | ({} if limit is None else {"complete_below_hz": limit})
                 )
     return written
 
@@ -378,6 +386,7 @@ class _Sound:
 
     variable: str
     label: str
+    spectrum: str
     time: str
     quantity: str
     unit: str
@@ -385,9 +394,50 @@ class _Sound:
 
 
 _SOUNDS = (
-    _Sound("sensor_acceleration", "sensor", "time", "acceleration", "m/s2", "m_per_s2"),
-    _Sound("microphone_pressure", "microphone", "microphone_time", "sound pressure", "Pa", "pa"),
+    _Sound("sensor_acceleration", "sensor", "sensor_spectrum", "time", "acceleration", "m/s2", "m_per_s2"),
+    _Sound("microphone_pressure", "microphone", "sound_pressure", "microphone_time", "sound pressure", "Pa", "pa"),
 )
+
+
+def _complete_below(data: xr.Dataset, kind: _Sound) -> float | None:
+    """Return the frequency below which signals are complete [Hz]; None where they are by their making."""
+    found = [_limit(data[name]) for name in (kind.variable, kind.spectrum) if name in data]
+    return next((limit for limit in found if limit is not None), None)
+
+
+def _limit(variable: xr.DataArray) -> float | None:
+    return next((float(variable.attrs[key]) for key in _LIMITS if key in variable.attrs), None)
+
+
+def low_passed(signal: FloatArray, interval: float, limit: float, *, repeats: bool) -> FloatArray:
+    """Remove from a signal without mean what is above a frequency.
+
+    Of a period nothing else changes: its lines above are left out. Any other signal goes through a symmetric filter,
+    which passes up to the limit and attenuates by 100 dB from a tenth above it.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+    interval : float
+        Time between its samples [s].
+    limit : float
+        Frequency [Hz].
+    repeats : bool
+        Whether the signal is a period.
+    """
+    if limit * interval >= 0.5:
+        return signal
+    if repeats:
+        lines = np.fft.rfft(signal)
+        lines[np.fft.rfftfreq(len(signal), interval) > limit * (1.0 + 1e-9)] = 0.0
+        return np.asarray(np.fft.irfft(lines, len(signal)))
+    from scipy.signal import firwin, kaiserord, oaconvolve
+
+    half = 2.0 * interval  # of the sampling rate, as its inverse
+    taps, beta = kaiserord(_ATTENUATION, _TRANSITION * limit * half)
+    middle = min(limit * (1.0 + 0.5 * _TRANSITION) * half, 0.999)
+    weights = firwin(taps | 1, middle, window=("kaiser", beta))
+    return np.asarray(oaconvolve(signal, weights, mode="same"))
 
 
 def _repeats(document: Document) -> bool:

@@ -701,8 +701,9 @@ class HistoryStream:
             )
 
     def _attributes(self, history: HistoryQuantity) -> dict[str, Any]:
-        """Return the attributes of a history; a filtered one also has its decimation and frequency limit."""
+        """Return the attributes of a history; a filtered one also has its decimation and its own frequency limit."""
         attributes: dict[str, Any] = {"units": history.unit, "long_name": history.what}
+        attributes["trusted_below_hz"] = float(self.solved.trusted_limit)
         sampling = self.solved.record.sampling
         if sampling.is_long:
             attributes |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}
