@@ -11,7 +11,7 @@ import io
 import math
 import struct
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, product
@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.output.files import file_stems
-from gearwhine.output.sections import Column, Document, Section, Table
+from gearwhine.output.sections import Column, Document, Section, Table, value_at
 from gearwhine.output.store import stored_results
 
 if TYPE_CHECKING:
@@ -57,6 +57,10 @@ _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response",
 
 def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document]:
     """Write every table of the report as a CSV file: a row of headings with units, numbers with all their digits.
+
+    A column whose values are lists has one for each component, counted from 1. A number that the page shows in words or
+    in per cent has its key, and so its unit, in the heading. Texts that tell several numbers are followed by a column
+    for each of these, headed by its key.
 
     Parameters
     ----------
@@ -95,17 +99,52 @@ def _tables(title: str, sections: Iterable[Section]) -> Iterator[tuple[str, Tabl
 
 def _csv(table: Table) -> str:
     columns, _ = table.filled()
+    spread = [cells for column in columns for cells in _spread(column, table.rows)]
     file = io.StringIO()
     writer = csv.writer(file)
-    writer.writerow([column.heading for column in columns])
-    for row in table.rows:
-        writer.writerow([_cell(column, row) for column in columns])
+    writer.writerow([heading for heading, _ in spread])
+    writer.writerows(zip(*(cells for _, cells in spread), strict=True))
     return file.getvalue()
 
 
-def _cell(column: Column, row: Document) -> Any:
-    value = column.value(row)
-    return repr(value) if isinstance(value, float) else column.text(row)
+def _spread(column: Column, rows: Sequence[Document]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column of a table as those of the file, each with its heading and cells."""
+    values = [column.value(row) for row in rows]
+    if any(isinstance(value, list | tuple | Mapping) and any(_numbers(value)) for value in values):
+        yield from _components(column.heading, values)
+    else:
+        is_told = column.shown is not None and "[" not in column.heading
+        are_numbers = all(value is None or _is_number(value) for value in values) and any(map(_is_number, values))
+        yield (
+            f"{column.heading} ({column.of})".strip() if is_told and are_numbers else column.heading,
+            [repr(value) if _is_number(value) else column.text(row) for value, row in zip(values, rows, strict=True)],
+        )
+    for key in column.numbers:
+        yield from _components(key, [value_at(row, key) for row in rows])
+
+
+def _components(heading: str, values: Sequence[Any]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column for each number in values of several; empty cells where a row has none."""
+    found = [dict(_numbers(value)) for value in values]
+    for place in dict.fromkeys(place for numbers in found for place in numbers):
+        cells = [repr(numbers[place]) if place in numbers else "" for numbers in found]
+        yield " ".join([heading, *place]), cells
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _numbers(value: Any, place: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], int | float]]:
+    """Yield every number in lists and tables with its place, in lists counted from 1."""
+    if _is_number(value):
+        yield place, value
+    elif isinstance(value, Mapping):
+        for key, entry in value.items():
+            yield from _numbers(entry, (*place, str(key)))
+    elif isinstance(value, list | tuple):
+        for number, entry in enumerate(value, start=1):
+            yield from _numbers(entry, (*place, str(number)))
 
 
 def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors") -> list[Document]:

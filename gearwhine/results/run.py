@@ -856,16 +856,18 @@ _SIGNATURE_COLUMNS = (
     Column("Hz", "frequency_hz", ".0f"),
     Column("dB", "level_db", ".0f"),
     Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
-    Column("near", lambda row: _near(row["near_mode"])),
+    Column("near", lambda row: _near(row["near_mode"]), numbers=("near_mode.frequency_hz",)),
     Column(
         "by housing modes",
         lambda row: ", ".join(
             f"{part.get('number', 'local')}: {_share(part)}" for part in row["contributions"]["housing_modes"][:3]
         ),
+        numbers=("contributions.housing_modes",),
     ),
     Column(
         "by bearings",
         lambda row: ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(row["contributions"])[:3]),
+        numbers=("contributions.bearings", "contributions.free_vibration"),
     ),
 )
 
