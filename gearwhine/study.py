@@ -410,7 +410,7 @@ class Study:
         """
         from gearwhine.analyses.case import export_results
 
-        return list(export_results(Path(folder), self.case, formats, signals=signals, seconds=seconds)["files"])
+        return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
 
 
 def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:

@@ -206,13 +206,18 @@ class GearTrain:
         if torque == 0.0 or not (self.pairs or outputs):
             return ()
         first = self.pairs[0].driver if self.pairs else outputs[0].shaft
-        sense = math.copysign(1.0, speed)
-        applied = [Torque(first, at, sense * torque)]
+        applied = [Torque(first, at, math.copysign(1.0, speed) * torque)]
         for output, value in shared_torques(self, torque, outputs):
-            against = -sense * math.copysign(1.0, self.ratios[output.shaft])
             place = ends[output.shaft] if output.at is None else output.at
-            applied.append(Torque(output.shaft, place, against * value))
+            applied.append(Torque(output.shaft, place, -self.rotation_sense(output.shaft, speed) * value))
         return tuple(applied)
+
+    def rotation_sense(self, shaft: str, speed: float) -> float:
+        """Sense of rotation of a shaft about z, 1 or -1, at a speed of the first driver's shaft [rad/s].
+
+        A torque taken off the shaft is positive against it.
+        """
+        return math.copysign(1.0, speed) * math.copysign(1.0, self.ratios[shaft])
 
     def mesh_frequencies(self, speed: float) -> tuple[float, ...]:
         """Tooth-mesh frequency of each pair [Hz] at a speed of the first driver's shaft [rad/s]."""
@@ -227,10 +232,9 @@ class GearTrain:
         speed : float
             Signed speed of the first driver's shaft [rad/s].
         """
-        sense = math.copysign(1.0, speed)
         along = dict.fromkeys(self.ratios, 0.0)
         for torque in applied:
-            along[torque.rotor] += torque.value * sense * math.copysign(1.0, self.ratios[torque.rotor])
+            along[torque.rotor] += torque.value * self.rotation_sense(torque.rotor, speed)
         return self.pair_torques(along)
 
 

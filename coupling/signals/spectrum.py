@@ -156,6 +156,21 @@ def averaged_spectrum(stretches: Iterable[FloatArray], interval: float, window: 
     return Spectrum(_frequencies(samples, interval), amplitude, np.angle(together), window, count)
 
 
+def at_time_zero(lines: ComplexArray, frequencies: FloatArray, start: float) -> ComplexArray:
+    """Complex amplitudes at t = 0 from those at the start of a record: x(t) is the sum of Re a e^{2πift}.
+
+    Parameters
+    ----------
+    lines : ndarray of complex, shape (..., m)
+        Amplitudes by the time since the record's first sample, as those of :func:`amplitude_spectrum`.
+    frequencies : ndarray, shape (m,)
+        Frequencies [Hz].
+    start : float
+        Time of the first sample [s].
+    """
+    return np.asarray(lines * np.exp(-2j * np.pi * start * frequencies))
+
+
 def _frequencies(count: int, interval: float) -> FloatArray:
     return np.asarray(np.fft.rfftfreq(count, interval), dtype=np.float64)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
 from gearwhine.output import staging
+from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.sections import Column, Document, Section, table_of
 from gearwhine.progress import Progress, silent
 
@@ -124,7 +125,6 @@ _EXPORTS = "exports"
 
 def export_results(
     folder: Path,
-    case: Case | None = None,
     formats: Sequence[Format] = ("csv", "uff", "wav"),
     *,
     signals: Signals = "sensors",
@@ -136,8 +136,6 @@ def export_results(
     ----------
     folder : path
         Folder with results of one command or several.
-    case : Case, optional
-        Case with the positions of the sensors; by default that of the newest result.
     formats : sequence of {"csv", "uff", "wav"}
         Tables of the report; histories, spectra and transmissibilities as datasets 58; accelerations of the sensors
         and sound pressures of the microphones as sound.
@@ -150,7 +148,7 @@ def export_results(
     Returns
     -------
     dict
-        ``tables``, ``universal_files`` and ``sounds``, each a list of files with their contents.
+        ``tables``, ``universal_files`` and ``sounds``, each a list of files with their contents, and ``warnings``.
 
     Raises
     ------
@@ -165,7 +163,6 @@ def export_results(
     if not stored_results(folder):
         expected = f"a results folder, as `gearwhine run CASE -o {folder}` leaves it"
         raise CaseError([Problem("export", str(folder), expected)])
-    case = case or _stored_case(folder)
     document: dict[str, Any] = {}
     length = export.SOUND_SECONDS if seconds is None else seconds
     if not 0.0 <= length <= export.LONGEST_SOUND:
@@ -177,7 +174,7 @@ def export_results(
         if "csv" in formats:
             document["tables"] = export.write_tables(folder, chapters_of, exports)
         if "uff" in formats:
-            document["universal_files"] = export.write_universal_files(folder, exports, _sensors(case), signals)
+            document["universal_files"] = export.write_universal_files(folder, exports, signals)
         if "wav" in formats:
             document["sounds"] = export.write_sounds(folder, exports, seconds=length)
         files = sorted(path.relative_to(place).as_posix() for path in exports.iterdir())
@@ -185,21 +182,20 @@ def export_results(
             expected = f"results with what can be written as {', '.join(formats)}"
             how = "run the case with [transient], and with sensors, or with [acoustics] and microphones"
             raise CaseError([Problem("export", str(folder), f"{expected}: {how}")])
+    add_warnings(document, _missing_points(document))
     return document | {"folder": str(folder), "files": files}
 
 
-def _sensors(case: Case | None) -> list[tuple[str, tuple[float, float, float], int]]:
-    """Name, position and direction of each sensor, as universal files number them."""
-    sensors = () if case is None or case.housing is None else case.housing.sensor
-    return [(sensor.name, sensor.position, _direction(sensor.unit_vector)) for sensor in sensors]
-
-
-def _direction(unit_vector: tuple[float, float, float] | None) -> int:
-    """Return 1, 2, 3 for x, y, z with a sign; 0 for another direction and for the normal of the surface."""
-    for number, share in enumerate(unit_vector or (), start=1):
-        if abs(share) > 1.0 - 1e-9:
-            return number if share > 0.0 else -number
-    return 0
+def _missing_points(document: Document) -> Iterator[dict[str, Any]]:
+    """Yield a warning for each universal file with sensors whose points are not known."""
+    for row in document.get("universal_files", ()):
+        if names := row.get("without_point"):
+            sensors = ", ".join(f'"{name}"' for name in names)
+            message = (
+                f"{row['file']} has no points of sensors {sensors}: neither the result nor its case holds them; "
+                "their functions are at node 0, direction 0"
+            )
+            yield warning("sensors without points", message, file=row["file"], sensors=names)
 
 
 def _either(row: Document, quantity: str) -> float:
@@ -216,6 +212,7 @@ def export_sections(document: Document) -> tuple[Section, ...]:
         Column("full scale", lambda row: f"{_either(row, 'full_scale'):g}"),
         Column("peak", lambda row: f"{_either(row, 'peak'):.3g}"),
         Column("rms", lambda row: f"{_either(row, 'rms'):.3g}"),
+        Column("complete below [Hz]", "complete_below_hz", ".0f"),
         Column("length [s]", "seconds", ".3f"),
         Column("periods", "periods", "d"),
     )

@@ -45,6 +45,7 @@ from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
     add_uncertainty,
     bearing_load_warnings,
+    beyond_limit_warnings,
     settling_warnings,
     unstable_modes_warnings,
 )
@@ -176,6 +177,7 @@ def run(
                 signature = solve_signature(transient, system.modes, frequencies)
             document = joined(document, transient_document(transient, signature))
             add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
+            add_warnings(document, beyond_limit_warnings(transient))
             if signature is not None:
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)

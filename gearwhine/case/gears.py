@@ -331,7 +331,8 @@ class Gear(Table):
     root_relief: Relief | None = None
     """Root relief."""
     material: Name | None = None
-    """Name of the material. Default: that of its rotor, else the only one of the case."""
+    """Name of the material. Default: that of its rotor, or of the shaft at its station where a file holds the rotor;
+    without a rotor the only one of the case."""
     mass: Mass | None = None
     """Mass beside the shaft's own; with both inertias, or none of the three. Default: from the geometry."""
     polar_inertia: Inertia | None = None

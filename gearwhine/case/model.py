@@ -151,13 +151,12 @@ class Case(Table):
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
 
     def material_of_gear(self, gear: Gear) -> Material | None:
-        """Return a gear's material: its own, else its rotor's, else the case's only one; or None."""
-        name = gear.material
-        if name is None and gear.rotor is not None:
-            name = self.rotor_named(gear.rotor).material
-        if name is None and len(self.material) == 1:
+        """Return a gear's material: its own, else its rotor's, without a rotor the case's only one; or None."""
+        if gear.rotor is not None and gear.at is not None:
+            return self.rotor_named(gear.rotor).material_of(gear.material, gear.at, self.material)
+        if gear.material is None and len(self.material) == 1:
             return next(iter(self.material.values()))
-        return self.material[name] if name is not None else None
+        return self.material[gear.material] if gear.material is not None else None
 
 
 AnyTable = TypeVar("AnyTable", bound=Table)

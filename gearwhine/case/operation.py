@@ -97,7 +97,7 @@ class TorqueRipple(Table):
         return self
 
     def build(self, rotor: str, at: float, sense: float) -> BuiltRipple:
-        """Build the torque ripple on a rotor at a station [m], in the sense of the torque that it is about."""
+        """Build the torque ripple on a rotor at a station [m], positive in the sense of a positive torque there."""
         from coupling.machine.loads import TorqueRipple as BuiltRipple
 
         frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
@@ -282,13 +282,13 @@ class Output(Table):
     rotor: Name
     """Name of the rotor."""
     torque: SignedTorque
-    """Torque taken off; negative where the machine coasts."""
+    """Torque taken off; negative where the machine coasts, or a second motor drives this rotor."""
     at: LengthFromZero | None = None
     """Station on the rotor. Default: the right end."""
     over_time: TorqueHistory | None = None
-    """Torque added over time. Default: its share of the input's."""
+    """Torque taken off besides, over time. Default: its share of the input's."""
     ripple: tuple[TorqueRipple, ...] = Field(default=(), max_length=MOST_ENTRIES)
-    """Harmonic parts of the torque."""
+    """Harmonic parts of the torque taken off."""
 
     def build(self) -> BuiltOutput:
         """Build the output torque of the gear train."""

@@ -18,6 +18,7 @@ from pydantic import (
     PrivateAttr,
     SerializerFunctionWrapHandler,
     Tag,
+    ValidationError,
     model_serializer,
     model_validator,
 )
@@ -232,7 +233,11 @@ class RoundDisc(Table):
         """Build the disc by its dimensions and density."""
         from rotors import Disc as BuiltDisc
 
-        density = self.density or materials[_named(self.material, rotor)].density
+        density = self.density
+        if density is None:
+            material = rotor.material_of(self.material, self.at, materials)
+            assert material is not None  # checked with the case
+            density = material.density
         return BuiltDisc.from_dimensions(self.at, self.width, self.diameter, self.bore, density)
 
 
@@ -302,7 +307,8 @@ class Rotor(Table):
     """Rotor saved by ROSS (`.toml`, `.json`), relative to the case file, in place of `material` and `segments`: its
     shaft, discs and bearings."""
     material: Name | None = None
-    """Name of the material; needed without `file`."""
+    """Name of the material; needed without `file`. Beside it: that of discs and gears on the shaft, which by default
+    have the material that the shaft of the file has at their station."""
     mass: Literal["distributed", "lumped"] = "distributed"
     """Mass of the shaft, distributed or lumped at the ends of the segments, at which its bearings should stand then."""
     damping_ratio: DampingRatio = 0.005
@@ -372,6 +378,16 @@ class Rotor(Table):
             return self._saved.rotor.length
         return sum(segment.length for segment in self.segments)
 
+    def material_of(self, own: str | None, at: float, materials: Mapping[str, Material]) -> Material | None:
+        """Return the material of a disc or gear at a station [m]: its own, the rotor's, else the shaft's of the file.
+
+        None where the file's shaft has several materials at the station, or none that a solid can have.
+        """
+        name = own or self.material
+        if name is not None:
+            return materials[name]
+        return None if self._saved is None else _shaft_material(self._saved.rotor, at)
+
     def build(self, materials: Mapping[str, Material]) -> BuiltRotor:
         """Build the shaft with its discs, without the gears on it; the discs of the rotor's own file stand first."""
         from rotors import Rotor as BuiltRotor
@@ -398,6 +414,33 @@ class Rotor(Table):
         from rotors.model.loads import Bow as BuiltBow
 
         return BuiltBow(*array([(point.at, point.amplitude, point.phase) for point in self.bow]).T)
+
+
+_ROUNDING = 1e-9  # part of a shaft's length within which a station stands at the end of a segment
+
+
+def _shaft_material(shaft: BuiltRotor, at: float) -> Material | None:
+    """Return the one material of the segments that a station [m] touches; None where there is not one."""
+    from gearwhine.case.housing import Material
+    from rotors import Segment as BuiltSegment
+
+    ends, rounding = shaft.joints.tolist(), _ROUNDING * shaft.length
+    touched = {
+        segment.material
+        for segment, left, right in zip(shaft.segments, ends, ends[1:], strict=False)
+        if isinstance(segment, BuiltSegment) and left - rounding <= at <= right + rounding
+    }
+    if len(touched) != 1:
+        return None
+    (material,) = touched
+    try:
+        return Material(
+            youngs_modulus=material.youngs_modulus,
+            poisson_ratio=material.youngs_modulus / (2.0 * material.shear_modulus) - 1.0,
+            density=material.density,
+        )
+    except ValidationError:
+        return None
 
 
 MOST_PROBES = 100

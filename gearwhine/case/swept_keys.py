@@ -70,7 +70,8 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
     Raises
     ------
     CaseError
-        Where a text is no ``--over``, a key is swept twice, or there are no points or too many.
+        Where a text is no ``--over``, a key is swept twice, by itself or with a table that holds it, or there are no
+        points or too many.
     """
     keys, problems = list[SweptKey](), list[Problem]()
     for text in over:
@@ -79,14 +80,20 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
         except CaseError as error:
             problems += error.problems
     paths = list[tuple[str, ...]]()
+    of_table = parse_key_path(SPEED_KEY) or ()
     for key in keys:
         key_paths = [path for path_text in key.keys for path in _paths(case, path_text)]
         if not key_paths:
             problems.append(Problem("--over", key.key, "a path with * that some entries of the case have"))
         if len(set(key_paths)) < len(key_paths) or set(key_paths) & set(paths):
             problems.append(Problem("--over", key.key, "each key once"))
+        swept = [*paths, *key_paths, *([of_table] if case.sweep is not None else [])]
+        if held := next(((path, other) for path in key_paths for other in swept if _holds(path, other)), None):
+            whole, part = sorted(map(key_of, held), key=len)
+            expected = f"keys of which none holds another: {part}, which is swept too, is a part of {whole}"
+            problems.append(Problem("--over", key.key, expected))
         paths += key_paths
-    if case.sweep is not None and parse_key_path(SPEED_KEY) not in paths:
+    if case.sweep is not None and of_table not in paths:
         keys.insert(0, _speeds(with_sense_of_operation(case, case.sweep.speeds)))
     if not keys and not problems:
         expected = "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }, or --over: "
@@ -97,6 +104,12 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
     if problems:
         raise CaseError(problems)
     return tuple(keys)
+
+
+def _holds(path: tuple[str, ...], other: tuple[str, ...]) -> bool:
+    """Whether one of two different key paths leads to a table or list that holds the other key."""
+    common = min(len(path), len(other))
+    return len(path) != len(other) and path[:common] == other[:common]
 
 
 def _paths(case: Case, key: str) -> list[tuple[str, ...]]:

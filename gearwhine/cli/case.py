@@ -165,14 +165,16 @@ def export(
     OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all are written.
     """
     from gearwhine.analyses.case import Format, export_results, export_sections
+    from gearwhine.case import CaseError, Problem
     from gearwhine.output.terminal import shown_by
 
+    if common.settings:
+        expected = "none: results are exported as they are, of the case that they were solved with"
+        raise CaseError([Problem("--set", common.settings[0], expected)])
     requested: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
     formats = [name for name, is_requested in requested.items() if is_requested] or list(requested)
 
     def work(folder: Path, loaded_case: "Case | None", progress: "Progress") -> dict[str, Any]:
-        return export_results(
-            folder, loaded_case, formats, signals="all" if all_signals else "sensors", seconds=seconds
-        )
+        return export_results(folder, formats, signals="all" if all_signals else "sensors", seconds=seconds)
 
     _on_results(results, common, work, shown_by(export_sections))

@@ -54,8 +54,9 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
     frequencies, amplitude = spectrum.frequencies[inside], spectrum.amplitude[inside]
     if (together := len(amplitude) // _MOST_LINES) > 1:
         # Where lines are too close to be seen apart the highest is drawn: a path of all takes hundreds of megabytes.
-        groups = amplitude[: len(amplitude) // together * together].reshape(-1, together)
-        highest = np.arange(len(groups)) * together + groups.argmax(axis=1)
+        # The last group may have fewer lines than the others.
+        groups = np.array_split(amplitude, range(together, len(amplitude), together))
+        highest = np.array([group.argmax() for group in groups]) + np.arange(0, len(amplitude), together)
         frequencies, amplitude = frequencies[highest], amplitude[highest]
     top = float(amplitude.max(initial=0.0))
     if top > 0.0:

@@ -13,6 +13,7 @@ from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
 from coupling.machine.parts import Driving
 from coupling.machine.speed_profile import free_speed
 from gearwhine.case import Case, TorqueLine, applied_torques, speed_ratios
+from gearwhine.case.speeds_and_torques import gear_train_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -106,20 +107,22 @@ def _history(share: Torque, times: FloatArray, values: FloatArray) -> TorqueHist
 def _slopes(case: Case, shares: Sequence[Torque]) -> Iterator[TorqueSlope]:
     """Yield the slopes of the motor's and the load's torques over a shaft's deviation from its nominal rotation.
 
-    A line's torque T(ω) at the first driver stands for ±T share on a rotor of r times the speed, which changes by
-    ±T' share / |r| with the rotor's own speed: the motor's torque with the rotation, the load's against it.
+    A line's torque T(ω) at the first driver stands for a torque share T about z on a rotor of r times the speed, which
+    changes by s T' share / |r| with the rotor's own speed about z: the share has the sense of rotation s of what drives
+    the rotor, the opposite one of what brakes it.
     """
     operation = case.operation
     assert operation is not None
-    ratios = speed_ratios(case)
+    train = gear_train_of(case)
+    ratios = train.ratios
     first = abs(float(ratios[shares[0].rotor]))
     for number, share in enumerate(shares):
         line = operation.load if number else operation.motor
         if line is None:
             continue
         rates, slopes = _slope_table(line, abs(operation.speed))
-        sense = 1.0 if number == 0 else -1.0
-        factor = sense * abs(share.value) * first / abs(float(ratios[share.rotor]))
+        sense = train.rotation_sense(share.rotor, operation.speed)
+        factor = sense * share.value * first / abs(float(ratios[share.rotor]))
         name = f"load on {share.rotor}, {number}" if number else "motor"
         yield TorqueSlope(name, share.rotor, share.at, rates, factor * slopes)
 
@@ -133,7 +136,11 @@ def _slope_table(line: TorqueLine, nominal: float) -> tuple[FloatArray, FloatArr
 
 
 def _variations(case: Case, shares: Sequence[Torque]) -> Iterator[AnyTorque]:
-    """Yield the histories added to the torques and the ripple about them, each in the sense of its torque."""
+    """Yield the histories added to the torques and the ripple about them.
+
+    They have the sense of a positive torque: of the input with the rotation of its shaft, of an output against that of
+    its own, also where the output is negative and drives.
+    """
     operation = case.operation
     assert operation is not None
     if shares:
@@ -147,7 +154,9 @@ def _variations(case: Case, shares: Sequence[Torque]) -> Iterator[AnyTorque]:
         if not any(output_histories):
             yield from (operation.over_time.build(share.rotor, share.at, share.value) for share in leaving)
     yield from (ripple.build(entering.rotor, entering.at, entering.value) for ripple in operation.ripple)
+    train = gear_train_of(case)
     for output, share in zip(operation.output, leaving, strict=False):
+        taken_off = -train.rotation_sense(share.rotor, operation.speed)
         if output.over_time is not None:
-            yield output.over_time.build(share.rotor, share.at, math.copysign(1.0, share.value))
-        yield from (ripple.build(share.rotor, share.at, share.value) for ripple in output.ripple)
+            yield output.over_time.build(share.rotor, share.at, taken_off)
+        yield from (ripple.build(share.rotor, share.at, taken_off) for ripple in output.ripple)

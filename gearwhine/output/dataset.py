@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+PHASE_CONVENTION = "of spectra: of the cosine at t = 0 of the histories' time axis"
+"""Attribute of every file of results; those of earlier versions have phases at the first sample of the record."""
+
+
 class Stream(Protocol):
     """Arrays that are too long for memory: they are written behind the others."""
 
@@ -88,7 +92,8 @@ def file_attributes(case: Case) -> dict[str, str]:
         "title": case.title,
         "source": f"gearwhine {__version__}",
         "case": dump_case(case),
-        "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
+        "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
+        "phase_convention": PHASE_CONVENTION,
     }
 
 

@@ -10,7 +10,8 @@ import csv
 import io
 import math
 import struct
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, product
@@ -21,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.output.files import file_stems
-from gearwhine.output.sections import Column, Document, Section, Table
+from gearwhine.output.sections import Column, Document, Section, Table, value_at
 from gearwhine.output.store import stored_results
 
 if TYPE_CHECKING:
@@ -47,13 +48,19 @@ _DATA = "results.nc"
 _FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # first digits of a full scale
 _RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right to 1e-8
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
-_ATTENUATION = 100.0  # attenuation of aliases [dB]
+_ATTENUATION = 100.0  # attenuation of aliases, and of what is cut off [dB]
+_TRANSITION = 0.1  # width of the cut, as a part of its frequency
+_LIMITS = ("trusted_below_hz", "complete_below_hz")  # attributes with the frequency below which a signal is complete
 _MEASURED = ("sensor", "microphone")  # dimensions of quantities that are measured on real machines
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
 
 
 def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document]:
     """Write every table of the report as a CSV file: a row of headings with units, numbers with all their digits.
+
+    A column whose values are lists has one for each component, counted from 1. A number that the page shows in words or
+    in per cent has its key, and so its unit, in the heading. Texts that tell several numbers are followed by a column
+    for each of these, headed by its key.
 
     Parameters
     ----------
@@ -92,25 +99,58 @@ def _tables(title: str, sections: Iterable[Section]) -> Iterator[tuple[str, Tabl
 
 def _csv(table: Table) -> str:
     columns, _ = table.filled()
+    spread = [cells for column in columns for cells in _spread(column, table.rows)]
     file = io.StringIO()
     writer = csv.writer(file)
-    writer.writerow([column.heading for column in columns])
-    for row in table.rows:
-        writer.writerow([_cell(column, row) for column in columns])
+    writer.writerow([heading for heading, _ in spread])
+    writer.writerows(zip(*(cells for _, cells in spread), strict=True))
     return file.getvalue()
 
 
-def _cell(column: Column, row: Document) -> Any:
-    value = column.value(row)
-    return repr(value) if isinstance(value, float) else column.text(row)
+def _spread(column: Column, rows: Sequence[Document]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column of a table as those of the file, each with its heading and cells."""
+    values = [column.value(row) for row in rows]
+    if any(isinstance(value, list | tuple | Mapping) and any(_numbers(value)) for value in values):
+        yield from _components(column.heading, values)
+    else:
+        is_told = column.shown is not None and "[" not in column.heading
+        are_numbers = all(value is None or _is_number(value) for value in values) and any(map(_is_number, values))
+        yield (
+            f"{column.heading} ({column.of})".strip() if is_told and are_numbers else column.heading,
+            [repr(value) if _is_number(value) else column.text(row) for value, row in zip(values, rows, strict=True)],
+        )
+    for key in column.numbers:
+        yield from _components(key, [value_at(row, key) for row in rows])
 
 
-def write_universal_files(
-    folder: Path, place: Path, sensors: Sequence[tuple[str, Sequence[float], int]], signals: Signals = "sensors"
-) -> list[Document]:
+def _components(heading: str, values: Sequence[Any]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column for each number in values of several; empty cells where a row has none."""
+    found = [dict(_numbers(value)) for value in values]
+    for place in dict.fromkeys(place for numbers in found for place in numbers):
+        cells = [repr(numbers[place]) if place in numbers else "" for numbers in found]
+        yield " ".join([heading, *place]), cells
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _numbers(value: Any, place: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], int | float]]:
+    """Yield every number in lists and tables with its place, in lists counted from 1."""
+    if _is_number(value):
+        yield place, value
+    elif isinstance(value, Mapping):
+        for key, entry in value.items():
+            yield from _numbers(entry, (*place, str(key)))
+    elif isinstance(value, list | tuple):
+        for number, entry in enumerate(value, start=1):
+            yield from _numbers(entry, (*place, str(number)))
+
+
+def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors") -> list[Document]:
     """Write histories, spectra and transmissibilities as universal files with datasets 58.
 
-    Microphones have the points after those of the sensors.
+    Each file has the points of its own result: those of the surface that the sensors were on, then the microphones.
 
     Parameters
     ----------
@@ -118,23 +158,20 @@ def write_universal_files(
         Results folder.
     place : path
         Folder for the files.
-    sensors : sequence of (str, (x, y, z), int)
-        Name, position [m] and direction of each sensor: 1, 2, 3 for x, y, z with a sign, 0 for another.
     signals : {"sensors", "all"}
         Whether to leave out all but sensors and microphones: forces and motions of bearings, gears and meshes.
 
     Returns
     -------
     list of dict
-        File and number of functions of each.
+        File and number of functions of each, and the sensors whose points the result does not hold.
     """
     from housing.measured.universal_writing import write_functions
 
-    points = [(float(x), float(y), float(z)) for _, (x, y, z), _ in sensors]
-    places = {("sensor", name): (number, direction) for number, (name, _, direction) in enumerate(sensors, start=1)}
     written: list[Document] = []
     for command, _, data in _datasets(folder):
         count = 0
+        places, points = _sensor_places(data)
 
         def counted(functions: Iterable[UniversalFunction]) -> Iterator[UniversalFunction]:
             nonlocal count
@@ -147,7 +184,8 @@ def write_universal_files(
         functions = chain(_functions(data, places | heard, signals), _heard_lines(data, heard))
         write_functions(path, counted(functions), [*points, *positions])
         if count:
-            written.append({"file": path.name, "functions": count})
+            without = [name for name in _labels(data, "sensor") if ("sensor", name) not in places]
+            written.append({"file": path.name, "functions": count} | ({"without_point": without} if without else {}))
         else:
             path.unlink()
     return written
@@ -163,11 +201,54 @@ def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
                 yield str(document.get("command", "results")), document, data
 
 
+def _labels(data: xr.Dataset, dimension: str) -> list[str]:
+    return [str(name) for name in data[dimension].values] if dimension in data.coords else []
+
+
+def _sensor_places(data: xr.Dataset) -> tuple[_Places, list[tuple[float, float, float]]]:
+    """Return points and directions of sensors by name, numbered from 1, and their positions [m].
+
+    A result of an earlier version holds them as its case has them: the points that were asked for.
+    """
+    if "sensor_position" in data and "sensor_direction" in data:
+        rows = [
+            (name, *(data[key].sel(sensor=name).values.tolist() for key in ("sensor_position", "sensor_direction")))
+            for name in _labels(data, "sensor")
+        ]
+    else:
+        rows = list(_sensors_of_case(str(data.attrs.get("case", ""))))
+    places = {("sensor", name): (number, _direction(unit)) for number, (name, _, unit) in enumerate(rows, start=1)}
+    return places, [(float(x), float(y), float(z)) for _, (x, y, z), _ in rows]
+
+
+def _sensors_of_case(text: str) -> Iterator[tuple[str, Sequence[float], Sequence[float] | None]]:
+    """Yield name, position [m] and unit vector of the sensors of a case, whether or not its files are there still."""
+    from pydantic import ValidationError
+
+    from gearwhine.case.housing import Sensor
+
+    try:
+        entries = tomllib.loads(text)["housing"]["sensor"]
+        sensors = [Sensor.model_validate(entry) for entry in entries]
+    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValidationError):
+        return
+    for sensor in sensors:
+        yield sensor.name, sensor.position, sensor.unit_vector
+
+
+def _direction(unit_vector: Sequence[float] | None) -> int:
+    """Return 1, 2, 3 for x, y, z with a sign; 0 for another direction, and for a normal that is not known."""
+    for number, share in enumerate(unit_vector or (), start=1):
+        if abs(share) > 1.0 - 1e-9:
+            return number if share > 0.0 else -number
+    return 0
+
+
 def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tuple[float, float, float]]]:
     """Return the points of microphones by name, numbered from ``before`` on, and their positions [m]."""
     if "microphone_position" not in data:
         return {}, []
-    names = [str(name) for name in data["microphone"].values]
+    names = _labels(data, "microphone")
     rows = data["microphone_position"].transpose("microphone", ...).values.tolist()
     places = {("microphone", name): (number, 0) for number, name in enumerate(names, start=before + 1)}
     return places, [(float(x), float(y), float(z)) for x, y, z in rows]
@@ -188,7 +269,7 @@ def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunctio
             parts[:, 0] + 1j * parts[:, 1],
             "Pa",
             "sound pressure",
-            (name, "sound pressure of the lines", "amplitudes are peaks"),
+            (name, "sound pressure of the lines", f"amplitudes are peaks, phases at {_phases_at(data)}"),
             (name, *places[("microphone", name)]),
         )
 
@@ -217,6 +298,7 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
             if phase is not None:
                 values = values * np.exp(1j * np.asarray(phase.sel(at).values))
             error = at.get("mesh_error")
+            phases_at = _phases_at(data) if phase is not None and error is None else ""
             label = next((at[dimension] for dimension in at if measured and measured in str(dimension)), labels[0])
             unit = str(variable.attrs.get("units", ""))
             long_name = str(variable.attrs.get("long_name", name))
@@ -226,7 +308,11 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
                 values,
                 _response_unit(unit) if error is not None else unit,
                 _quantity(str(name)),
-                (", ".join(map(str, labels)), long_name, *_remarks(variable, abscissa, _axis_unit(data, axis))),
+                (
+                    ", ".join(map(str, labels)),
+                    long_name,
+                    _remarks(variable, abscissa, _axis_unit(data, axis), phases_at),
+                ),
                 (str(label), *places.get((measured or "", str(label)), (0, 0))),
                 *(() if error is None else (("mesh", 0, 0), "m", "transmission error")),
             )
@@ -248,16 +334,21 @@ def _quantity(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str) -> tuple[str, ...]:
+def _phases_at(data: xr.Dataset) -> str:
+    """Return the time that phases of spectra are of, as a title says it; earlier versions had another one."""
+    return "t = 0" if "phase_convention" in data.attrs else "the record's start"
+
+
+def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, phases_at: str) -> str:
+    """Return a title with what the values are; ``phases_at`` is empty where they have none of their own."""
     remarks = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
     if unit == "s":
         remarks.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
     else:
-        remarks.append("amplitudes are peaks")
-    for key, words in (("trusted_below_hz", "complete below"), ("complete_below_hz", "complete below")):
-        if key in variable.attrs:
-            remarks.append(f"{words} {float(variable.attrs[key]):.0f} Hz")
-    return ("; ".join(remarks),)
+        remarks.append(f"amplitudes are peaks, phases at {phases_at}" if phases_at else "amplitudes are peaks")
+    if (limit := _limit(variable)) is not None:
+        remarks.append(f"complete below {limit:.0f} Hz")
+    return "; ".join(remarks)
 
 
 def write_sounds(
@@ -266,10 +357,12 @@ def write_sounds(
     """Write the histories of sensors and microphones as sound files in 32-bit floating point, to hear and to measure.
 
     A record of whole turns at steady speed is a period of the motion: it is repeated without a seam until the file is
-    as long as asked for. Any other record is as long as it is. The history less its mean is resampled to an audio rate
-    by a band-limited interpolation and divided by a full scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …)
+    as long as asked for. Any other record is as long as it is. The history less its mean is cut off at the frequency
+    below which the model's modes are complete, as rms and peaks of the run are, resampled to an audio rate by a
+    band-limited interpolation and divided by a full scale, the first of 1, 2, 5, 10, 20, … (and 0.5, 0.2, 0.1, …)
     m/s² or Pa above its peak. The full scale stands in the file's name, in its comment (chunk LIST INFO ICMT) and in
-    what is returned: the signal is the sample times the full scale.
+    what is returned: the signal is the sample times the full scale. The frequency of the cut stands in the comment and
+    in what is returned.
 
     Parameters
     ----------
@@ -285,8 +378,8 @@ def write_sounds(
     Returns
     -------
     list of dict
-        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s], number of periods
-        and sampling rate [Hz].
+        File, sensor or microphone, full scale, peak and root mean square [m/s² or Pa], length [s], number of periods,
+        sampling rate [Hz] and the frequency below which the sound is complete [Hz], where it is cut off there.
     """
     written: list[Document] = []
     for command, document, data in _datasets(folder):
@@ -299,12 +392,16 @@ def write_sounds(
                 signal = np.asarray(data[kind.variable].sel({kind.label: name}).values, dtype=np.float64)
                 interval = (times[-1] - times[0]) / (len(times) - 1)
                 count = periods(len(times) * interval, seconds, rate) if _repeats(document) else 0
-                sound = repeated(signal - signal.mean(), interval, rate, count)
+                limit = _complete_below(data, kind)
+                signal -= signal.mean()
+                if limit is not None:
+                    signal = low_passed(signal, interval, limit, repeats=count > 0)
+                sound = repeated(signal, interval, rate, count)
                 scale = full_scale(float(np.abs(sound).max()))
                 path = place / f"{stem}-full-scale-{scale:g}-{kind.suffix.replace('_', '-')}.wav"
-                comment = (
-                    f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}; gearwhine {command}"
-                )
+                comment = f"{kind.quantity} at {name}; full scale (sample 1.0) is {scale:g} {kind.unit}"
+                comment += "" if limit is None else f"; complete below {limit:.0f} Hz, cut off there"
+                comment += f"; gearwhine {command}"
                 _write_wav(path, (sound / scale).astype("<f4"), rate, comment)
                 written.append(
                     {
@@ -317,6 +414,7 @@ def write_sounds(
                         "periods": max(count, 1),
                         "sampling_rate_hz": rate,
                     }
+                    | ({} if limit is None else {"complete_below_hz": limit})
                 )
     return written
 
@@ -327,6 +425,7 @@ class _Sound:
 
     variable: str
     label: str
+    spectrum: str
     time: str
     quantity: str
     unit: str
@@ -334,9 +433,50 @@ class _Sound:
 
 
 _SOUNDS = (
-    _Sound("sensor_acceleration", "sensor", "time", "acceleration", "m/s2", "m_per_s2"),
-    _Sound("microphone_pressure", "microphone", "microphone_time", "sound pressure", "Pa", "pa"),
+    _Sound("sensor_acceleration", "sensor", "sensor_spectrum", "time", "acceleration", "m/s2", "m_per_s2"),
+    _Sound("microphone_pressure", "microphone", "sound_pressure", "microphone_time", "sound pressure", "Pa", "pa"),
 )
+
+
+def _complete_below(data: xr.Dataset, kind: _Sound) -> float | None:
+    """Return the frequency below which signals are complete [Hz]; None where they are by their making."""
+    found = [_limit(data[name]) for name in (kind.variable, kind.spectrum) if name in data]
+    return next((limit for limit in found if limit is not None), None)
+
+
+def _limit(variable: xr.DataArray) -> float | None:
+    return next((float(variable.attrs[key]) for key in _LIMITS if key in variable.attrs), None)
+
+
+def low_passed(signal: FloatArray, interval: float, limit: float, *, repeats: bool) -> FloatArray:
+    """Remove from a signal without mean what is above a frequency.
+
+    Of a period nothing else changes: its lines above are left out. Any other signal goes through a symmetric filter,
+    which passes up to the limit and attenuates by 100 dB from a tenth above it.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+    interval : float
+        Time between its samples [s].
+    limit : float
+        Frequency [Hz].
+    repeats : bool
+        Whether the signal is a period.
+    """
+    if limit * interval >= 0.5:
+        return signal
+    if repeats:
+        lines = np.fft.rfft(signal)
+        lines[np.fft.rfftfreq(len(signal), interval) > limit * (1.0 + 1e-9)] = 0.0
+        return np.asarray(np.fft.irfft(lines, len(signal)))
+    from scipy.signal import firwin, kaiserord, oaconvolve
+
+    half = 2.0 * interval  # of the sampling rate, as its inverse
+    taps, beta = kaiserord(_ATTENUATION, _TRANSITION * limit * half)
+    middle = min(limit * (1.0 + 0.5 * _TRANSITION) * half, 0.999)
+    weights = firwin(taps | 1, middle, window=("kaiser", beta))
+    return np.asarray(oaconvolve(signal, weights, mode="same"))
 
 
 def _repeats(document: Document) -> bool:

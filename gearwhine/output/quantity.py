@@ -80,6 +80,8 @@ class Quantity:
         Format of the number in its column, or the text of a row of the document.
     scale : float
         Factor of the number in its column.
+    numbers : tuple of str
+        Keys of further numbers that ``shown`` tells, see :class:`gearwhine.output.sections.Column`.
     """
 
     key: str
@@ -94,6 +96,7 @@ class Quantity:
     heading: str = ""
     shown: str | Callable[[Row], str] = ""
     scale: float = 1.0
+    numbers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

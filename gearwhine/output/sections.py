@@ -26,14 +26,18 @@ class Column:
     heading : str
         Heading with the unit.
     of : str or callable
-        Key of the value in a row, keys of parts before it with points between; or a callable that takes the text of
-        the cell from the row.
+        Key of the value in a row, keys of parts before it, and places in lists from 0, with points between; or a
+        callable that takes the text of the cell from the row, for a text that is no number.
     form : str
         Format of a number.
     scale : float
-        Factor of a number.
+        Factor of a number, or of those in a list.
     link : callable, optional
         Returns names of places in the report for a row: the cell links to the first of them that exists.
+    shown : callable, optional
+        Takes the text of the cell from the row for the terminal and the report, in place of the value by its format.
+    numbers : tuple of str
+        Keys of further numbers in the text, which exported tables have in columns of their own.
     """
 
     heading: str
@@ -41,9 +45,13 @@ class Column:
     form: str = ".4g"
     scale: float = 1.0
     link: Callable[[Row], Sequence[str]] | None = None
+    shown: Callable[[Row], str] | None = None
+    numbers: tuple[str, ...] = ()
 
     def text(self, row: Row) -> str:
         """Return the cell of a row; empty where there is no value."""
+        if self.shown is not None:
+            return self.shown(row)
         value = self.value(row)
         if isinstance(value, bool):
             return "yes" if value else "no"
@@ -57,11 +65,28 @@ class Column:
         """Return the value of a row in the unit of the heading, with all its digits; None where there is none."""
         if not isinstance(self.of, str):
             return self.of(row)
-        value: Any = row
-        for step in self.of.split("."):
-            value = value.get(step) if isinstance(value, Mapping) else None
-        is_scaled = self.scale != 1.0 and isinstance(value, int | float) and not isinstance(value, bool)
-        return value * self.scale if is_scaled else value
+        return _scaled(value_at(row, self.of), self.scale)
+
+
+def value_at(row: Row, key: str) -> Any:
+    """Return the value at a key of a row, as :class:`Column` has it; None where there is none."""
+    value: Any = row
+    for step in key.split("."):
+        if isinstance(value, Mapping):
+            value = value.get(step)
+        elif isinstance(value, list | tuple) and step.isdecimal() and int(step) < len(value):
+            value = value[int(step)]
+        else:
+            return None
+    return value
+
+
+def _scaled(value: Any, scale: float) -> Any:
+    if scale == 1.0 or isinstance(value, bool):
+        return value
+    if isinstance(value, int | float):
+        return value * scale
+    return [_scaled(entry, scale) for entry in value] if isinstance(value, list | tuple) else value
 
 
 @dataclass(frozen=True)
@@ -209,9 +234,11 @@ def columns_of(fields: Iterable[object]) -> tuple[Column, ...]:
     return tuple(
         Column(
             quantity.heading,
-            (quantity.shown if callable(quantity.shown) else quantity.key),
+            quantity.key,
             _form(quantity),
             quantity.scale,
+            shown=quantity.shown if callable(quantity.shown) else None,
+            numbers=quantity.numbers,
         )
         for quantity in fields
         if isinstance(quantity, Quantity) and quantity.heading

@@ -278,7 +278,7 @@ _PAIRS = (
     Column("mode", "mode", "d"),
     Column("measured [Hz]", "measured_hz", ".0f"),
     Column("model [Hz]", "model_hz", ".1f"),
-    Column("error", lambda pair: f"{pair['error_percent']:+.2f} %"),
+    Column("error", "error_percent", shown=lambda pair: f"{pair['error_percent']:+.2f} %"),
     Column("MAC", "mac", ".3f"),
     Column("confidence", "confidence", ".2f"),
     Column("strength [1/kg]", "strength", ".2e"),

@@ -565,9 +565,9 @@ def _path(pair: Document) -> tuple[Table, ...]:
     columns = [Column("", "point")]
     for side in ("driver", "driven"):
         columns += [
-            Column(f"{side}: roll", partial(_roll, f"{side}_roll_angle_rad")),
+            Column(f"{side}: roll", f"{side}_roll_angle_rad", shown=partial(_roll, f"{side}_roll_angle_rad")),
             Column("⌀ [mm]", f"{side}_radius_m", ".3f", 2 * _MM),
-            Column("sliding", partial(_sliding, f"{side}_specific_sliding")),
+            Column("sliding", f"{side}_specific_sliding", shown=partial(_sliding, f"{side}_specific_sliding")),
         ]
     title = "Path of contact, with roll angles and specific sliding"
     return table_of(tuple(columns), pair["path_of_contact"], title)

@@ -182,6 +182,22 @@ HOUSING: Fields = (
     Quantity(
         "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
     ),
+    Quantity(
+        "",
+        lambda solved: {name: port.position for name, port in solved.sensors.items()} or None,
+        "sensor_position",
+        ("sensor", "component"),
+        "m",
+        "point of the surface that the sensor is on",
+    ),
+    Quantity(
+        "",
+        lambda solved: {name: port.direction for name, port in solved.sensors.items()} or None,
+        "sensor_direction",
+        ("sensor", "component"),
+        "1",
+        "direction of the sensor's acceleration",
+    ),
     Part("", lambda solved: solved, ORIGIN),
 )
 """Quantities of a solved housing."""
@@ -273,6 +289,9 @@ _LINES = (
             f"{mode['number']} ({mode['frequency_hz']:.0f} Hz) {100.0 * mode['kinetic_energy_share']:.0f} %"
             for mode in line["modes"][:3]
         ),
+        numbers=tuple(
+            f"modes.{place}.{key}" for place in range(3) for key in ("number", "frequency_hz", "kinetic_energy_share")
+        ),
     ),
 )
 
@@ -308,8 +327,14 @@ _MODES = (
 )
 _CHECKS = (
     Column("check", "name"),
-    Column("value", lambda line: f"{line['value']:.0f}" if line["bound"] == 0 else f"{line['value']:.1e}"),
-    Column("bound", lambda line: "" if line["bound"] is None else f"{line['bound']:.0e}" if line["bound"] else "0"),
+    Column(
+        "value", "value", shown=lambda line: f"{line['value']:.0f}" if line["bound"] == 0 else f"{line['value']:.1e}"
+    ),
+    Column(
+        "bound",
+        "bound",
+        shown=lambda line: "" if line["bound"] is None else f"{line['bound']:.0e}" if line["bound"] else "0",
+    ),
     Column("", lambda line: "" if line["bound"] is None else "ok" if line["ok"] else "look"),
     Column("what it says", "why"),
 )
@@ -374,7 +399,7 @@ def _effective_mass(document: Document) -> tuple[Table, ...]:
         Column("mode", "mode"),
         Column("frequency [Hz]", "frequency"),
         *(
-            Column(_SHORT.get(name, name), partial(_percent, "parts", place))
+            Column(_SHORT.get(name, name), f"parts.{place}", shown=partial(_percent, "parts", place))
             for place, name in enumerate(mass["directions"])
         ),
     )
@@ -393,8 +418,11 @@ def _effective_mass(document: Document) -> tuple[Table, ...]:
 def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, ...]:
     columns = (
         Column("support", "name"),
-        Column("fixes", lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
-        *(Column(_SHORT.get(name, name), partial(_percent, "share", name)) for name in directions),
+        Column("fixes", "fixes", shown=lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
+        *(
+            Column(_SHORT.get(name, name), f"share.{name}", shown=partial(_percent, "share", name))
+            for name in directions
+        ),
     )
     caption = "What the supports hold of the housing as a whole; shares of the springs' stiffness"
     return table_of(columns, supports, caption)

@@ -69,6 +69,12 @@ SENSOR_COLUMNS = (
     Column(
         "highest lines: Hz (m/s², peak)",
         lambda row: "  ".join(_line(line) for line in row.get("peaks", row.get("lines", ()))[:_HIGHEST]),
+        numbers=tuple(
+            f"{rows}.{place}.{key}"
+            for rows in ("peaks", "lines")
+            for place in range(_HIGHEST)
+            for key in ("frequency_hz", "amplitude_m_per_s2")
+        ),
     ),
 )
 

@@ -67,11 +67,11 @@ def _turns_of_bearing(key: str, of: str, name: str, unit: str, long_name: str) -
 
 
 def _force(axis: int) -> Column:
-    return Column(f"{_AXES[axis]} [N]", lambda row: f"{row['force_n'][axis]:z.0f}")
+    return Column(f"{_AXES[axis]} [N]", f"force_n.{axis}", "z.0f")
 
 
 def _moment(axis: int) -> Column:
-    return Column(f"{_TILTS[axis]} [N m]", lambda row: f"{row['moment_n_m'][axis]:z.1f}")
+    return Column(f"{_TILTS[axis]} [N m]", f"moment_n_m.{axis}", "z.1f")
 
 
 def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
@@ -159,6 +159,7 @@ def _stiffness(row: Row) -> str:
     return "" if row["peak_pressure_pa"] is None else ", ".join(f"{value:.4g}" for value in diagonal)
 
 
+_DIAGONAL = tuple(f"stiffness.{axis}.{axis}" for axis in range(3))
 _NAME, _TILT, *_OF_ELEMENTS = columns_of(BEARING)
 _BEARING_COLUMNS = (
     _NAME,
@@ -166,7 +167,7 @@ _BEARING_COLUMNS = (
     *(_moment(axis) for axis in range(2)),
     _TILT,
 )
-_ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness))
+_ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness, numbers=_DIAGONAL))
 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
@@ -897,7 +898,7 @@ _LINE_COLUMNS = (
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", _step),
     Column("level\n[dB]", "level_db", "+.2f"),
-    Column("first order\n[dB]", _first_order),
+    Column("first order\n[dB]", "first_order_db", shown=_first_order),
     Column("reverse", "reverse_words"),
     Column("level\n[dB]", "reverse_level_db", "+.2f"),
 )

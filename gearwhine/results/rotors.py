@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -244,6 +243,7 @@ ROLLING = (
         lambda row: _loaded(row).loaded,
         heading="loaded",
         shown=lambda row: f"{row['loaded_elements']} of {row['elements']}",
+        numbers=("elements",),
     ),
     Quantity("peak_pressure_pa", lambda row: _loaded(row).peak_pressure, heading="peak [GPa]", shown=".3g", scale=1e-9),
     Quantity(
@@ -731,13 +731,18 @@ def _bending(frequencies: Sequence[float], axial_shares: Sequence[float]) -> Ite
 _WHIRL_COLUMNS = (
     Column("frequency [Hz]", "frequency_hz", ".5g"),
     Column("whirl", lambda row: _whirl_name(math.copysign(1.0, row["speed_rpm"]) * row["direction"], row)),
-    Column("log decrement", lambda row: "0" if _state(row) == "undamped" else f"{row['log_decrement']:.3g}"),
+    Column(
+        "log decrement",
+        "log_decrement",
+        shown=lambda row: "0" if _state(row) == "undamped" else f"{row['log_decrement']:.3g}",
+    ),
     Column("", lambda row: _state(row)),
     Column(
         "most strain energy",
         lambda row: (
             "" if row["strained"] is None else f"{100.0 * row['strained']['share']:.0f} % {row['strained']['part']}"
         ),
+        numbers=("strained.share",),
     ),
 )
 
@@ -759,11 +764,12 @@ def _state(row: Document) -> str:
 
 
 _CRITICAL_COLUMNS = (
-    Column("speed [rpm]", lambda row: f"{abs(row['speed_rpm']):.5g}"),
+    Column("speed [rpm]", "speed_rpm", shown=lambda row: f"{abs(row['speed_rpm']):.5g}"),
     Column("whirl", lambda row: _whirl_name(row["way"], row)),
     Column(
         "log decrement",
-        lambda row: (
+        "log_decrement",
+        shown=lambda row: (
             ""
             if "log_decrement" not in row
             else f"{row['log_decrement']:.3g}"
@@ -771,7 +777,7 @@ _CRITICAL_COLUMNS = (
             else "0"
         ),
     ),
-    Column("from operation", lambda row: "" if row["margin"] is None else _beside(row["margin"])),
+    Column("from operation", "margin", shown=lambda row: "" if row["margin"] is None else _beside(row["margin"])),
 )
 
 
@@ -846,7 +852,7 @@ def _weight(static: Document) -> Iterator[str | Table]:
     along = any(bearing["load_n"][2] for bearing in static["bearings"])
     columns = (
         Column("bearing carries", "name"),
-        *(Column(f"{axis} [N]", partial(_load, at)) for at, axis in enumerate("xyz" if along else "xy")),
+        *(Column(f"{axis} [N]", f"load_n.{at}", "z.5g") for at, axis in enumerate("xyz" if along else "xy")),
     )
     pulled = static.get("forces", ())
     under = f"Under its weight and {counted(len(pulled), 'constant force')}" if pulled else "Under its weight"
@@ -855,20 +861,24 @@ def _weight(static: Document) -> Iterator[str | Table]:
     yield f"It sags most at {place:.5g} mm, by {sag:.3g} µm"
 
 
-def _load(axis: int, bearing: Document) -> str:
-    return f"{bearing['load_n'][axis]:z.5g}"
-
-
 _PROBES = (
-    Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm, {row['angle_deg']:.0f}°"),
+    Column(
+        "probe",
+        lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm, {row['angle_deg']:.0f}°",
+        numbers=("at_m", "angle_deg"),
+    ),
     Column("at operation [µm, peak]", "operation_amplitude_m", ".3g", 1e6),
     Column(
         "lag",
-        lambda row: "" if row["operation_phase_lag_deg"] is None else f"{row['operation_phase_lag_deg']:.0f}°",
+        "operation_phase_lag_deg",
+        shown=lambda row: "" if row["operation_phase_lag_deg"] is None else f"{row['operation_phase_lag_deg']:.0f}°",
     ),
     Column(
         "largest [µm, peak]",
-        lambda row: f"{1e6 * row['largest_amplitude_m']:.3g} at {row['largest_at_rpm']:.5g} rpm",
+        "largest_amplitude_m",
+        scale=1e6,
+        shown=lambda row: f"{1e6 * row['largest_amplitude_m']:.3g} at {row['largest_at_rpm']:.5g} rpm",
+        numbers=("largest_at_rpm",),
     ),
 )
 
@@ -877,18 +887,23 @@ def _torsion(response: Document) -> Iterator[str | Table]:
     """Yield the largest angle and torque at each probe, and the largest torque of the whole shaft."""
     nothing = _ROUNDING * response["largest_torque_n_m"]
     columns = (
-        Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm"),
+        Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm", numbers=("at_m",)),
         Column(
             "largest angle [mrad, peak]",
-            lambda row: f"{1e3 * row['largest_angle_rad']:.3g} at {row['largest_angle_at_hz']:.5g} Hz",
+            "largest_angle_rad",
+            scale=1e3,
+            shown=lambda row: f"{1e3 * row['largest_angle_rad']:.3g} at {row['largest_angle_at_hz']:.5g} Hz",
+            numbers=("largest_angle_at_hz",),
         ),
         Column(
             "largest torque [N m, peak]",
-            lambda row: (
+            "largest_torque_n_m",
+            shown=lambda row: (
                 f"{row['largest_torque_n_m']:.4g} at {row['largest_torque_at_hz']:.5g} Hz"
                 if row["largest_torque_n_m"] > nothing
                 else "0"
             ),
+            numbers=("largest_torque_at_hz",),
         ),
     )
     title = f"Response to torques from {response['from_hz']:.5g} to {response['to_hz']:.5g} Hz"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import h5netcdf
 import numpy as np
 
+from coupling.signals.spectrum import at_time_zero
 from coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
@@ -269,7 +270,8 @@ PAIR = (
 MESH_COLUMNS = (*columns_of(MESH), Column("friction takes [W]", "friction.mean_power_w", ".3g"))
 
 CONVENTIONS = {
-    "amplitude": "peak: a sine a sin(2 pi f t) has the amplitude a",
+    "amplitude": "peak: a cosine a cos(2 pi f t + phase) has the amplitude a",
+    "phase": "of the cosine at t = 0 of the histories' time axis, also where the record begins later",
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
@@ -326,6 +328,13 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
     def of_each(row: TracedTransient, part: str) -> dict[str, Any] | None:
         return {label: getattr(spectrum, part) for label, spectrum in of(row.transient).items()} or None
 
+    def phases(row: TracedTransient) -> dict[str, Any] | None:
+        start = row.transient.record_start
+        return {
+            label: np.angle(at_time_zero(spectrum.lines, spectrum.frequencies, start))
+            for label, spectrum in of(row.transient).items()
+        } or None
+
     def attributes(row: TracedTransient) -> dict[str, Any]:
         first, sampling = next(iter(of(row.transient).values())), row.transient.record.sampling
         values: dict[str, Any] = {"window": first.window} | _trusted(row)
@@ -356,11 +365,11 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
         ),
         Quantity(
             "",
-            lambda row: of_each(row, "phase"),
+            phases,
             f"{name}_phase",
             (dimension, "frequency"),
             "rad",
-            f"phase of {quantity}",
+            f"phase of {quantity}: the cosine's at t = 0",
             attributes=_trusted,
         ),
     )
@@ -470,7 +479,7 @@ HOUSING_LINES = (
         "housing_acceleration_spectrum",
         ("housing_mode", "housing_line", "part"),
         "m kg0.5 s-2",
-        "complex peak amplitude of a housing mode's acceleration, by unit modal mass",
+        "complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
         attributes=lambda row: {"window": row.window},
     ),
 )
@@ -692,8 +701,9 @@ class HistoryStream:
             )
 
     def _attributes(self, history: HistoryQuantity) -> dict[str, Any]:
-        """Return the attributes of a history; a filtered one also has its decimation and frequency limit."""
+        """Return the attributes of a history; a filtered one also has its decimation and its own frequency limit."""
         attributes: dict[str, Any] = {"units": history.unit, "long_name": history.what}
+        attributes["trusted_below_hz"] = float(self.solved.trusted_limit)
         sampling = self.solved.record.sampling
         if sampling.is_long:
             attributes |= {"decimated_by": sampling.decimation.factor, "complete_below_hz": self.solved.trusted_limit}
@@ -846,16 +856,18 @@ _SIGNATURE_COLUMNS = (
     Column("Hz", "frequency_hz", ".0f"),
     Column("dB", "level_db", ".0f"),
     Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
-    Column("near", lambda row: _near(row["near_mode"])),
+    Column("near", lambda row: _near(row["near_mode"]), numbers=("near_mode.frequency_hz",)),
     Column(
         "by housing modes",
         lambda row: ", ".join(
             f"{part.get('number', 'local')}: {_share(part)}" for part in row["contributions"]["housing_modes"][:3]
         ),
+        numbers=("contributions.housing_modes",),
     ),
     Column(
         "by bearings",
         lambda row: ", ".join(f"{part['name']}: {_share(part)}" for part in _with_free(row["contributions"])[:3]),
+        numbers=("contributions.bearings", "contributions.free_vibration"),
     ),
 )
 

@@ -97,7 +97,7 @@ MODE = (
 MODE_COLUMNS = (
     Column("mode", "number", "d"),
     *columns_of(MODE),
-    Column("radiating faces", lambda row: _parts(row["faces"])),
+    Column("radiating faces", lambda row: _parts(row["faces"]), numbers=("faces",)),
 )
 
 
@@ -204,7 +204,7 @@ def _largest(heading: str, group: str) -> Column:
         name = str(part["name"]).removeprefix(_MODE_NAME).replace(_LOCAL, "local")
         return f"{name}, {100.0 * part['share']:.0f} %"
 
-    return Column(heading, text)
+    return Column(heading, text, numbers=(f"contributions.{group}",))
 
 
 _LINE = line_frequency(_picture_of)
@@ -293,6 +293,7 @@ SWEPT_LINE = (
         long_name="number of the housing mode with the largest part of the line's power",
         heading="most by mode",
         shown=_mode_text,
+        numbers=("mode_frequency_hz", "mode_share"),
     ),
     Quantity(
         "mode_frequency_hz",

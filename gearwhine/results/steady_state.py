@@ -287,6 +287,7 @@ LOUDEST = (
         lambda point: point.mode,
         heading="most of it by",
         shown=lambda row: f"mode {row['housing_mode']}, {row['mode_hz']:.1f} Hz ({percent(row['share'])})",
+        numbers=("mode_hz", "share"),
     ),
     Quantity("mode_hz", lambda point: point.mode_hz),
     Quantity("share", lambda point: point.share),

@@ -1,7 +1,6 @@
 """Survey plan of the housing: its quantities, and how the terminal shows it."""
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
@@ -84,12 +83,8 @@ def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str
     return document_of(PLAN, planned) | document_of(ORIGIN, solved)
 
 
-def _coordinate(axis: int, sensor: Document) -> str:
-    return f"{1e3 * sensor['position_m'][axis]:.1f}"
-
-
 _POINT, *_ALONG = columns_of(SENSOR)
-_SENSORS = (_POINT, *(Column(f"{axis} [mm]", partial(_coordinate, at)) for at, axis in enumerate("xyz")), *_ALONG)
+_SENSORS = (_POINT, *(Column(f"{axis} [mm]", f"position_m.{at}", ".1f", 1e3) for at, axis in enumerate("xyz")), *_ALONG)
 
 
 def sections(document: Document) -> tuple[Section, ...]:

@@ -1,6 +1,7 @@
 """Sweep: the points of its grid as a table, and the peaks that it passes by."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -46,6 +47,7 @@ PEAK = (
         lambda peak: peak.above_rpm,
         heading="between [rpm]",
         shown=_peak_between,
+        numbers=("below_rpm",),
     ),
     Quantity(
         "line",
@@ -150,24 +152,25 @@ def _columns(document: Document, done: list[Document]) -> tuple[Column, ...]:
     first = done[0]
     columns = _axes(document)
     columns += [
-        Column(f"{sensor['name']}\nrms [m/s²]", partial(_level, sensor["name"]))
-        for sensor in first["sensors"][:_MOST_SENSORS]
+        Column(f"{sensor['name']}\nrms [m/s²]", f"sensors.{place}.rms_m_per_s2", shown=partial(_level, sensor["name"]))
+        for place, sensor in enumerate(first["sensors"][:_MOST_SENSORS])
     ]
     for place, pair in enumerate(first["gear_pairs"][:_MOST_MESHES]):
         columns += [
             Column(
                 f"{pair['driver']} → {pair['driven']}\nlargest [N]",
-                partial(_force, place),
+                f"gear_pairs.{place}.peak_force_n",
+                ".0f",
             ),
-            Column("apart", partial(_apart, place)),
+            Column("apart", f"gear_pairs.{place}.contact_loss_fraction", shown=partial(_apart, place)),
         ]
-    return (*columns, Column("energy\nerror", lambda point: f"{point['energy_error']:.0e}"))
+    return (*columns, Column("energy\nerror", "energy_error", ".0e"))
 
 
 def _axes(document: Document) -> list[Column]:
     """Return columns of the swept keys."""
     return [
-        Column(axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""), partial(_value, axis["name"]))
+        Column(axis["name"] + (f" [{axis['unit']}]" if axis["unit"] else ""), f"values.{axis['name']}", "g")
         for axis in document["axes"]
     ]
 
@@ -178,26 +181,22 @@ def _sound_columns(document: Document) -> tuple[Column, ...]:
         *_axes(document),
         Column("L_W [dB]", "sound.total_db", ".1f"),
         Column("L_WA [dB]", "sound.total_db_a", ".1f"),
-        *(Column(quantity.heading, partial(_loudest, quantity)) for quantity in columns_of(SWEPT_LINE)),
+        *(_loudest(column) for column in columns_of(SWEPT_LINE)),
     )
-
-
-def _value(name: str, point: Document) -> str:
-    value = point["values"][name]
-    return value if isinstance(value, str) else f"{value:g}"
-
-
-def _force(place: int, point: Document) -> str:
-    return f"{point['gear_pairs'][place]['peak_force_n']:.0f}"
 
 
 def _apart(place: int, point: Document) -> str:
     return percent(point["gear_pairs"][place]["contact_loss_fraction"])
 
 
-def _loudest(column: Column, point: Document) -> str:
-    """Return a cell of the loudest line of a point."""
-    return column.text(point["sound"]["loudest"])
+def _loudest(column: Column) -> Column:
+    """Return a column of a line as that of the loudest line of a point."""
+    return replace(
+        column,
+        of=f"sound.loudest.{column.of}",
+        shown=lambda point: column.text(point["sound"]["loudest"]),
+        numbers=tuple(f"sound.loudest.{key}" for key in column.numbers),
+    )
 
 
 def _level(name: str, point: Document) -> str:

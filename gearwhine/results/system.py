@@ -609,8 +609,8 @@ def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     return (
         *columns_of(MODE),
-        *(Column("teeth" if kind == "mesh" else kind, partial(_share, kind)) for kind in kinds),
-        Column("strained most", _strained),
+        *(Column("teeth" if kind == "mesh" else kind, f"energy.{kind}", shown=partial(_share, kind)) for kind in kinds),
+        Column("strained most", _strained, numbers=("strained_most.share",)),
     )
 
 
@@ -670,6 +670,7 @@ def _peaks(response: Document) -> Iterator[str | Table]:
             lambda row: "  ".join(
                 f"{peak['frequency_hz']:.0f} ({1e-6 * peak['amplitude']:.3g})" for peak in row["peaks"][:4]
             ),
+            numbers=tuple(f"peaks.{place}.{key}" for place in range(4) for key in ("frequency_hz", "amplitude")),
         ),
     )
     yield f"Response to the {response['excitation']}, 1 µm at any frequency:"
@@ -705,13 +706,13 @@ _LINE_COLUMNS = (
 )
 
 _CROSSING_COLUMNS = (
-    Column("speed [rpm]", lambda row: f"{abs(row['speed_rpm']):.1f}"),
-    Column("from operation", lambda row: f"{100 * row['margin']:+.1f} %"),
+    Column("speed [rpm]", "speed_rpm", shown=lambda row: f"{abs(row['speed_rpm']):.1f}"),
+    Column("from operation", "margin", shown=lambda row: f"{100 * row['margin']:+.1f} %"),
     Column("order", "line"),
     Column("frequency [Hz]", "frequency_hz", ".2f"),
     Column("damping ratio", "damping_ratio", ".4f"),
     Column("mode", _named),
-    Column("teeth", lambda row: f"{100 * row['teeth']:.1f} %"),
+    Column("teeth", "teeth", shown=lambda row: f"{100 * row['teeth']:.1f} %"),
 )
 
 

@@ -299,7 +299,11 @@ def sections(document: Document) -> tuple[Section, ...]:
 
 def _in_unit(heading: str, key: str) -> Column:
     """Column of a parameter's value in the unit that it is written in."""
-    return Column(heading, lambda row: f"{row[key] / row['written_unit_in_si']:.4g} {row['written_unit']}".strip())
+
+    def text(row: Document) -> str:
+        return f"{row[key] / row['written_unit_in_si']:.4g} {row['written_unit']}".strip()
+
+    return Column(heading, text, numbers=(key, "written_unit_in_si") if key == "before" else (key,))
 
 
 def _value(heading: str, key: str, form: str, before: str = "", unit: str = "") -> Column:
@@ -308,7 +312,7 @@ def _value(heading: str, key: str, form: str, before: str = "", unit: str = "") 
     def text(row: Document) -> str:
         return before + ("none" if row[key] is None else f"{row[key]:{form}}{unit}")
 
-    return Column(heading, text)
+    return Column(heading, key, shown=text)
 
 
 _PARAMETERS = (
@@ -316,7 +320,7 @@ _PARAMETERS = (
     _in_unit("before", "before"),
     _in_unit("after", "after"),
     _in_unit("give or take", "standard_deviation"),
-    Column("of the prior's", lambda row: f"{100 * row['left_of_prior_spread']:.0f} %"),
+    Column("of the prior's", "left_of_prior_spread", shown=lambda row: f"{100 * row['left_of_prior_spread']:.0f} %"),
     Column("", lambda row: "at the end of its range" if row["at_end_of_range"] else ""),
 )
 _PAIRS = (

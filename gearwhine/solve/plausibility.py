@@ -28,6 +28,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
 _ROUNDING = 1e-6  # part of the load below which a component counts as zero
+_MOST = 0.5  # part of the power of an acceleration above the limit without a warning
 _SETTLED = 0.02  # free vibration at the begin of a record, as a part of that at the start, without a warning
 _HIGHEST = 5  # lines of a sensor that are looked at
 _OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
@@ -120,6 +121,32 @@ def settling_warnings(case: Case, transient: SolvedTransient, signature: SolvedS
         )
         warnings.append(warning("settling", message, frequency_hz=line.frequency, mode_hz=hertz, left=left))
     return warnings
+
+
+def beyond_limit_warnings(transient: SolvedTransient) -> list[dict[str, Any]]:
+    """Warn of sensors most of whose power lies above the frequency up to which the housing's modes are complete.
+
+    Parameters
+    ----------
+    transient : SolvedTransient
+        Transient whose spectra reach beyond that frequency; a long record is stored up to it only.
+    """
+    if transient.record.sampling.is_long:
+        return []
+    limit = transient.trusted_limit
+    parts: dict[str, float] = {}
+    for name, spectrum in transient.sensor_spectra.items():
+        below, whole = (float(spectrum.rms(end)) for end in (limit, np.inf))
+        if whole > 0.0 and 1.0 - (below / whole) ** 2 > _MOST:
+            parts[name] = 1.0 - (below / whole) ** 2
+    if not parts:
+        return []
+    told = ", ".join(f"{name} {100.0 * part:.3g} %" for name, part in parts.items())
+    message = (
+        f"most of the power of the acceleration lies above {limit:.0f} Hz, where modes of the housing are missing "
+        f"({told}): rms, peaks and sounds are without it; raise housing.frequency_limit or housing.modes"
+    )
+    return [warning("power beyond the limit", message, trusted_below_hz=limit, parts=parts)]
 
 
 def operation_warnings(case: Case) -> list[dict[str, Any]]:

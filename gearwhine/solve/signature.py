@@ -9,7 +9,7 @@ import numpy.typing as npt
 from coupling import signals as signature
 from coupling.linear.complex_modes import CoupledModes
 from coupling.signals.peaks import SpectralPeaks
-from coupling.signals.spectrum import Spectrum, Window
+from coupling.signals.spectrum import Spectrum, Window, at_time_zero
 from gearwhine.solve.transient import SolvedTransient
 from gearwhine.solve.transient_record import Signals
 
@@ -52,7 +52,7 @@ class TracedLine:
     frequency : float
         Frequency [Hz].
     value : complex
-        Amplitude [m/s²] and phase at the start of the record. Of a long record the root mean square over its stretches,
+        Amplitude [m/s²] and phase of the cosine at t = 0. Of a long record the root mean square over its stretches,
         as its parts are averaged over them.
     named : coupling.signals.LineName
     modes : tuple of Contribution
@@ -147,6 +147,8 @@ class SolvedSignature:
     housing : Spectrum or None
         Spectra of the accelerations of the housing's modes, shape (n_modes, m) [m √kg / s²], of a long record of its
         last stretch; None without a housing.
+    record_start : float
+        Time from which phases of the spectra count [s]; those of `lines` count from t = 0.
     """
 
     lines: dict[str, tuple[TracedLine, ...]]
@@ -156,6 +158,7 @@ class SolvedSignature:
     bearing_spectra: dict[str, Spectrum]
     modes: CoupledModes
     housing: Spectrum | None = None
+    record_start: float = 0.0
 
     def clear_sidebands(self, sidebands: tuple[ShaftSidebands, ...]) -> list[tuple[ShaftSidebands, signature.Sideband]]:
         """Return the sidebands above rounding, of carriers that exist."""
@@ -175,11 +178,13 @@ class SolvedSignature:
         return amplitudes
 
     def housing_lines(self, limit: float) -> tuple[FloatArray, ComplexArray, str] | None:
-        """Frequencies [Hz] up to a limit, the lines of the housing's modes there, and their window."""
+        """Frequencies [Hz] up to a limit, the lines of the housing's modes there at t = 0, and their window."""
         if self.housing is None:
             return None
         below = self.housing.frequencies <= limit * (1.0 + 1e-9)
-        return self.housing.frequencies[below], self.housing.lines[:, below], self.housing.window
+        frequencies = self.housing.frequencies[below]
+        lines = at_time_zero(self.housing.lines[:, below], frequencies, self.record_start)
+        return frequencies, lines, self.housing.window
 
     def line_table(self) -> LineTable | None:
         """Lines of all sensors beside each other; None where there are none."""
@@ -240,6 +245,7 @@ def solve_signature(
         bearing_spectra=last.bearings,
         modes=modes,
         housing=last.housing,
+        record_start=solved.record_start,
     )
 
 
@@ -303,7 +309,7 @@ def _peak_lines(solved: SolvedTransient, last: _StretchSpectra) -> dict[str, _Pe
         x = <x_s a_s*> / <a_s a_s*> A e^{iφ},
 
     which is linear in x. So parts of the line that add up in each stretch add up to A e^{iφ}, and their shares are
-    Re <x_s a_s*> / <a_s a_s*>. Of a single stretch x is its own line.
+    Re <x_s a_s*> / <a_s a_s*>. Of a single stretch x is its own line. Phases φ are those at t = 0.
     """
     assert last.housing is not None
     peaks = {name: solved.sensor_peaks(name) for name in solved.sensor_spectra}
@@ -322,7 +328,8 @@ def _peak_lines(solved: SolvedTransient, last: _StretchSpectra) -> dict[str, _Pe
             squares[name] += np.abs(own) ** 2
     found = {}
     for name, at in peaks.items():
-        value = at.amplitudes * np.exp(1j * np.angle(at.of(solved.sensor_spectra[name].lines)))
+        phase = np.angle(at.of(solved.sensor_spectra[name].lines))
+        value = at_time_zero(at.amplitudes * np.exp(1j * phase), at.frequencies, solved.record_start)
         housing, *bearings = np.split((sums[name] / squares[name] * value).T, np.cumsum(counts[:-1]), axis=1)
         found[name] = _PeakLines(at, value, housing, dict(zip(last.bearings, bearings, strict=True)))
     return found

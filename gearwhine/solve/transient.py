@@ -87,6 +87,11 @@ class SolvedTransient:
     trusted_limit: float
 
     @property
+    def record_start(self) -> float:
+        """Time of the first sample of the signals in memory [s], from which phases of their spectra count."""
+        return float(self.histories.times[0])
+
+    @property
     def histories(self) -> Histories:
         """Histories of the recorded signals."""
         return self.signals.histories

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
+from gearwhine.output.dataset import PHASE_CONVENTION
 from gearwhine.output.quantity import document_of
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
@@ -77,7 +78,8 @@ def collected_sweep(
         "title": case.title,
         "source": f"gearwhine {__version__}",
         "case": dump_case(case),
-        "amplitude_convention": "peak: the amplitude of a sine a sin(2 pi f t) is a",
+        "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
+        "phase_convention": PHASE_CONVENTION,
         "window": ", ".join(sorted({result.window for result in grid.results()})),
     }
     return xr.Dataset(variables, coordinates, attributes)

@@ -9,7 +9,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.from_case.rotors import build_bearings, build_gear, build_rotor
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -84,6 +84,56 @@ def test_what_is_wrong_is_named(change: dict, key: str, said: str, folder: Path)
     (problem,) = raised.value.problems
     assert problem.key == key
     assert said in problem.expected
+
+
+ALUMINIUM = ShaftMaterial(70e9, 26.3e9, 2700.0)
+STEEL_TABLE = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
+ON_THE_SHAFT = {
+    "gear": {"name": "g", "rotor": "input", "teeth": 40, "module": "4 mm", "face_width": "40 mm", "bore": "50 mm"},
+    "disc": {"width": "40 mm", "diameter": "160 mm", "bore": "50 mm"},
+}
+
+
+def on_two_metals(folder: Path, kind: str, at: str, **more: object) -> dict:
+    """A gear or a disc on a shaft of aluminium up to 0.5 m, of steel beyond; the case has a material, too."""
+    assert write_ross(folder / "fan.toml", Rotor("fan", [Segment(0.5, 0.05, 0.0, m) for m in (ALUMINIUM, STEEL)])) == ()
+    part = ON_THE_SHAFT[kind] | {"at": at} | more
+    parts = {"gear": [part]} if kind == "gear" else {}
+    return {"material": {"rail": STEEL_TABLE}} | entry(**({} if parts else {"discs": [part]})) | parts
+
+
+@pytest.mark.parametrize("kind", ["gear", "disc"])
+@pytest.mark.parametrize(("at", "material"), [("250 mm", ALUMINIUM), ("750 mm", STEEL)])
+def test_parts_on_a_files_shaft_are_of_its_material_there(
+    kind: str, at: str, material: ShaftMaterial, folder: Path
+) -> None:
+    case = parse_case(on_two_metals(folder, kind, at), folder=folder)
+    (disc,) = build_rotor(case, case.rotor[0]).discs
+    # A gear's blank is a cylinder between its pitch circle of 160 mm and the bore, as the disc is.
+    assert disc.mass == pytest.approx(material.density * np.pi / 4.0 * (0.16**2 - 0.05**2) * 0.04)
+    if kind == "gear":
+        gear = build_gear(case, case.gear[0])
+        assert gear.youngs_modulus == pytest.approx(material.youngs_modulus)
+        assert gear.poisson_ratio == pytest.approx(material.youngs_modulus / material.shear_modulus / 2.0 - 1.0)
+
+
+@pytest.mark.parametrize(("kind", "key"), [("gear", "gear[0].material"), ("disc", "rotor[0].discs[0].material")])
+def test_where_two_materials_of_a_file_meet_one_is_asked_for(kind: str, key: str, folder: Path) -> None:
+    with pytest.raises(CaseError) as raised:
+        parse_case(on_two_metals(folder, kind, "500 mm"), folder=folder)
+    (problem,) = raised.value.problems
+    assert problem.key == key
+    assert "its file has not one that a solid can have at 500 mm" in problem.expected
+    case = parse_case(on_two_metals(folder, kind, "500 mm", material="rail"), folder=folder)
+    (disc,) = build_rotor(case, case.rotor[0]).discs
+    assert disc.mass == pytest.approx(7850.0 * np.pi / 4.0 * (0.16**2 - 0.05**2) * 0.04)
+
+
+def test_a_rotors_own_material_is_that_of_parts_on_its_files_shaft(folder: Path) -> None:
+    given = on_two_metals(folder, "gear", "250 mm")
+    given["rotor"][0]["material"] = "rail"
+    case = parse_case(given, folder=folder)
+    assert build_gear(case, case.gear[0]).youngs_modulus == 210e9
 
 
 def test_without_file_and_segments_a_rotor_is_told_of_both() -> None:

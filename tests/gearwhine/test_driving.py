@@ -12,7 +12,7 @@ import pytest
 
 from coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
 from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.machine.loads import TorqueHistory, TorqueRipple, largest_torques
+from coupling.machine.loads import TorqueHistory, TorqueRipple, TorqueSlope, largest_torques
 from coupling.machine.speed_profile import free_speed
 from coupling.signals.spectrum import lines_at
 from coupling.statics.mean_mesh import mean_meshes
@@ -358,3 +358,77 @@ def test_the_largest_torques_are_those_of_constants_and_histories_together() -> 
     for part in ({}, {"operation": operation, "transient": run}):
         with pytest.raises(ValueError, match="thrust"):
             assemble(document | part)
+
+
+def two_motors(besides: dict[str, Any], **changed: Any) -> Case:
+    """A pinion that drives one gear and is driven by another, all of 22 teeth: 20 and 10 N m in, 30 N m out."""
+    steel = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7800 kg/m^3"}
+    places = {"first": "0 mm", "taker": "88 mm", "giver": "-88 mm"}
+    tooth = {"at": "100 mm", "teeth": 22, "module": "4 mm", "face_width": "20 mm"}
+    operation: dict[str, Any] = {
+        "speed": "1000 rpm",
+        "torque": 20,
+        "output": [{"rotor": "taker", "torque": 30} | besides, {"rotor": "giver", "torque": -10} | besides],
+    }
+    document: dict[str, Any] = {
+        "material": {"steel": steel},
+        "rotor": [
+            {
+                "name": name,
+                "material": "steel",
+                "axis": [place, 0],
+                "segments": [{"length": "200 mm", "diameter": "30 mm"}],
+            }
+            for name, place in places.items()
+        ],
+        "gear": [{"name": f"{name} gear", "rotor": name} | tooth for name in places],
+        "gear_pair": [
+            {"driver": driver, "driven": driven, "stiffness": {"model": "constant", "value": "2e8 N/m"}}
+            for driver, driven in (("first gear", "taker gear"), ("giver gear", "first gear"))
+        ],
+        "bearing": [
+            {"name": f"{name} {at}", "rotor": name, "seat": "ground", "at": at, "stiffness": {"xx": 1e8, "yy": 1e8}}
+            for name in places
+            for at in ("10 mm", "190 mm")
+        ],
+        "operation": operation | changed.pop("operation", {}),
+        "transient": {"revolutions": 2},
+    }
+    return parse_case(document | changed)
+
+
+def test_torque_taken_off_besides_is_against_the_rotation_of_a_driving_output_too() -> None:
+    """A second motor of 10 N m from which 2 N m are taken besides gives 8 N m in the end; the taker takes 32 N m.
+
+    Both shafts turn clockwise from +z: what is taken off is positive about z, what is given is negative.
+    """
+    besides = {
+        "over_time": {"time": [0, 1], "torque": [0, 2]},
+        "ripple": [{"amplitude": 1, "order": 1, "phase": "30 deg"}],
+    }
+    torques = driving(two_motors(besides), ()).torques
+    steady = {torque.rotor: torque.value for torque in torques if isinstance(torque, Torque)}
+    assert steady == pytest.approx({"first": 20.0, "taker": 30.0, "giver": -10.0})
+    last = {torque.rotor: torque.values[-1] for torque in torques if isinstance(torque, TorqueHistory)}
+    assert last == {"taker": 2.0, "giver": 2.0}
+    assert largest_torques(torques) == pytest.approx({"first": 20.0, "taker": 32.0, "giver": -10.0})
+    ripples = {torque.rotor: torque.amplitude for torque in torques if isinstance(torque, TorqueRipple)}
+    assert ripples == {"taker": 1.0, "giver": 1.0}
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_slope_of_a_driving_output_is_that_of_its_torque(sense: int) -> None:
+    """The load's line rises by 0.2 N m s: 1.5 of it brakes the taker's shaft and damps it, 0.5 drives the giver's."""
+    operation = {
+        "speed": f"{1000 * sense} rpm",
+        "motor": {"speed": [0, 500], "torque": [60, 60]},
+        "load": {"speed": [0, 500], "torque": [0, 100]},
+    }
+    case = two_motors({}, operation=operation, transient={"run": {"from": "300 rpm", "time": "10 ms"}})
+    rotors = build_machine(case, None, solve_gears(case)).rotors
+    slopes = {
+        torque.rotor: float(np.interp(0.8, torque.speed_ratios, torque.slopes))
+        for torque in driving(case, rotors).torques
+        if isinstance(torque, TorqueSlope)
+    }
+    assert slopes == pytest.approx({"first": 0.0, "taker": -1.5 * 0.2, "giver": 0.5 * 0.2})

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gearwhine.cli import run_command
 from gearwhine.output import file_stems
-from gearwhine.output.export import full_scale, periods, repeated, resampled
+from gearwhine.output.export import full_scale, low_passed, periods, repeated, resampled
 
 
 @given(st.floats(50.0, 15e3), st.floats(0.0, 6.0), st.sampled_from([1 / 163840, 1 / 44100, 1 / 96e3, 1.9e-5]))
@@ -25,6 +25,22 @@ def test_a_sine_above_the_audio_band_is_silent() -> None:
     signal = np.sin(2 * np.pi * 40e3 / 163840 * np.arange(16384))
     found = resampled(signal, 1 / 163840, 48_000)
     assert np.abs(found[len(found) // 4 : 3 * len(found) // 4]).max() < 1e-4
+
+
+def test_a_period_loses_its_lines_above_the_limit_alone() -> None:
+    times = np.arange(4096) / 4096 * 0.02  # 50 Hz between lines
+    low, high = np.cos(2 * np.pi * 3000 * times + 0.4), 20.0 * np.cos(2 * np.pi * 3050 * times)
+    found = low_passed(low + high, times[1], 3000.0, repeats=True)
+    np.testing.assert_allclose(found, low, atol=1e-12)
+    assert np.array_equal(low_passed(low + high, times[1], 1e6, repeats=True), low + high)
+
+
+def test_a_record_without_period_is_cut_off_at_the_limit() -> None:
+    times = np.arange(40_000) * 5e-6
+    low, high = np.cos(2 * np.pi * 2990 * times + 0.4), 20.0 * np.cos(2 * np.pi * 3310 * times)
+    found = low_passed(low + high, times[1], 3000.0, repeats=False)
+    middle = slice(10_000, 30_000)
+    np.testing.assert_allclose(found[middle], low[middle], atol=1e-3)
 
 
 @given(st.floats(1e-9, 1e9))

@@ -103,6 +103,37 @@ def test_nothing_to_go_through_twice_the_same_and_too_much() -> None:
         swept_keys(case, ["operation.torque=1:2:101", "operation.speed=1:2:100"])
 
 
+@pytest.mark.parametrize(
+    ("over", "part", "whole"),
+    [
+        (
+            ["housing.box.wall=6 mm,8 mm", "housing.box.wall.back=7 mm,9 mm"],
+            "housing.box.wall.back",
+            "housing.box.wall",
+        ),
+        (
+            ["housing.box.wall.back=7 mm,9 mm", "housing.box.wall=6 mm,8 mm"],
+            "housing.box.wall.back",
+            "housing.box.wall",
+        ),
+        (["operation.over_time.time,operation.over_time=1,2"], "operation.over_time.time", "operation.over_time"),
+        (["operation={speed=1},{speed=2}"], "operation.speed", "operation"),
+    ],
+)
+def test_a_table_and_a_key_of_it_are_not_swept_both(over: list[str], part: str, whole: str) -> None:
+    """The table, set behind its key, would take the key's value back, and the axis would tell what is not there."""
+    case = load_case("small-gearbox", ["sweep.speed=['1500 rpm']"]).case
+    with pytest.raises(CaseError, match=f"none holds another: {part}, which is swept too, is a part of {whole}"):
+        swept_keys(case, over)
+
+
+def test_keys_beside_each_other_in_one_table_are_swept() -> None:
+    keys = swept_keys(
+        load_case("small-gearbox").case, ["housing.box.wall.back=7 mm,9 mm", "housing.box.wall.top=6 mm,8 mm"]
+    )
+    assert [key.key for key in keys] == ["housing.box.wall.back", "housing.box.wall.top"]
+
+
 @given(
     st.decimals(-1000, 1000, places=3),
     st.decimals(-1000, 1000, places=3),

@@ -21,7 +21,7 @@ from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Case, Draft
 from gearwhine.case.operation import Operation, listed
-from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, TorsionProbe, TorsionSpring
+from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, TorsionProbe, TorsionSpring
 from gearwhine.case.speeds_and_torques import pair_torques
 
 if TYPE_CHECKING:
@@ -48,6 +48,10 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
         for kind, places in stations.items():
             for place, at in enumerate(places):
                 yield from check_station(rotor, at, ("rotor", index, kind, place, "at"))
+        for place, disc in enumerate(rotor.discs):
+            if isinstance(disc, RoundDisc) and disc.density is None:
+                location = ("rotor", index, "discs", place, "material")
+                yield from _check_part_material(rotor, disc.material, disc.at, location)
         yield from _check_bow(index, rotor)
     for keys, entries in _analysed(draft):
         for place, entry in enumerate(entries):
@@ -66,6 +70,8 @@ def check_shafts(draft: Draft) -> Iterator[Finding]:
         carrier = draft.rotor(gear.rotor)
         if carrier is not None and gear.at is not None:
             yield from check_station(carrier, gear.at, ("gear", index, "at"))
+            if gear.face_width is not None or gear.given_inertia is None:
+                yield from _check_part_material(carrier, gear.material, gear.at, ("gear", index, "material"))
 
 
 def _analysed(
@@ -86,6 +92,18 @@ def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Findi
     """Yield a finding where a station lies beyond the right end of its rotor."""
     if at > rotor.length * (1.0 + 1e-9):
         yield Finding(location, f'a station on rotor "{rotor.name}", which is {millimetres(rotor.length)} long')
+
+
+def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
+    """Yield a part on a shaft from a file, without a material of its own, where the shaft does not tell one."""
+    if rotor.saved is None or own or rotor.material or at > rotor.length:
+        return
+    if rotor.material_of(None, at, {}) is None:
+        expected = (
+            f'the name of a material, here or as material of rotor "{rotor.name}": its file has not one that a solid '
+            f"can have at {millimetres(at)}"
+        )
+        yield Finding(location, expected, NOTHING)
 
 
 def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:

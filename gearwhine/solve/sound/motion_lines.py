@@ -15,7 +15,7 @@ import numpy.typing as npt
 from coupling import CoupledMachine, amplitude_spectrum
 from coupling.linear.excitation_orders import excitation_lines
 from coupling.signals.line_names import LineName, line_names
-from coupling.signals.spectrum import Spectrum
+from coupling.signals.spectrum import Spectrum, at_time_zero
 from coupling.signals.tones import hann_tones
 from coupling.signals.transfer_paths import HousingPaths, housing_paths
 from gearwhine.case import Case
@@ -49,7 +49,7 @@ class MotionLines:
     frequencies : ndarray, shape (l,)
         Frequencies above 0, ascending, each once [Hz].
     forces : mapping of str to ndarray of complex, shape (l, d)
-        Forces and moments of each bearing on the housing [N, N m].
+        Forces and moments of each bearing on the housing [N, N m], with their phases at t = 0.
     tolerance : float
         Distance of a line from the frequency of its cause, for its name [Hz].
     """
@@ -63,6 +63,11 @@ class MotionLines:
         inside = (self.frequencies >= low) & (self.frequencies <= high * (1.0 + 1e-9))
         forces = {name: force[inside] for name, force in self.forces.items()}
         return MotionLines(self.frequencies[inside], forces, self.tolerance)
+
+    def at_time_zero(self, start: float) -> "MotionLines":
+        """Return the lines with their phases at t = 0, where they are those at the start of a record [s]."""
+        forces = {name: at_time_zero(force.T, self.frequencies, start).T for name, force in self.forces.items()}
+        return MotionLines(self.frequencies, forces, self.tolerance)
 
     def paths(self, machine: CoupledMachine) -> HousingPaths:
         """Motion of the housing by each bearing's force, see :func:`coupling.signals.transfer_paths.housing_paths`."""
@@ -159,8 +164,10 @@ def lines_of_run(solved: SolvedTransient, limit: float) -> MotionLines:
         return MotionLines(np.zeros(0), {}, _EXACT)
     spacing = next(iter(spectra.values())).spacing
     if solved.record.sampling.window == "uniform":
-        return _lines_of(spectra, _EXACT * spacing).between(np.finfo(float).tiny, limit)
-    return tones_of(spectra, histories.bearing_axes).between(np.finfo(float).tiny, limit)
+        lines = _lines_of(spectra, _EXACT * spacing)
+    else:
+        lines = tones_of(spectra, histories.bearing_axes)
+    return lines.between(np.finfo(float).tiny, limit).at_time_zero(solved.record_start)
 
 
 def tones_of(spectra: Mapping[str, Spectrum], axes: Mapping[str, tuple[int, ...]]) -> MotionLines:

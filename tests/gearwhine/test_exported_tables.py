@@ -1,0 +1,105 @@
+"""Tables as CSV: every number that a page tells is there with all its digits, as in the summary."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearwhine as gw
+from gearwhine.analyses.case import export_results
+from gearwhine.output.export import _csv
+from gearwhine.output.sections import Column, Table
+
+THIRD = 1.0 / 3.0
+
+
+def rows_of(text: str) -> list[list[str]]:
+    return list(csv.reader(text.splitlines()))
+
+
+def test_numbers_are_written_whatever_the_page_shows() -> None:
+    columns = (
+        Column("name", "name"),
+        Column("force [N]", "force_n", "z.1f", shown=lambda row: f"about {row['force_n']:.1f}"),
+        Column("share", "share", shown=lambda row: f"{100 * row['share']:.0f} %"),
+        Column("x, y [mm]", "position_m", ".2f", 1e3),
+        Column("second [mm]", "position_m.1", ".2f", 1e3),
+        Column("largest", lambda row: f"{row['peak']['of']:.2g} at {row['peak']['at_hz']:.0f} Hz", numbers=("peak",)),
+        Column("kind", "kind", shown=lambda row: row["kind"].upper()),
+        Column("good", "good"),
+    )
+    first = {"name": "a", "force_n": THIRD, "share": THIRD, "position_m": [THIRD, 2.0 * THIRD], "good": True}
+    first |= {"peak": {"of": THIRD, "at_hz": 7.0 * THIRD}, "kind": "bent"}
+    second = first | {"name": "b", "force_n": 2, "position_m": [THIRD], "good": False}
+    table = Table(columns, (first, second))
+    headings, one, other = rows_of(_csv(table))
+    assert headings == [
+        "name",
+        "force [N]",
+        "share (share)",
+        "x, y [mm] 1",
+        "x, y [mm] 2",
+        "second [mm]",
+        "largest",
+        "peak of",
+        "peak at_hz",
+        "kind",
+        "good",
+    ]
+    numbers = [THIRD, THIRD, 1e3 * THIRD, 2e3 * THIRD, 2e3 * THIRD]
+    assert one[0] == "a"
+    assert [float(cell) for cell in one[1:6]] == numbers
+    assert one[6:] == ["0.33 at 2 Hz", repr(THIRD), repr(7.0 * THIRD), "BENT", "yes"]
+    assert (other[1], other[4], other[5]) == ("2", "", "")
+    # The page is as it was.
+    assert table.filled()[1][0] == ["a", "about 0.3", "33 %", "333.33, 666.67", "666.67", "0.33 at 2 Hz", "BENT", "yes"]
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Tables of rotors and gears of the bundled pair."""
+    folder = tmp_path_factory.mktemp("tables")
+    study = gw.load("spur-pair")
+    study.rotors().write(folder, pictures=False)
+    study.gears().write(folder, pictures=False)
+    export_results(folder, ("csv",))
+    return folder
+
+
+def table_rows(folder: Path, part: str) -> list[dict[str, str]]:
+    (path,) = (folder / "exports").glob(f"*{part}*.csv")
+    return list(csv.DictReader(rows_text(path)))
+
+
+def rows_text(path: Path) -> list[str]:
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def summary(folder: Path, command: str) -> dict[str, Any]:
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in folder.rglob("summary.json")]
+    (document,) = [one for one in found if one["command"] == command]
+    return dict(document)
+
+
+def test_roll_angles_and_sliding_have_all_digits(exported: Path) -> None:
+    (pair,) = summary(exported, "gears")["pairs"]
+    rows = table_rows(exported, "Path-of-contact")
+    for row, point in zip(rows, pair["path_of_contact"], strict=True):
+        for side in ("driver", "driven"):
+            for key in (f"{side}_roll_angle_rad", f"{side}_specific_sliding"):
+                (cell,) = (value for heading, value in row.items() if heading.endswith(f"({key})"))
+                assert float(cell) == point[key]
+
+
+def test_reactions_and_strain_have_all_digits(exported: Path) -> None:
+    rotor = summary(exported, "rotors")["rotors"][0]
+    rows = table_rows(exported, f"{rotor['name']}-Under-its-weight")
+    for row, bearing in zip(rows, rotor["static"]["bearings"], strict=True):
+        assert [float(row["x [N]"]), float(row["y [N]"])] == bearing["load_n"][:2]
+    rows = table_rows(exported, f"{rotor['name']}-Turning")
+    whirl = rotor["whirl"][0]
+    for row, decrement, strained in zip(rows, whirl["log_decrement"], whirl["most_strained"], strict=False):
+        assert float(row["log decrement (log_decrement)"]) == decrement
+        assert float(row["strained.share"]) == strained["share"]
