@@ -397,23 +397,26 @@ def two_motors(besides: dict[str, Any], **changed: Any) -> Case:
     return parse_case(document | changed)
 
 
-def test_torque_taken_off_besides_is_against_the_rotation_of_a_driving_output_too() -> None:
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_torque_taken_off_besides_is_against_the_rotation_of_a_driving_output_too(sense: float) -> None:
     """A second motor of 10 N m from which 2 N m are taken besides gives 8 N m in the end; the taker takes 32 N m.
 
-    Both shafts turn clockwise from +z: what is taken off is positive about z, what is given is negative.
+    At a positive speed both shafts turn clockwise from +z: what is taken off is positive about z, what is given is
+    negative.
     """
     besides = {
         "over_time": {"time": [0, 1], "torque": [0, 2]},
         "ripple": [{"amplitude": 1, "order": 1, "phase": "30 deg"}],
     }
-    torques = driving(two_motors(besides), ()).torques
+    torques = driving(two_motors(besides, operation={"speed": f"{1000 * sense} rpm"}), ()).torques
     steady = {torque.rotor: torque.value for torque in torques if isinstance(torque, Torque)}
-    assert steady == pytest.approx({"first": 20.0, "taker": 30.0, "giver": -10.0})
+    assert steady == pytest.approx({"first": 20.0 * sense, "taker": 30.0 * sense, "giver": -10.0 * sense})
     last = {torque.rotor: torque.values[-1] for torque in torques if isinstance(torque, TorqueHistory)}
-    assert last == {"taker": 2.0, "giver": 2.0}
-    assert largest_torques(torques) == pytest.approx({"first": 20.0, "taker": 32.0, "giver": -10.0})
+    assert last == {"taker": 2.0 * sense, "giver": 2.0 * sense}
+    largest = {"first": 20.0 * sense, "taker": 32.0 * sense, "giver": -10.0 * sense}
+    assert largest_torques(torques) == pytest.approx(largest)
     ripples = {torque.rotor: torque.amplitude for torque in torques if isinstance(torque, TorqueRipple)}
-    assert ripples == {"taker": 1.0, "giver": 1.0}
+    assert ripples == {"taker": sense, "giver": sense}
 
 
 @pytest.mark.parametrize("sense", [1, -1])
