@@ -457,17 +457,18 @@ MODAL = (
 
 
 class _HousingLines(NamedTuple):
-    """Frequencies up to the limit [Hz], the lines of the housing modes there, and their window."""
+    """Frequencies up to the limit [Hz], the lines of the housing modes there, their window, and the record's start."""
 
     frequencies: "npt.NDArray[np.float64]"
     lines: "npt.NDArray[np.complex128]"
     window: str
+    record_start: float
 
 
 def _housing_lines(row: TracedTransient) -> _HousingLines | None:
     assert row.signature is not None
     lines = row.signature.housing_lines(row.transient.trusted_limit)
-    return None if lines is None else _HousingLines(*lines)
+    return None if lines is None else _HousingLines(*lines, row.signature.record_start)
 
 
 HOUSING_LINES = (
@@ -480,7 +481,7 @@ HOUSING_LINES = (
         ("housing_mode", "housing_line", "part"),
         "m kg0.5 s-2",
         "complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
-        attributes=lambda row: {"window": row.window},
+        attributes=lambda row: {"window": row.window, "record_start_s": row.record_start},
     ),
 )
 """Quantities of the spectrum of the housing modes, for operating shapes."""

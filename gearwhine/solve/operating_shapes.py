@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
+from coupling.signals.spectrum import at_time_zero
 from coupling.signals.tones import tones_at
 from gearwhine.case import CaseError, Problem
 from gearwhine.output.sections import arrowed
@@ -98,18 +99,26 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
         # A tone of the sensors between the lines, where there is one.
         near = listed[np.abs(listed - lines[place]) < 0.5 * spacing]
         chosen[place] = float(near[0]) if near.size else float(lines[place])
-    window = content["housing_acceleration_spectrum"].attrs.get("window", "uniform")
+    told = content["housing_acceleration_spectrum"].attrs
     named = [(chosen[place], _name(content, chosen[place], spacing)) for place in sorted(chosen)]
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, window, named)
+    start = float(told.get("record_start_s", 0.0))
+    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, named)
 
 
-def _run_lines(lines: ComplexArray, spacing: float, window: str, named: Sequence[tuple[float, str]]) -> list[RunLine]:
-    """Operating shapes at frequencies [Hz] with names, from the lines of the housing's modes, shape (n_modes, m)."""
-    frequencies, tones = tones_at(lines, spacing, [hertz for hertz, _ in named], window)
+def _run_lines(
+    lines: ComplexArray, spacing: float, window: str, start: float, named: Sequence[tuple[float, str]]
+) -> list[RunLine]:
+    """Operating shapes at frequencies [Hz] with names, from the lines of the housing's modes, shape (n_modes, m).
+
+    Phases are those at t = 0; a tone stands in lines beside each other by their phases at the record's start [s].
+    """
+    since_start = at_time_zero(lines, np.arange(lines.shape[-1]) * np.float64(spacing), -start)
+    frequencies, tones = tones_at(since_start, spacing, [hertz for hertz, _ in named], window)
+    modal = at_time_zero(tones, frequencies, start).T
     return [
-        RunLine(OperatingShape(_TWO_PI * hertz, modal), name)
-        for hertz, modal, (_, name) in zip(frequencies.tolist(), tones.T, named, strict=True)
-        if modal.any()
+        RunLine(OperatingShape(_TWO_PI * hertz, motion), name)
+        for hertz, motion, (_, name) in zip(frequencies.tolist(), modal, named, strict=True)
+        if motion.any()
     ]
 
 
@@ -146,7 +155,7 @@ def highest_lines(signature: "SolvedSignature", limit: float, most: int) -> list
         if rank < len(lines)
     )
     spacing = float(frequencies[1])
-    return _run_lines(spectrum, spacing, window, _chosen(listed, spacing, most))
+    return _run_lines(spectrum, spacing, window, signature.record_start, _chosen(listed, spacing, most))
 
 
 def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
@@ -172,9 +181,10 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     if not _same_shapes(shapes, positions, record):
         return []
     pairs = zip(listed.T.ravel().tolist(), map(str, names.T.ravel()), strict=True)
-    spacing, window = float(lines[1]), stored["housing_acceleration_spectrum"].attributes.get("window", "uniform")
+    spacing, told = float(lines[1]), stored["housing_acceleration_spectrum"].attributes
     chosen = _chosen(((hertz, name) for hertz, name in pairs if np.isfinite(hertz)), spacing, most)
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, window, chosen)
+    start = float(told.get("record_start_s", 0.0))
+    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, chosen)
 
 
 def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) -> bool:

@@ -25,8 +25,8 @@ def run_on_file(gearwhine, tmp_path: Path) -> Path:
     spectrum = np.zeros((len(content["housing_mode"]), 21, 2))
     spectrum[1, 10, 1] = 1.0
     content["housing_acceleration_spectrum"] = (("housing_mode", "housing_line", "part"), spectrum)
-    content["line_frequency"] = (("sensor", "line"), [[500.0, np.nan]])
-    content["line_name"] = (("sensor", "line"), [["1× shaft", ""]])
+    content["line_frequency"] = (("sensor", "line"), [[500.0, np.nan]] * 2)
+    content["line_name"] = (("sensor", "line"), [["1× shaft", ""]] * 2)
     content = content.assign_coords(housing_line=np.arange(21) * 50.0)
     path.unlink()
     content.to_netcdf(path, engine="h5netcdf")
