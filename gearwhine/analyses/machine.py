@@ -31,6 +31,7 @@ from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings
 from gearwhine.solve.plausibility import (
     add_uncertainty,
     centrifugal_warnings,
+    constant_speed_warnings,
     machine_warnings,
     unstable_modes_warnings,
 )
@@ -399,7 +400,7 @@ def steady(
         exact=exact,
     )
     document = steady_document(case.title, solved)
-    add_warnings(document, machine_warnings(loaded.machine))
+    add_warnings(document, [*constant_speed_warnings(case), *machine_warnings(loaded.machine)])
     loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":

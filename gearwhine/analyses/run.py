@@ -47,6 +47,7 @@ from gearwhine.solve.plausibility import (
     bearing_load_warnings,
     beyond_limit_warnings,
     settling_warnings,
+    unbalanced_torque_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import solve_rotors
@@ -182,7 +183,7 @@ def run(
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
             run_signature = solve_run_signature(case, transient)
-            add_warnings(document, run_signature_warnings(case, transient))
+            add_warnings(document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(case)])
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)

@@ -364,7 +364,8 @@ class Transient(Table):
     discard: Annotated[float, Quantity(units.RATIO, at_least=0.0)] = Field(default_factory=_half_the_run)
     """Revolutions before spectra are taken. Default: half of them; of a run 0."""
     points_per_revolution: Annotated[int, Whole(200, 1_000_000)] = 200
-    """Recorded points of each revolution."""
+    """Least number of recorded points of each revolution, raised to a power of two; no step is longer than one of them
+    would be."""
     tolerance: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=0.1)] = 5e-4
     """Relative tolerance of the steps. At the default the five highest lines of a sensor were within 2.5 % and those of
     a mesh force within 0.1 % of those at 1e-5, on two bundled cases; 1e-3 takes 0.7 of the steps for 5 %, 1e-4 twice

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from gearwhine.case.errors import NOTHING, CaseError, Problem
 from gearwhine.case.gears import readable_pairs, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
@@ -175,8 +176,38 @@ def table_range(case: Case, rotor: str) -> tuple[float, float]:
 
     Zero and infinity for bearings without tables.
     """
-    tables = [bearing.speeds for bearing in case.bearing if bearing.rotor == rotor and bearing.speeds is not None]
-    return max((table[0] for table in tables), default=0.0), min((table[-1] for table in tables), default=math.inf)
+    own = [bearing for bearing in case.bearing if bearing.rotor == rotor]
+    saved, replaced = case.rotor_named(rotor).saved, {bearing.name for bearing in own}
+    of_file = [bearing.speeds for bearing in (saved.bearings if saved else ()) if bearing.name not in replaced]
+    tables = [table for table in (*(bearing.speeds for bearing in own), *of_file) if table is not None]
+    lowest = max((float(table[0]) for table in tables), default=0.0)
+    return lowest, min((float(table[-1]) for table in tables), default=math.inf)
+
+
+def range_of_tables(case: Case, lowest: float, highest: float) -> tuple[float, float]:
+    """Return the part of a range of speeds of the first driver's rotor that the tables of all bearings hold.
+
+    Parameters
+    ----------
+    lowest, highest : float
+        Speeds without sense [rad/s].
+
+    Raises
+    ------
+    CaseError
+        Where the tables have no range in common with it.
+    """
+    low, high = lowest, highest
+    for name, speed in rotor_speeds(case).items():
+        least, most = table_range(case, name)
+        ratio = abs(speed / case.operation.speed) if case.operation is not None and case.operation.speed else 0.0
+        if ratio > 0.0:
+            low, high = max(low, least / ratio), min(high, most / ratio)
+    if not low < high:
+        raise CaseError(
+            [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
+        )
+    return low, high
 
 
 def _turned(case: Case, rotor: str, speeds: tuple[float, ...]) -> tuple[float, ...]:

@@ -17,6 +17,7 @@ from gearwhine.case.speeds_and_torques import gear_train_of
 
 FloatArray = npt.NDArray[np.float64]
 
+_ROUNDING = 1e-9  # part of the largest torque below which a sum of torques is rounding
 _SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a torque line
 
 
@@ -84,6 +85,24 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
         operation.gravity,
         turning,
     )
+
+
+def unbalanced_torque(case: Case) -> float:
+    """Largest torque that the histories `over_time` leave unbalanced in the train, at the first driver's rotor [N m].
+
+    Where it is not zero the train as a whole turns away from its nominal rotation.
+    """
+    ratios = speed_ratios(case)
+    shares = applied_torques(case, 1.0)
+    histories = [one for one in _variations(case, shares) if isinstance(one, TorqueHistory)]
+    if not shares or not histories:
+        return 0.0
+    first = float(ratios[shares[0].rotor])
+    times = np.unique(np.concatenate([one.times for one in histories]))
+    net = sum(np.interp(times, one.times, one.values) * float(ratios[one.rotor]) / first for one in histories)
+    size = max(float(np.abs(one.values).max() * abs(float(ratios[one.rotor]) / first)) for one in histories)
+    largest = float(np.abs(net).max())
+    return largest if largest > _ROUNDING * size else 0.0
 
 
 def train_inertia(case: Case, rotors: Sequence[RotorComponent]) -> float:

@@ -19,9 +19,9 @@ from coupling.linear.frequency_response import (
 )
 from coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require, rotor_speeds, table_range
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import NOTHING
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, with_sense_of_operation
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, range_of_tables, with_sense_of_operation
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 
@@ -159,16 +159,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
         if len(speeds) < 2:
             raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
         return with_sense_of_operation(case, speeds)
-    low, high = 0.0, BEYOND_OPERATION * abs(operation)
-    for name, speed in rotor_speeds(case).items():
-        least, most = table_range(case, name)
-        ratio = abs(speed / operation)
-        if ratio > 0.0:
-            low, high = max(low, least / ratio), min(high, most / ratio)
-    if not low < high:
-        raise CaseError(
-            [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
-        )
+    low, high = range_of_tables(case, 0.0, BEYOND_OPERATION * abs(operation))
     return with_sense_of_operation(case, np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
 
 

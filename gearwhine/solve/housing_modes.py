@@ -27,6 +27,7 @@ from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, 
 from gearwhine.output.files import MODE_CACHE_FILE, file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.part_fits import surface_point_warnings
 from housing import (
     HealthReport,
     Housing,
@@ -336,6 +337,7 @@ def solve_housing(
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
         warnings=warnings
+        + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
     )

@@ -40,7 +40,7 @@ def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = No
         *(entry for bearing in case.bearing for entry in _of_bearing(case, bearing, rotors[bearing.rotor], bores)),
         *_of_gears(case, rotors),
         *_of_faces(case),
-        *(() if mesh is None else _of_sensors(case, mesh)),
+        *(() if mesh is None else surface_point_warnings(case, mesh)),
     ]
 
 
@@ -142,19 +142,27 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
                 )
 
 
-def _of_sensors(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
-    """Warn of sensors that are given beside the surface of a drawing or mesh, with the point where they sit."""
+def surface_point_warnings(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
+    """Warn of sensors and lumped masses that are given beside the housing's surface, with the point where they sit."""
+    if case.housing is None:
+        return
     far = _BESIDE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    for sensor in () if case.housing is None else case.housing.sensor:
-        place = sensor_port(mesh, sensor.build()).position
-        off = float(np.linalg.norm(place - sensor.position))
+    placed = [
+        *(("sensor", one.name, one.position, sensor_port(mesh, one.build()).position) for one in case.housing.sensor),
+        *(
+            ("mass", one.name, one.position, one.build().place(mesh).position)
+            for one in case.housing.mass
+            if one.position is not None
+        ),
+    ]
+    for kind, name, position, place in placed:
+        off = float(np.linalg.norm(place - position))
         if off > far:
             at = ", ".join(f"{round(1e3 * float(value), 3) + 0.0:.6g}" for value in place)
             yield warning(
-                "sensor place",
-                f'sensor "{sensor.name}": its position is {1e3 * off:.3g} mm from the surface; it sits at ({at}) mm',
-                sensor=sensor.name,
-                beside_m=off,
+                f"{kind} place",
+                f'{kind} "{name}": its position is {1e3 * off:.3g} mm from the surface; it sits at ({at}) mm',
+                **{kind: name, "beside_m": off},
             )
 
 

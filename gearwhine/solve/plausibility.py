@@ -19,6 +19,7 @@ from coupling.linear.complex_modes import Stability
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
+from gearwhine.from_case.driving import unbalanced_torque
 from gearwhine.output.quantity import warning
 from gearwhine.solve.signature import SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
@@ -183,6 +184,44 @@ def operation_warnings(case: Case) -> list[dict[str, Any]]:
             )
             warnings.append(warning("torque line", message, line=name, line_n_m=torque, torque_n_m=operation.torque))
     return warnings
+
+
+def unbalanced_torque_warnings(case: Case) -> list[dict[str, Any]]:
+    """Warn of torques over time that do not balance, so that a train turns away from its nominal rotation.
+
+    Parameters
+    ----------
+    case : Case
+        With an operation and a transient.
+    """
+    net = unbalanced_torque(case)
+    if net == 0.0:
+        return []
+    assert case.transient is not None
+    free = case.transient.run is not None and case.transient.run.free
+    speed = "the speed told is that of motor and load alone" if free else "its speed is no longer that of operation"
+    remedy = "put them into [operation.motor] and [operation.load]" if free else "balance them, or take a free run"
+    message = (
+        f"torques `over_time` leave up to {net:.4g} N m at the first driver unbalanced: the train turns away from its "
+        f"nominal rotation, {speed}, and meshes, unbalance and spectra follow the nominal one; {remedy}"
+    )
+    return [warning("unbalanced torque", message, torque_n_m=net)]
+
+
+def constant_speed_warnings(case: Case) -> list[dict[str, Any]]:
+    """Warn of loads over time, which have no part in a motion that repeats at constant speed and torque."""
+    operation = case.operation
+    if operation is None:
+        return []
+    left_out = [key for key in ("over_time",) if operation.over_time is not None]
+    left_out += ["output.over_time" for output in operation.output if output.over_time is not None][:1]
+    if operation.base is not None and operation.base.over_time is not None:
+        left_out.append("base.over_time")
+    if not left_out:
+        return []
+    keys = " and ".join(f"operation.{key}" for key in left_out)
+    message = f"{keys} take no part in a motion that repeats, which is that at constant torque; `run` has them"
+    return [warning("loads over time", message, keys=[f"operation.{key}" for key in left_out])]
 
 
 FAST = 5e5

@@ -25,7 +25,7 @@ from coupling.time.histories import Histories, modal_record, transient_outputs, 
 from coupling.time.histories import histories as coupled_histories
 from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, with_sense_of_operation
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
 from gearwhine.from_case.machine import base_motion
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
@@ -367,7 +367,7 @@ def _speed_range(case: Case) -> tuple[float, float]:
     """Lowest and highest speed of the branch [rad/s]."""
     assert case.operation is not None
     if case.sweep is None:
-        return _SLOWEST * abs(case.operation.speed), BEYOND_OPERATION * abs(case.operation.speed)
+        return range_of_tables(case, _SLOWEST * abs(case.operation.speed), BEYOND_OPERATION * abs(case.operation.speed))
     speeds = [abs(speed) for speed in case.sweep.speeds]
     low, high = min(speeds), max(speeds)
     if not 0.0 < low < high:

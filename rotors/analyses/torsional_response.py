@@ -111,7 +111,7 @@ def torsional_response(
     springs, dashpots : sequence of AxisSpring, sequence of TorsionalDashpot
         Springs and dashpots to ground.
     damping_ratio : float
-        Damping ratio ζ of the shaft's material and of the springs.
+        Damping ratio ζ of the shaft's material and of its couplings; springs to ground have dashpots beside them.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def torsional_response(
     dashed = np.zeros(shaft.nodes.size)
     for dashpot in dashpots:
         dashed[shaft.node_at(dashpot.at)] += dashpot.coefficient * unit**2
-    terms = modulus * shaft.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
+    terms = shaft.finite_stiffness[:, 0] + 1j * omega[:, None] * dashed
     terms = terms - omega[:, None] ** 2 * shaft.node_inertia[:, 0]
     transfer_matrices = in_units_of(shaft.transfer_matrices(omega**2 / modulus), modulus)
     softness = _softness(rotor, shaft, omega, modulus)

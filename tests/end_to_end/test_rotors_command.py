@@ -362,3 +362,13 @@ def test_damping_of_a_coupling_that_whirl_is_told_without_is_warned_of(gearwhine
         found = [one["message"] for one in outcome.document["warnings"] if one["name"] == "rotating damping"]
         assert bool(found) == told
         assert all("with it by `gearwhine system`" in message for message in found)
+
+
+def test_a_written_ross_file_of_a_rotor_with_bearing_tables_is_a_case_of_its_own(gearwhine: Any) -> None:
+    """Where the case names no speeds, those of its tables are taken, whose lowest stands for rest."""
+    few = ("--set", "rotor_analysis.modes=2", "-q")
+    assert gearwhine("rotors", "overhung-fan", "--write-ross", "-o", "ross", *few).code == 0
+    outcome = gearwhine("rotors", "ross/fan.ross.toml", "--json", "-o", "again", *few)
+    assert outcome.code == 0, outcome.err
+    (rotor,) = outcome.document["rotors"]
+    assert rotor["rest_bearings_at_rpm"] == pytest.approx(200.0)

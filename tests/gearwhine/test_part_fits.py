@@ -122,3 +122,19 @@ def test_a_bearing_without_a_seat_beside_a_housing_is_named() -> None:
     assert warnings_of(load_case("small-gearbox", ["bearing.output-front.seat=ground"]).case) == ()
     (told,) = warnings_of(load_case("small-gearbox", ["bearing.*.seat=ground"]).case)
     assert "no bearing stands in a seat" in told
+
+
+@pytest.mark.slow
+def test_a_mass_and_a_sensor_beside_a_box_are_told_where_they_sit() -> None:
+    """Both 15 mm above the roof at 160 mm: they sit on it."""
+    changes = {
+        "housing.box.mesh_size": "60 mm",
+        "housing.mass": [{"name": "motor", "mass": "5 kg", "position": ["20 mm", "175 mm", "30 mm"]}],
+        "housing.sensor.top.position": ["20 mm", "175 mm", "30 mm"],
+    }
+    study = gw.load("small-gearbox", changes)
+    told = {one["name"]: one for one in study.modes().document["warnings"]}
+    for kind, name in (("mass", "motor"), ("sensor", "top")):
+        assert told[f"{kind} place"][kind] == name
+        assert told[f"{kind} place"]["beside_m"] == pytest.approx(15e-3, abs=1e-6)
+        assert "15 mm from the surface; it sits at (20, 160, 30) mm" in told[f"{kind} place"]["message"]

@@ -286,6 +286,19 @@ def test_torsional_response_of_two_inertias_and_of_a_damped_rod() -> None:
     np.testing.assert_allclose(np.abs(absorbed.angle([0.0, 0.7, 2.0])), 1.0 / (impedance * 4000.0), rtol=1e-9)
 
 
+def test_a_spring_to_ground_has_no_damping_of_the_shaft() -> None:
+    """A disc on a stiff rod and a spring: θ = T / (k + iωc - ω²J), c of the dashpot beside the spring alone."""
+    stiff = ShaftMaterial(211e15, 81.2e15, 0.0)
+    rod = Rotor("rod", [Segment(0.1, 0.2, 0.0, stiff)], [Disc(0.1, 1.0, 0.3)])
+    spring, omega = AxisSpring(0.0, 2e4), np.array([50.0, 250.0, 400.0])
+    for dashpots, c in (((), 0.0), ((TorsionalDashpot(0.0, 5.0),), 5.0)):
+        found = torsional_response(
+            rod, [Torque(0.1, 3.0)], omega, springs=[spring], dashpots=dashpots, damping_ratio=0.02
+        )
+        expected = 3.0 / (2e4 + 1j * omega * c - omega**2 * 0.3)
+        np.testing.assert_allclose(found.angle([0.1])[:, 0], expected, rtol=1e-6)
+
+
 def test_torsional_resonance_is_at_the_natural_frequency() -> None:
     natural = solve_torsional_modes(SHAFT, count=3).frequencies[1]
     ratio = 0.01

@@ -1,0 +1,53 @@
+"""Loads over time that a result cannot follow are told: unbalanced torques, and those that steady motions leave out."""
+
+import math
+
+import pytest
+
+import gearwhine as gw
+from gearwhine.case.speeds_and_torques import range_of_tables, table_range
+from gearwhine.from_case.driving import unbalanced_torque
+
+RAMP = {"time": ["0 s", "1 ms"], "torque": ["0 N*m", "6 N*m"]}
+OUTPUT = [{"rotor": "output", "torque": "20 N*m", "over_time": RAMP}]
+
+
+def test_torque_taken_off_over_time_is_unbalanced_unless_the_input_gives_it() -> None:
+    """At the first driver, over the ratio of speeds: here 28 teeth drive as many."""
+    alone = gw.load("spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT}).case
+    assert unbalanced_torque(alone) == pytest.approx(6.0)
+    both = gw.load(
+        "spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": RAMP}
+    ).case
+    assert unbalanced_torque(both) == 0.0
+    shared = gw.load("spur-pair", {"operation.over_time": RAMP}).case
+    assert unbalanced_torque(shared) == 0.0
+
+
+def test_a_run_under_unbalanced_torques_says_so() -> None:
+    changes = {
+        "operation.torque": "20 N*m",
+        "operation.output": OUTPUT,
+        "transient.revolutions": 1,
+        "transient.discard": 0.5,
+    }
+    warnings = {one["name"]: one for one in gw.load("spur-pair", changes).run().document["warnings"]}
+    assert warnings["unbalanced torque"]["torque_n_m"] == pytest.approx(6.0)
+    assert "balance them, or take a free run" in warnings["unbalanced torque"]["message"]
+
+
+def test_a_steady_motion_says_what_loads_it_leaves_out() -> None:
+    study = gw.load("spur-pair", {"operation.over_time": RAMP})
+    warnings = {one["name"]: one for one in study.steady().document["warnings"]}
+    assert warnings["loads over time"]["keys"] == ["operation.over_time"]
+    assert "loads over time" not in {one["name"] for one in gw.load("spur-pair").steady().document["warnings"]}
+
+
+def test_a_branch_over_speed_keeps_within_the_tables_of_the_bearings() -> None:
+    case = gw.load("overhung-fan").case
+    low, high = table_range(case, "fan")
+    assert 0.0 < low < high < math.inf
+    assert range_of_tables(case, 0.0, math.inf) == pytest.approx((low, high))
+    assert range_of_tables(case, 2.0 * low, 0.5 * high) == pytest.approx((2.0 * low, 0.5 * high))
+    with pytest.raises(gw.CaseError, match="tables over speed with a range in common"):
+        range_of_tables(case, 2.0 * high, 3.0 * high)
