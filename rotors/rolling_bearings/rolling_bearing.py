@@ -4,6 +4,8 @@ The inner ring moves by q = (x, y, z, rotation about x, rotation about y) agains
 centre. A row's own direction is +1 where pushing the inner ring towards +z loads its contacts, −1 where −z does.
 Double-row and paired bearings stand back to back, face to face or in tandem. A floating bearing has an outer ring that
 slides in its seat along z, without friction: it takes the place at which the elements have no axial force.
+
+Forces of the elements and the 5x5 bearing stiffness follow in :mod:`rotors.rolling_bearings.equilibrium`.
 """
 
 from collections.abc import Sequence

@@ -1,5 +1,7 @@
 """Exact transfer matrices of a shaft element: Timoshenko beam in bending, rod in torsion or along its axis.
 
+The equations; :mod:`rotors.transfer_matrix.timoshenko_kernels` has them compiled.
+
 Bending, at circular frequency ω, with the section's displacement x and rotation β, under a static axial
 force P (tension positive). From the energy ½ ∫ κGA (x' − β)² + EI β'² + P x'² dz the transverse force is
 ``f_x = κGA (x' − β) + P x'`` and the bending moment ``f_β = EI β'``; with g = κGA / (κGA + P)::
