@@ -63,8 +63,8 @@ def draw_lines(axes: Axes, spectrum: Spectrum, limit: float, color: str = BLUE) 
         floor = top * 10.0**-_DECADES
         axes.set_yscale("log")
         axes.set_ylim(floor, top * 3.0)
-        if np.count_nonzero(amplitude > floor) > _DENSEST * panel_size(axes)[0]:
-            # Lines so close are one blue area.
+        if spectrum.window == "hann" or np.count_nonzero(amplitude > floor) > _DENSEST * panel_size(axes)[0]:
+            # Lines so close, or of tones that spread over several, are one blue area.
             heights = np.maximum(amplitude, floor)
             axes.fill_between(frequencies, floor, heights, color=color, alpha=0.22, lw=0.0)
             axes.plot(frequencies, heights, color=color, lw=0.6)

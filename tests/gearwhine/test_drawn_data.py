@@ -104,7 +104,8 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
         (dots,) = (line for line in axes.get_lines() if line.get_marker() == "o")
         told = drawn.signature.lines[name][: len(dots.get_xydata())]
         assert dots.get_xydata() == pytest.approx(np.array([[line.frequency, abs(line.value)] for line in told]))
-        assert {round(line.frequency, 6) for line in told} <= named
+        # A tone of two sensors has one name.
+        assert all(min(abs(line.frequency - place) for place in named) < 0.1 * spectrum.spacing for line in told)
     assert shown[-1].get_xlabel() == "frequency [Hz]"
 
 

@@ -11,7 +11,7 @@ import gearwhine as gw
 from coupling import MachineLoads, assemble_machine, machine_description
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.loaded.transmission_error import loaded_transmission_error, mesh_period_phases, period_mean
-from coupling.linear import mesh_harmonics
+from coupling.linear import line_sensitivity
 from coupling.linear.housing_rates import HousingRates
 from coupling.linear.line_sensitivity import Line, LineModel
 from coupling.machine.mounted_parts import MountedBearing
@@ -313,7 +313,7 @@ def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     slopes = [model.by_bearing_position(one, name) for one in lines]
     # The part by the bearing's own deflection is another test's.
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(mesh_harmonics, "deflection_slope", lambda *_: np.zeros(5))
+        patch.setattr(line_sensitivity, "deflection_slope", lambda *_: np.zeros(5))
         own = np.array([model.by_bearing_position(one, name) for one in lines])
         stepped = [model.stepped_bearing_position(one, name, 1e-7) for one in lines]
     either = [with_bearing(replace(first, bearing=replace(made, at=made.at + way * 1e-5))) for way in (1.0, -1.0)]
