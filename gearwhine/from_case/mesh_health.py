@@ -17,6 +17,7 @@ from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import HousingError, Joint
+from housing.model.seats import sensor_port
 from meshes import GeometryError, Mesh, MeshDefect, diagnose, resolution_defects
 from meshes.gmsh_meshing import expected_elements
 from meshes.lengths import UNITS
@@ -27,6 +28,7 @@ FloatArray = npt.NDArray[np.float64]
 _TWO_PI = 2.0 * np.pi
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6
+_BESIDE = 0.01  # distance of a point from the surface above which a warning is given, over the housing's diagonal
 
 
 def require_meshable(case: Case, mesh: Mesh) -> list[dict[str, Any]]:
@@ -173,3 +175,27 @@ def _warnings(defects: tuple[MeshDefect, ...]) -> list[dict[str, Any]]:
     return [
         warning(defect.name, defect.message, count=defect.count, place_m=defect.place.tolist()) for defect in defects
     ]
+
+
+def surface_point_warnings(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
+    """Warn of sensors and lumped masses that are given beside the housing's surface, with the point where they sit."""
+    if case.housing is None:
+        return
+    far = _BESIDE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    placed = [
+        *(("sensor", one.name, one.position, sensor_port(mesh, one.build()).position) for one in case.housing.sensor),
+        *(
+            ("mass", one.name, one.position, one.build().place(mesh).position)
+            for one in case.housing.mass
+            if one.position is not None
+        ),
+    ]
+    for kind, name, position, place in placed:
+        off = float(np.linalg.norm(place - position))
+        if off > far:
+            at = ", ".join(f"{round(1e3 * float(value), 3) + 0.0:.6g}" for value in place)
+            yield warning(
+                f"{kind} place",
+                f'{kind} "{name}": its position is {1e3 * off:.3g} mm from the surface; it sits at ({at}) mm',
+                **{kind: name, "beside_m": off},
+            )

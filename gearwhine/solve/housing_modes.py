@@ -23,11 +23,15 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
 from gearwhine.from_case.mesh import build_mesh, materials_of
-from gearwhine.from_case.mesh_health import noted_on_failure, require_meshable, resolution_warnings
+from gearwhine.from_case.mesh_health import (
+    noted_on_failure,
+    require_meshable,
+    resolution_warnings,
+    surface_point_warnings,
+)
 from gearwhine.output.files import MODE_CACHE_FILE, file_contents, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.part_fits import surface_point_warnings
 from housing import (
     HealthReport,
     Housing,

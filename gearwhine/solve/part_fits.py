@@ -7,20 +7,17 @@ from the other, so that one of them is a slip of the pen or stands for a sleeve 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from gearwhine.case import Bearing, Case, RollingStiffness
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.housing import Seat
+from gearwhine.from_case.mesh_health import surface_point_warnings
 from gearwhine.output.quantity import warning
-from housing.model.seats import sensor_port
 from meshes import Mesh, find_bores
 from meshes.bores import CylindricalBore
 from rotors import Rotor, Segment
 
 _FIT = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]
-_BESIDE = 0.01  # distance of a sensor from the surface above which a warning is given, over the housing's diagonal
 _TOUCHING = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
 
 
@@ -140,30 +137,6 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
                     common_m=common,
                     narrower_m=whole,
                 )
-
-
-def surface_point_warnings(case: Case, mesh: Mesh) -> Iterator[dict[str, Any]]:
-    """Warn of sensors and lumped masses that are given beside the housing's surface, with the point where they sit."""
-    if case.housing is None:
-        return
-    far = _BESIDE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    placed = [
-        *(("sensor", one.name, one.position, sensor_port(mesh, one.build()).position) for one in case.housing.sensor),
-        *(
-            ("mass", one.name, one.position, one.build().place(mesh).position)
-            for one in case.housing.mass
-            if one.position is not None
-        ),
-    ]
-    for kind, name, position, place in placed:
-        off = float(np.linalg.norm(place - position))
-        if off > far:
-            at = ", ".join(f"{round(1e3 * float(value), 3) + 0.0:.6g}" for value in place)
-            yield warning(
-                f"{kind} place",
-                f'{kind} "{name}": its position is {1e3 * off:.3g} mm from the surface; it sits at ({at}) mm',
-                **{kind: name, "beside_m": off},
-            )
 
 
 def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) -> Iterator[dict[str, Any]]:

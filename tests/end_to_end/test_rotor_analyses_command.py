@@ -64,9 +64,9 @@ RANGE = "frequency={from='10 Hz', to='100 Hz', points=10}"
 
 
 def two_discs(hertz: float, ratio: float, spring: float = 0.0, dashpot: float = 0.0) -> tuple[complex, complex]:
-    """Angles of both discs under 3 N·m at 20° on the left one, k (1 + 2iζ) between them and a grounded right one."""
+    """Angles of both discs under 3 N·m at 20° on the left one: k (1 + 2iζ) between them, spring and dashpot right."""
     omega, between = 2.0 * math.pi * hertz, SPRING * (1.0 + 2j * ratio)
-    held = spring * (1.0 + 2j * ratio) + 1j * omega * dashpot
+    held = spring + 1j * omega * dashpot
     dynamic = np.array(
         [[between - LEFT * omega**2, -between], [-between, between + held - RIGHT * omega**2]], dtype=complex
     )
