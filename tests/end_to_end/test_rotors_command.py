@@ -364,6 +364,7 @@ def test_damping_of_a_coupling_that_whirl_is_told_without_is_warned_of(gearwhine
         assert all("with it by `gearwhine system`" in message for message in found)
 
 
+@pytest.mark.slow
 def test_a_written_ross_file_of_a_rotor_with_bearing_tables_is_a_case_of_its_own(gearwhine: Any) -> None:
     """Where the case names no speeds, those of its tables are taken, whose lowest stands for rest."""
     few = ("--set", "rotor_analysis.modes=2", "-q")

@@ -65,6 +65,7 @@ def test_stretches_of_a_long_record_hold_whole_periods(setting: str, revolutions
     assert sampled(ripple("frequency='412.51 Hz'"), recorded=2000, largest=0).window == "hann"
 
 
+@pytest.mark.slow
 def test_a_ripple_between_the_lines_has_its_frequency_its_height_and_its_name() -> None:
     """Its height by least squares on the history, at the frequencies that the ripple and the teeth can make."""
     settings = {"transient.revolutions": 14, "transient.discard": 7, "transient.tolerance": 1e-3}

@@ -245,6 +245,7 @@ def test_motions_that_time_integration_leaves_are_found(speed: float) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_chaos_is_told_by_the_growth_of_a_disturbance() -> None:
     """Two meshes 8 : 5, hardly damped: no motion is found, and neighbours part as fast under Newmark's steps."""
     train = three_masses(0.01)
