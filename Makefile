@@ -21,7 +21,7 @@ export OPENBLAS_NUM_THREADS ?= 2
 # Byte code is kept, whatever the surroundings say: the tests start dozens of processes that would compile all anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: demo test test-slow lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
+.PHONY: demo test test-slow checked-and-compiled lint types unit docs reference validation stiffness-page install install-dev system browser format constraints clean
 
 # One environment: never two installations into it at once, whatever -j says.
 .NOTPARALLEL:
@@ -29,13 +29,18 @@ export PYTHONDONTWRITEBYTECODE :=
 demo: install
 	$(BIN)/gearwhine run nasa-gear-noise-rig -o $(OUT)
 
-test: install-dev lint types unit
+test: lint checked-and-compiled unit
 
-lint: install-dev
+# The types take one core for a minute, and the kernels both: side by side they take less than one after the other.
+checked-and-compiled: $(VENV)/.installed-dev
+	@$(MAKE) --no-print-directory types & types=$$!; \
+		$(MAKE) --no-print-directory install-dev; installed=$$?; wait $$types && exit $$installed
+
+lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-types: install-dev
+types: $(VENV)/.installed-dev
 	$(BIN)/mypy
 
 # One thread for each of two worker processes.

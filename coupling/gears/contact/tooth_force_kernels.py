@@ -290,7 +290,7 @@ def ranked_penetration(phase: float, compression: float, law: FloatArray, at: in
 
 
 @inner(fastmath={"contract"}, forceinline=True)
-def _whole_law(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
+def _contact_force_and_energy(phase: float, compression: float, rate: float, law: FloatArray, at: int) -> TangentForce:
     """Evaluate the law, as `tooth_force` returns it; where it is inlined, what a caller leaves is not computed."""
     if compression <= law_value(law, at + FIRST_TOUCH):
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0
@@ -408,7 +408,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     touching : int
         Number of pairs that touch.
     """
-    return _whole_law(phase, compression, rate, law, at)
+    return _contact_force_and_energy(phase, compression, rate, law, at)
 
 
 @inner(fastmath={"contract"})
@@ -416,7 +416,7 @@ def tooth_force_and_tangents(
     phase: float, compression: float, rate: float, law: FloatArray, at: int
 ) -> tuple[float, float, float]:
     """Force and its tangents by compression and rate, the first three results of `tooth_force`."""
-    force, tangent, damping, _, _, _ = _whole_law(phase, compression, rate, law, at)
+    force, tangent, damping, _, _, _ = _contact_force_and_energy(phase, compression, rate, law, at)
     return force, tangent, damping
 
 
@@ -425,7 +425,7 @@ def tooth_force_and_energy(
     phase: float, compression: float, rate: float, law: FloatArray, at: int
 ) -> tuple[float, float, float, float]:
     """Force, its tangents and the stored energy, the first four results of `tooth_force`."""
-    force, tangent, damping, energy, _, _ = _whole_law(phase, compression, rate, law, at)
+    force, tangent, damping, energy, _, _ = _contact_force_and_energy(phase, compression, rate, law, at)
     return force, tangent, damping, energy
 
 
