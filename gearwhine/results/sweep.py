@@ -42,13 +42,7 @@ def _peak_level(row: Mapping[str, Any]) -> str:
 PEAK = (
     Quantity("settings", lambda peak: peak.settings),
     Quantity("below_rpm", lambda peak: peak.below_rpm),
-    Quantity(
-        "above_rpm",
-        lambda peak: peak.above_rpm,
-        heading="between [rpm]",
-        shown=_peak_between,
-        numbers=("below_rpm",),
-    ),
+    Quantity("above_rpm", lambda peak: peak.above_rpm),
     Quantity(
         "line",
         lambda peak: peak.line,
@@ -83,12 +77,18 @@ PEAK = (
         "missed_peak_level",
         unit="dB",
         long_name="estimated level of the line there: of sound power re 1 pW, of an amplitude re 1 m/s2",
-        heading="estimate",
-        shown=_peak_level,
     ),
     Quantity("rise_db", lambda peak: peak.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
 )
 """Quantities of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
+
+*_OF_PEAK, _RISE = columns_of(PEAK)
+_PEAK_COLUMNS = (
+    Column("between [rpm]", _peak_between, numbers=("below_rpm", "above_rpm")),
+    *_OF_PEAK,
+    Column("estimate", _peak_level, numbers=("level_db",)),
+    _RISE,
+)
 
 
 def sections(document: Document) -> tuple[Section, ...]:
@@ -138,7 +138,7 @@ def _missed(document: Document) -> Iterator[str | Table]:
         return
     of_sensors = "" if peaks[0]["output"] == _SOUND else "; of sensors the amplitude of the line"
     caption = f"Peaks between the points, by the linear response{of_sensors}"
-    yield from table_of(columns_of(PEAK), peaks[:_MOST_PEAKS], caption)
+    yield from table_of(_PEAK_COLUMNS, peaks[:_MOST_PEAKS], caption)
     speeds = ", ".join(f"{speed:g} rpm" for speed in document["speeds_to_add_rpm"])
     more = f", of which the table has {_MOST_PEAKS}" if len(peaks) > _MOST_PEAKS else ""
     yield (

@@ -661,15 +661,16 @@ def _peaks(response: Document) -> Iterator[str | Table]:
         ("mesh_force_n", "mesh force [N/µm]"),
         ("sensor_acceleration_m_per_s2", "acceleration [m/s²/µm]"),
     ):
-        rows += [{"what": quantity, "name": name, "peaks": peaks} for name, peaks in response[key].items()]
+        rows += [
+            {"what": quantity, "name": name, "peaks": [one | {"amplitude": 1e-6 * one["amplitude"]} for one in peaks]}
+            for name, peaks in response[key].items()
+        ]
     columns = (
         Column("peak amplitude of", "what"),
         Column("at", "name"),
         Column(
             "highest: Hz (by 1 µm)",
-            lambda row: "  ".join(
-                f"{peak['frequency_hz']:.0f} ({1e-6 * peak['amplitude']:.3g})" for peak in row["peaks"][:4]
-            ),
+            lambda row: "  ".join(f"{peak['frequency_hz']:.0f} ({peak['amplitude']:.3g})" for peak in row["peaks"][:4]),
             numbers=tuple(f"peaks.{place}.{key}" for place in range(4) for key in ("frequency_hz", "amplitude")),
         ),
     )

@@ -11,6 +11,7 @@ import gearwhine as gw
 from gearwhine.analyses.case import export_results
 from gearwhine.output.export import _csv
 from gearwhine.output.sections import Column, Table
+from gearwhine.results.sweep import sections
 
 THIRD = 1.0 / 3.0
 
@@ -59,11 +60,12 @@ def test_numbers_are_written_whatever_the_page_shows() -> None:
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Tables of rotors and gears of the bundled pair."""
+    """Tables of rotors, gears and coupled modes of the bundled pair."""
     folder = tmp_path_factory.mktemp("tables")
     study = gw.load("spur-pair")
     study.rotors().write(folder, pictures=False)
     study.gears().write(folder, pictures=False)
+    study.system().write(folder, pictures=False)
     export_results(folder, ("csv",))
     return folder
 
@@ -103,3 +105,39 @@ def test_reactions_and_strain_have_all_digits(exported: Path) -> None:
     for row, decrement, strained in zip(rows, whirl["log_decrement"], whirl["most_strained"], strict=False):
         assert float(row["log decrement (log_decrement)"]) == decrement
         assert float(row["strained.share"]) == strained["share"]
+
+
+def test_responses_to_a_micrometre_of_error_are_in_the_unit_that_their_row_names(exported: Path) -> None:
+    (response,) = summary(exported, "system")["transmissibility"]
+    tables = [rows_text(path) for path in (exported / "exports").glob("system-Coupled-system*.csv")]
+    (lines,) = [lines for lines in tables if lines[0].startswith("peak amplitude of")]
+    rows = {row["at"]: row for row in csv.DictReader(lines)}
+    for name, peaks in response["mesh_force_n"].items():
+        row = rows[name]
+        assert row["peak amplitude of"] == "mesh force [N/µm]"
+        for place, peak in enumerate(peaks[:4]):
+            assert float(row[f"peaks.{place}.frequency_hz"]) == peak["frequency_hz"]
+            # By an error of one metre in the document.
+            assert float(row[f"peaks.{place}.amplitude"]) == pytest.approx(1e-6 * peak["amplitude"])
+
+
+def test_a_missed_peak_has_both_speeds_and_what_peaks() -> None:
+    peak = {"settings": {}, "below_rpm": 3000.0, "above_rpm": 4200.0, "line": "1x", "mode": "housing"}
+    peak |= {"frequency_hz": 900.0, "speed_rpm": 3600.0, "half_width_rpm": 20.0, "rise_db": 9.0}
+    sensor = peak | {"output": "right wall", "level_db": 20.0}
+    document = {
+        "points": [],
+        "resumed": 0,
+        "failed": 0,
+        "done": 0,
+        "missed_peaks": [sensor, peak | {"output": "sound", "level_db": 80.0}],
+        "speeds_to_add_rpm": [3600.0],
+        "over_with_peaks": "",
+    }
+    (table,) = [part for part in sections(document)[0].content if isinstance(part, Table)]
+    headings, *rows = rows_of(_csv(table))
+    found = [dict(zip(headings, row, strict=True)) for row in rows]
+    assert [row["between [rpm]"] for row in found] == ["3000 and 4200"] * 2
+    assert [(float(row["below_rpm"]), float(row["above_rpm"])) for row in found] == [(3000.0, 4200.0)] * 2
+    assert [row["estimate"] for row in found] == ["right wall 10 m/s²", "L_W 80.0 dB"]
+    assert [float(row["level_db"]) for row in found] == [20.0, 80.0]
