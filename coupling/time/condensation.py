@@ -43,7 +43,8 @@ def common_span(matrices: list[FloatArray]) -> tuple[FloatArray, list[FloatArray
     # Coordinates without any entry have no part in the decomposition.
     touched = np.any([np.any(matrix, axis=0) | np.any(matrix, axis=1) for matrix in scaled], axis=0)
     among = np.ix_(touched, touched)
-    left, sizes, _ = np.linalg.svd(np.hstack([part for m in scaled for part in (m[among], m[among].T)]))
+    beside = np.hstack([part for m in scaled for part in (m[among], m[among].T)])
+    left, sizes, _ = np.linalg.svd(beside, full_matrices=False)
     count = int(np.count_nonzero(sizes > _ROUNDING * sizes[0]))
     directions = np.zeros((n, count))
     directions[touched] = left[:, :count]
