@@ -11,6 +11,7 @@ import io
 import math
 import struct
 import tomllib
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -82,7 +83,8 @@ def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document
         for title, table in _tables(str(document.get("command", "results")), chapters(document))
     ]
     written: list[Document] = []
-    for stem, (title, table) in zip(file_stems([title for title, _ in titled_tables]), titled_tables, strict=True):
+    titles = _told_apart(titled_tables)
+    for stem, title, (_, table) in zip(file_stems(titles), titles, titled_tables, strict=True):
         (place / f"{stem}.csv").write_text(_csv(table), encoding="utf-8", newline="")
         written.append({"file": f"{stem}.csv", "title": title, "rows": len(table.rows)})
     return written
@@ -95,6 +97,17 @@ def _tables(title: str, sections: Iterable[Section]) -> Iterator[tuple[str, Tabl
         for table in section.tables:
             yield " ".join(part for part in (path, table.caption) if part), table
         yield from _tables(path, section.inner)
+
+
+def _told_apart(titled_tables: Sequence[tuple[str, Table]]) -> list[str]:
+    """Return the titles; of tables that share one, each followed by the table's first heading without its unit."""
+    shared = Counter(title for title, _ in titled_tables)
+
+    def first_heading(table: Table) -> str:
+        columns, _ = table.filled()
+        return " ".join(columns[0].heading.partition("[")[0].split()) if columns else ""
+
+    return [f"{title} {first_heading(table)}".strip() if shared[title] > 1 else title for title, table in titled_tables]
 
 
 def _csv(table: Table) -> str:

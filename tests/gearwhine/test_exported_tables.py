@@ -109,9 +109,7 @@ def test_reactions_and_strain_have_all_digits(exported: Path) -> None:
 
 def test_responses_to_a_micrometre_of_error_are_in_the_unit_that_their_row_names(exported: Path) -> None:
     (response,) = summary(exported, "system")["transmissibility"]
-    tables = [rows_text(path) for path in (exported / "exports").glob("system-Coupled-system*.csv")]
-    (lines,) = [lines for lines in tables if lines[0].startswith("peak amplitude of")]
-    rows = {row["at"]: row for row in csv.DictReader(lines)}
+    rows = {row["at"]: row for row in table_rows(exported, "system-Coupled-system-peak-amplitude-of")}
     for name, peaks in response["mesh_force_n"].items():
         row = rows[name]
         assert row["peak amplitude of"] == "mesh force [N/µm]"
