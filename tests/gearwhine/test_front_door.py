@@ -105,7 +105,7 @@ def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> Non
 
 def test_what_is_done_to_a_dataset_stays_in_it(study: gw.Study, tmp_path: Path) -> None:
     """Neither other results of the study nor what is written know of it."""
-    before, result = study.modes().dataset, study.modes()
+    before, result = study.modes().dataset.copy(deep=True), study.modes()
     for name, variable in result.dataset.variables.items():
         if variable.dtype.kind == "f" and variable.dims and name not in result.dataset.dims:
             variable.values *= 2.0
