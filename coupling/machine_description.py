@@ -61,6 +61,7 @@ from coupling.time.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
+from housing.own_copies import keep_tuples
 from rotors import Coupling, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
@@ -129,6 +130,7 @@ class Machine:
 
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
+        keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces")
         require_names(self)
         require_stations(self)
         require_seats(self, self.housing_component)

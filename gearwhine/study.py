@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from gearwhine.case import Case, LoadedCase, changed_case, load_case
+from gearwhine.case import Case, CaseSource, LoadedCase, load_case
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     CaseError
         With everything that is wrong.
     """
-    return Study(_Origin(os.fspath(source), changes=_texts(changes)))
+    return Study(load_case(os.fspath(source), _texts(changes)))
 
 
 def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
@@ -89,22 +89,7 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
     >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
     2.7744
     """
-    return Study(_Origin(tables={name: _plain(table) for name, table in tables.items()}, folder=Path(folder)))
-
-
-@dataclass(frozen=True)
-class _Origin:
-    """Source of a study's case: a file or a bundled case, or tables; and changes of its keys."""
-
-    file: str | None = None
-    tables: Mapping[str, object] = field(default_factory=dict)
-    folder: Path = Path()
-    changes: tuple[str, ...] = ()
-
-    def read(self) -> LoadedCase:
-        if self.file is not None:
-            return load_case(self.file, self.changes)
-        return changed_case(dict(self.tables), self.changes, folder=self.folder)
+    return Study(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
 
 
 @dataclass
@@ -129,12 +114,11 @@ class Study:
         Receives the progress of long work in words; silent by default.
     """
 
-    def __init__(self, origin: _Origin, progress: Progress = silent) -> None:
-        loaded = origin.read()
+    def __init__(self, loaded: LoadedCase, progress: Progress = silent) -> None:
         self.case: Case = loaded.case
         self.warnings = loaded.warnings
         self.progress = progress
-        self._origin = origin
+        self._source = loaded.source
         self._kept = _KeptHousing()
 
     def __repr__(self) -> str:
@@ -149,8 +133,10 @@ class Study:
     def changed(self, changes: Mapping[str, object] | Sequence[str]) -> Study:
         """Return a study of the same case with other values of some keys; this one stays as it is.
 
-        Both share one solved housing, where its modes, damping, seats and sensors stay as they are. Changes of torque,
-        gears, bearing stiffness and preload leave them so; a change of a bearing's position does not.
+        The case is the one that was read: neither its file nor those that it names are read again, and one that has
+        changed before it was needed, such as that of a mesh, is refused. Both studies share one solved housing, where
+        its modes, damping, seats and sensors stay as they are. Changes of torque, gears, bearing stiffness and preload
+        leave them so; a change of a bearing's position does not.
 
         Parameters
         ----------
@@ -162,8 +148,7 @@ class Study:
         CaseError
             With everything that is wrong.
         """
-        origin = replace(self._origin, changes=(*self._origin.changes, *_texts(changes)))
-        study = Study(origin, self.progress)
+        study = Study(self._source.changed(_texts(changes)), self.progress)
         if self.case.housing is not None and study.case.housing is not None:
             from gearwhine.solve.housing_modes import housing_key
 
@@ -381,16 +366,12 @@ class Study:
         Raises
         ------
         CaseError
-            Where a key cannot be swept, or the case is not read from a file or a bundled case.
+            Where a key cannot be swept.
         """
         from gearwhine.analyses import machine
-        from gearwhine.case import CaseError, Problem
 
-        if self._origin.file is None:
-            raise CaseError([Problem("sweep", "a case built in Python", "a case file, which the workers read")])
-        source = (self._origin.file, self._origin.changes)
         return machine.sweep(
-            self.case, source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
+            self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
         )
 
     def export(

@@ -26,6 +26,7 @@ from housing.modes.effective_mass import damping_ratios, modal_damping
 from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from housing.modes.health import HealthReport, health_report
 from housing.modes.natural_modes import ModeSet, solve_modes
+from housing.own_copies import keep_tuples
 from meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
 
 FloatArray = npt.NDArray[np.float64]
@@ -70,7 +71,9 @@ class Housing:
     damping_ratio: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check unique names, volumes of the materials, and the damping ratio."""
+        """Keep own copies; check unique names, volumes of the materials, and the damping ratio."""
+        keep_tuples(self, "fixtures", "seats", "sensors")
+        object.__setattr__(self, "materials", dict(self.materials))
         for kind, names in (
             ("seat", [seat.name for seat in self.seats]),
             ("sensor", [sensor.name for sensor in self.sensors]),

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
 from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from housing.own_copies import keep_arrays, keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -31,6 +32,10 @@ class BaseHarmonic:
     frequency: float
     amplitude: ComplexArray
 
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_arrays(self, "amplitude")
+
 
 @dataclass(frozen=True)
 class BaseHistory:
@@ -40,7 +45,8 @@ class BaseHistory:
     values: FloatArray
 
     def __post_init__(self) -> None:
-        """Require six accelerations for each time, and times that ascend."""
+        """Keep own copies; require six accelerations for each time, and times that ascend."""
+        keep_arrays(self, "times", "values")
         if self.values.shape != (len(self.times), 6) or not len(self.times) or np.any(np.diff(self.times) <= 0.0):
             raise CouplingError(
                 f"a base's accelerations of shape {self.values.shape} at {len(self.times)} times; expected six for "
@@ -61,6 +67,10 @@ class BaseMotion:
 
     parts: tuple[BaseHarmonic | BaseHistory, ...]
     point: Point = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "parts", "point")
 
     def acceleration(self, times: FloatArray) -> FloatArray:
         """Acceleration of the base at some times [m/s², rad/s²], shape (s, 6)."""

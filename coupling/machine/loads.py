@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from coupling.errors import CouplingError
 from coupling.machine.base_motion import BaseMotion
+from housing.own_copies import keep_arrays, keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,6 +52,10 @@ class ShaftForce:
     at: float
     force: tuple[float, float, float]
 
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "force")
+
 
 @dataclass(frozen=True)
 class Torque:
@@ -69,6 +74,10 @@ class TorqueHistory:
     at: float
     times: FloatArray
     values: FloatArray
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_arrays(self, "times", "values")
 
 
 @dataclass(frozen=True)
@@ -116,6 +125,10 @@ class TorqueSlope:
     at: float
     speed_ratios: FloatArray
     slopes: FloatArray
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_arrays(self, "speed_ratios", "slopes")
 
     def at_speed_ratio(self, ratio: float) -> "TorqueSlope":
         """Return the slope over speed, relative to ``ratio`` times the nominal speed."""

@@ -10,6 +10,7 @@ from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.geometry.pair import pair_label
 from coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
+from housing.own_copies import keep_arrays
 from rotors import Bearing
 from rotors.rolling_bearings import RollingBearing
 
@@ -42,6 +43,10 @@ class MountedBearing:
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_arrays(self, "offset")
 
     @classmethod
     def from_elements(

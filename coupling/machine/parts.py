@@ -16,6 +16,7 @@ from coupling.machine.components import HousingComponent
 from coupling.machine.gear_train import LARGEST_OFFSET, Output
 from coupling.machine.loads import AnyTorque, Drive, ShaftForce
 from coupling.machine.mounted_parts import MountedBearing
+from housing.own_copies import keep_tuples
 from rotors import Disc, Rotor, Segment
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
@@ -56,6 +57,10 @@ class Shaft:
     frequency_limit: float | None = None
     mode_count: int | None = None
 
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "axis", "unbalances")
+
     @property
     def name(self) -> str:
         """Name of the rotor."""
@@ -88,6 +93,10 @@ class ShaftGear:
     at: float
     inertia: tuple[float, float, float] | None = None
     stiffens_shaft: bool = True
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "inertia")
 
     @property
     def name(self) -> str:
@@ -128,6 +137,10 @@ class Driving:
     speed_range: tuple[float, float] = (1.0, 1.0)
     base: BaseMotion | None = None
     gravity: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "torques", "drives", "speed_range", "gravity")
 
 
 CONSTANT = Driving()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from coupling import CoupledMachine
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, require, swept_keys
+from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
@@ -495,7 +495,7 @@ def sound(
 
 def sweep(
     case: Case,
-    source: tuple[str, Sequence[str]],
+    source: CaseSource,
     over: Sequence[str],
     folder: Path,
     *,
@@ -509,8 +509,8 @@ def sweep(
     Parameters
     ----------
     case : Case
-    source : (str, sequence of str)
-        Name from which the case is read, and the changes of its keys.
+    source : CaseSource
+        Content that the case is made of, from which the points are made, too.
     over : sequence of str
         Values of keys, such as ``operation.torque=10 N*m:100 N*m:10``; beside the speeds of `[sweep]`.
     folder : path
@@ -535,7 +535,7 @@ def sweep(
     from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
     from gearwhine.workers import default_workers
 
-    points = sweep_points(*source, keys)
+    points = sweep_points(source, keys)
     count = workers or default_workers()
     swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
     sound_warnings: list[dict[str, Any]] = []

@@ -97,7 +97,7 @@ class Result(Generic[Solved]):
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """Every quantity with its dimensions, unit and long name, as in the NetCDF file."""
+        """Every quantity with its dimensions, unit and long name, as in the NetCDF file; changes of it stay in it."""
         if self._arrays is None:
             import xarray as xr
 
@@ -105,7 +105,7 @@ class Result(Generic[Solved]):
         from gearwhine.output.dataset import LabelledArrays
 
         arrays = self._arrays()
-        return arrays.dataset() if isinstance(arrays, LabelledArrays) else arrays
+        return arrays.dataset() if isinstance(arrays, LabelledArrays) else arrays.copy(deep=True)
 
     @property
     def warnings(self) -> list[str]:

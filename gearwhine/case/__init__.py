@@ -3,7 +3,8 @@
 Public names:
 
 - :func:`load_case` -- a file or a bundled case, with changes from the command line; :func:`parse_case` for a
-  dictionary. Everything wrong comes in one :class:`CaseError`, a :class:`Problem` each.
+  dictionary, and :class:`CaseSource` for later changes. Everything wrong comes in one :class:`CaseError`, a
+  :class:`Problem` each.
 - :class:`Case` -- the tables of the file as frozen models, attributes named as the keys: :class:`Material`,
   :class:`Housing` (:class:`Box`, :class:`CadFile`, :class:`MeshFile`, :class:`Seat`, :class:`Support`,
   :class:`Mount`, :class:`Joint`, :class:`LumpedMass`, :class:`Sensor`), :class:`Rotor`, :class:`Bearing`,
@@ -27,11 +28,11 @@ from gearwhine.case.fixtures import Joint, LumpedMass, Mount, amounts
 from gearwhine.case.gears import Gear, GearPair, shaft_of
 from gearwhine.case.housing import CadFile, Housing, Material, MeshFile, Seat, Sensor, Support
 from gearwhine.case.load import (
+    CaseSource,
     LoadedCase,
     bundled_case,
     bundled_cases,
     bundled_files,
-    changed_case,
     load_case,
     parse_case,
 )
@@ -59,6 +60,7 @@ __all__ = [
     "CadFile",
     "Case",
     "CaseError",
+    "CaseSource",
     "CouplingSegment",
     "Gear",
     "GearPair",
@@ -97,7 +99,6 @@ __all__ = [
     "bundled_files",
     "campbell_speeds",
     "case_document",
-    "changed_case",
     "did_you_mean",
     "dump_case",
     "load_case",

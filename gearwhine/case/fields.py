@@ -26,6 +26,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearwhine.case import units
+from gearwhine.case.input_files import files_of
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
 
 if TYPE_CHECKING:
@@ -202,13 +203,20 @@ class _FileRule:
         text = str(value) if isinstance(value, (str, Path)) else ""
         if not 0 < len(text) <= 1000 or "\0" in text:
             raise wrong("the name of a file, relative to the case file's folder")
-        path = Path((info.context or {}).get("folder", ""), text)
+        path, files = Path((info.context or {}).get("folder", ""), text), files_of(info)
         try:
-            if path.is_file():
-                return path.resolve()
+            found: Path | None = path.resolve()
+            if not path.is_file() and str(found) not in files.contents:
+                found = None
         except (OSError, ValueError, RuntimeError):  # names no file system takes, and loops of links
-            pass
-        raise wrong(f"an existing file (looked in {str(path.parent)!r})")
+            found = None
+        if found is None:
+            raise wrong(f"an existing file (looked in {str(path.parent)!r})")
+        try:
+            files.add(found)
+        except OSError as error:
+            raise wrong(f"a file that can be read ({error.strerror or error})") from None
+        return found
 
 
 Name = Annotated[str, _NameRule()]

@@ -9,7 +9,7 @@ import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -21,6 +21,7 @@ from pydantic_core import ErrorDetails
 from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, did_you_mean, problem_of
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
+from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
 
@@ -183,10 +184,61 @@ class LoadedCase:
         Checked case, in SI.
     warnings : tuple of str
         Allowed but implausible choices, a sentence each.
+    source : CaseSource
+        Tables, changes and input files that the case is made of.
     """
 
     case: Case
     warnings: tuple[str, ...]
+    source: CaseSource
+
+
+@dataclass(frozen=True)
+class CaseSource:
+    """Content that a case is made of, as it was when it was read: later changes of files are not seen.
+
+    Attributes
+    ----------
+    written : mapping
+        The case as TOML gives it.
+    folder : path
+        Folder in which relative file names start.
+    name : str
+        Name of the file, for messages; empty for tables of Python.
+    changes : tuple of str
+        Changes of keys, see `apply_overrides`.
+    files : InputFiles
+        Input files that have been read.
+    """
+
+    written: Mapping[str, Any]
+    folder: Path
+    name: str = ""
+    changes: tuple[str, ...] = ()
+    files: InputFiles = field(default_factory=InputFiles)
+
+    def changed(self, changes: Sequence[str] = ()) -> LoadedCase:
+        """Make the case with further changes, and check it.
+
+        Raises
+        ------
+        CaseError
+            With everything that is wrong.
+        """
+        written = dict(self.written)
+        overrides = (*self.changes, *changes)
+        files = self.files.copy()
+
+        def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
+            try:
+                return case_document(parse_case(document, folder=self.folder, files=files))
+            except CaseError:  # a later change may correct it
+                return document
+
+        document, sources = apply_overrides(written, overrides, resolved)
+        document = without_changed(document, written, sources.keys())
+        case = parse_case(document, folder=self.folder, source=self.name, sources=sources, files=files)
+        return LoadedCase(case, warnings_of(case), replace(self, changes=overrides, files=case.input_files))
 
 
 def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> LoadedCase:
@@ -206,41 +258,7 @@ def load_case(source: str | os.PathLike[str], overrides: Sequence[str] = ()) -> 
         With everything that is wrong.
     """
     path, content = _read(source)
-    return changed_case(_as_case(_parse(content, path.name), path), overrides, folder=path.parent, source=path.name)
-
-
-def changed_case(
-    written: dict[str, Any], overrides: Sequence[str] = (), *, folder: Path, source: str = ""
-) -> LoadedCase:
-    """Change and check a case given as nested tables and lists.
-
-    Parameters
-    ----------
-    written : dict
-        The case as TOML gives it.
-    overrides : sequence of str
-        As of :func:`load_case`.
-    folder : path
-        Folder in which relative file names start.
-    source : str
-        Name of the file, for messages.
-
-    Raises
-    ------
-    CaseError
-        With everything that is wrong.
-    """
-
-    def resolved(document: dict[str, Any]) -> Mapping[str, Any]:
-        try:
-            return case_document(parse_case(document, folder=folder))
-        except CaseError:  # a later change may correct it
-            return document
-
-    document, sources = apply_overrides(written, overrides, resolved)
-    document = without_changed(document, written, sources.keys())
-    case = parse_case(document, folder=folder, source=source, sources=sources)
-    return LoadedCase(case, warnings_of(case))
+    return CaseSource(_as_case(_parse(content, path.name), path), path.parent, path.name).changed(overrides)
 
 
 def parse_case(
@@ -249,6 +267,7 @@ def parse_case(
     folder: str | os.PathLike[str] = ".",
     source: str = "",
     sources: Mapping[Location, str] | None = None,
+    files: InputFiles | None = None,
 ) -> Case:
     """Validate and check nested tables and lists, as TOML gives them.
 
@@ -262,6 +281,8 @@ def parse_case(
         Name of the file, for messages.
     sources : mapping of location to str, optional
         Names of the sources of single values that are not from the file.
+    files : InputFiles, optional
+        Input files that have been read already; those of this case are added.
 
     Raises
     ------
@@ -269,7 +290,7 @@ def parse_case(
         With everything that is wrong.
     """
     _check_depth(document, source)
-    context = {"folder": Path(folder)}
+    context = {"folder": Path(folder), "files": InputFiles() if files is None else files}
     findings: list[Finding] = []
     try:
         case = Case.model_validate(dict(document), context=context)

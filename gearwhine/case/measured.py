@@ -7,10 +7,18 @@ are fitted, and the modes that they are fitted to.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from hashlib import sha256
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, GetCoreSchemaHandler, PrivateAttr, StrictBool, Tag, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    PrivateAttr,
+    StrictBool,
+    Tag,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import core_schema
 
 from gearwhine.case import units
@@ -27,6 +35,7 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.input_files import ChangedFileError, InputFiles, files_of
 from gearwhine.case.overrides import parse_key_path
 
 if TYPE_CHECKING:
@@ -120,7 +129,7 @@ class Measured(Table):
     _content: _Content | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
-    def _one_source(self) -> Measured:
+    def _one_source(self, info: ValidationInfo) -> Measured:
         if (self.frequencies is None) == (self.file is None):
             raise wrong("either 'frequencies' or a 'file' of measured modes", "frequencies")
         if self.file is None:
@@ -131,7 +140,7 @@ class Measured(Table):
             return self._ascending()
         if self.damping_ratios is not None:
             raise wrong("no damping ratios beside a file, which holds its own", "damping_ratios")
-        return self._read()
+        return self._read(files_of(info))
 
     def _ascending(self) -> Measured:
         frequencies = self.frequencies or ()
@@ -142,20 +151,22 @@ class Measured(Table):
             raise wrong(f"a ratio for each of the {len(frequencies)} frequencies", "damping_ratios")
         return self
 
-    def _read(self) -> Measured:
+    def _read(self, files: InputFiles) -> Measured:
         from housing import HousingError
         from housing.measured import read_survey
 
         assert self.file is not None
         try:
-            survey = read_survey(self.file, unit=self.unit, shape_frame=self.shape_frame)
+            survey = files.read(self.file, read_survey, unit=self.unit, shape_frame=self.shape_frame)
         except HousingError as error:
             raise wrong(f"a file of measured modes; {error}", "file") from None
+        except ChangedFileError as error:
+            raise wrong(str(error), "file") from None
         if survey.modes is None and survey.responses is None:
             raise wrong("a file of measured modes or responses; this one holds points alone", "file")
         if survey.geometry is None and self.align:
             raise wrong("no alignment: the file holds frequencies and no points", "align")
-        self._content = _Content(sha256(self.file.read_bytes()).hexdigest(), survey)
+        self._content = _Content(files.contents[str(self.file)]["sha256"], survey)
         return self
 
     @property

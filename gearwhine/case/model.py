@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
 import tomli_w
-from pydantic import Field, ValidationError
+from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing, RollingStiffness, operation_loads
@@ -24,6 +24,7 @@ from gearwhine.case.fields import MOST_ENTRIES, Name, Table
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.case.gears import Gear, GearPair, readable_pairs, train_of_pairs
 from gearwhine.case.housing import Housing, Material, Seat, Sensor, Support
+from gearwhine.case.input_files import InputFiles, files_of, paths_in
 from gearwhine.case.measured import Measured, Update
 from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.rotors import Rotor, RotorAnalysis
@@ -90,6 +91,18 @@ class Case(Table):
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
     """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
     a colon."""
+
+    _files: InputFiles = PrivateAttr(default_factory=InputFiles)
+
+    @model_validator(mode="after")
+    def _with_files(self, info: ValidationInfo) -> Case:
+        self._files = files_of(info).among(paths_in(self))
+        return self
+
+    @property
+    def input_files(self) -> InputFiles:
+        """The files that the case names, as they were when it was read."""
+        return self._files.among(paths_in(self))
 
     def rotor_named(self, name: str) -> Rotor:
         """Return the rotor of this name; KeyError where there is none."""

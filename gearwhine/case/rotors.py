@@ -19,6 +19,7 @@ from pydantic import (
     SerializerFunctionWrapHandler,
     Tag,
     ValidationError,
+    ValidationInfo,
     model_serializer,
     model_validator,
 )
@@ -47,6 +48,7 @@ from gearwhine.case.fields import (
     Whole,
     wrong,
 )
+from gearwhine.case.input_files import ChangedFileError, files_of
 from gearwhine.case.operation import Acceleration, Speeds
 
 if TYPE_CHECKING:
@@ -335,7 +337,7 @@ class Rotor(Table):
     _saved: RossModel | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
-    def _described(self) -> Rotor:
+    def _described(self, info: ValidationInfo) -> Rotor:
         if self.file is None:
             for key, expected in (("material", "the name of a material"), ("segments", "a list")):
                 if not getattr(self, key):
@@ -347,9 +349,11 @@ class Rotor(Table):
         from rotors import RotorError, read_ross
 
         try:
-            self._saved = read_ross(self.file)
+            self._saved = files_of(info).read(self.file, read_ross)
         except RotorError as error:
             raise wrong(f"a rotor saved by ROSS ({error})", "file") from None
+        except ChangedFileError as error:
+            raise wrong(str(error), "file") from None
         return self
 
     @model_serializer(mode="wrap")

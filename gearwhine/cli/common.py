@@ -14,7 +14,7 @@ from cyclopts import Parameter, Token
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
-    from gearwhine.case import Case
+    from gearwhine.case import Case, LoadedCase
     from gearwhine.progress import Progress
 
 
@@ -76,6 +76,16 @@ def on_case(
     show: Callable[[dict[str, Any]], None],
 ) -> dict[str, Any]:
     """Read the case, do the work under a progress display, hand the result over and return it."""
+    return on_loaded(name, common, lambda loaded, progress: work(loaded.case, progress), show)
+
+
+def on_loaded(
+    name: str,
+    common: Common,
+    work: Callable[["LoadedCase", "Progress"], dict[str, Any]],
+    show: Callable[[dict[str, Any]], None],
+) -> dict[str, Any]:
+    """Do work on a case as :func:`on_case`; it is handed over with the source that it is made of."""
     from gearwhine.case import load_case
     from gearwhine.output.quantity import add_warnings
     from gearwhine.progress import shown
@@ -86,7 +96,7 @@ def on_case(
     for warning in loaded.warnings:
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
-        document = work(loaded.case, progress)
+        document = work(loaded, progress)
     add_warnings(document)
     for warning in document["warnings"]:
         sys.stderr.write(f"warning: {warning['message']}\n")

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, results_folder, written
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, on_loaded, results_folder, written
 
 if TYPE_CHECKING:
-    from gearwhine.case import Case
+    from gearwhine.case import Case, LoadedCase
     from gearwhine.progress import Progress
 
 
@@ -250,15 +250,21 @@ def sweep(
     from gearwhine.output.terminal import shown_by
     from gearwhine.results.sweep import sections
 
-    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
+    def work(loaded: "LoadedCase", progress: "Progress") -> dict[str, Any]:
         folder = results_folder(case, common)
-        source = (case, tuple(common.settings))
         result = analyses.sweep(
-            loaded_case, source, over, folder, workers=workers, scheduler=scheduler, fresh=fresh, progress=progress
+            loaded.case,
+            loaded.source,
+            over,
+            folder,
+            workers=workers,
+            scheduler=scheduler,
+            fresh=fresh,
+            progress=progress,
         )
         return written(result, folder, progress)
 
-    document = on_case(case, common, work, shown_by(sections, timed=True))
+    document = on_loaded(case, common, work, shown_by(sections, timed=True))
     if document["failed"]:
         total = len(document["points"])
         raise PartlyFailedError(f"{document['failed']} of {total} points failed; they are tried again on the next run")

@@ -16,6 +16,8 @@ from coupling.machine.parts import inertia_with_discs
 from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
 from gearwhine.case import GearPair as GivenPair
+from gearwhine.case.errors import UNSAID
+from gearwhine.case.input_files import ChangedFileError
 from gearwhine.from_case.rotors import build_gear, shaft_gears
 from gearwhine.progress import Progress, silent
 
@@ -89,7 +91,11 @@ def build_pair(case: Case, entry: GivenPair, number: int = 0) -> GearPair:
     angle = None if case.finds_misalignment(entry) or entry.misalignment == "found" else entry.misalignment or 0.0
     stiffness: StiffnessModel | str = entry.stiffness.model
     if entry.stiffness.file is not None:
-        position, values = _table(entry.stiffness.file, f"gear_pair[{number}].stiffness.file")
+        key = f"gear_pair[{number}].stiffness.file"
+        try:
+            position, values = case.input_files.read(entry.stiffness.file, _table, key=key)
+        except ChangedFileError as error:
+            raise CaseError([Problem(key, UNSAID, str(error))]) from error
         stiffness = stiffness_model("table", position=position, stiffness=values)
     elif entry.stiffness.value is not None:
         stiffness = stiffness_model(entry.stiffness.model, value=entry.stiffness.value)
@@ -125,11 +131,11 @@ def pair_geometry(case: Case, pair: GivenPair) -> GearPairGeometry:
     return GearPairGeometry(driver, driven, case.centre_distance(pair), offset if abs(offset) > LARGEST_OFFSET else 0.0)
 
 
-def _table(path: Path | str, key: str) -> tuple[FloatArray, FloatArray]:
+def _table(path: Path, key: str) -> tuple[FloatArray, FloatArray]:
     """Return two columns of a CSV file, with or without a line of names: position [base pitches], stiffness [N/m]."""
     rows = []
     try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
         raise CaseError([Problem(key, str(path), "a text file in UTF-8")]) from error
     for number, line in enumerate(lines, start=1):

@@ -11,6 +11,7 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, did_you_mean
 from gearwhine.case.housing import Region
+from gearwhine.case.input_files import ChangedFileError
 from housing import Joint, Material
 from housing.housing import cover_joint
 from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
@@ -37,7 +38,8 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     Raises
     ------
     CaseError
-        Where the case has no housing, its shape cannot be meshed or its file not read, or a seat is not found in it.
+        Where the case has no housing, its shape cannot be meshed or its file not read or not the one any more that the
+        case was read with, or a seat is not found in it.
     """
     require(case, "housing", command="mesh")
     table = case.housing
@@ -47,12 +49,16 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
             return mesh_box(box_geometry(table.box, table.seat), table.box.mesh_size, order=order)
     if table.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
-            mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
+            with case.input_files.unchanged(table.mesh.file):
+                mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
             mesh = mesh.rotated(np.array(table.mesh.rotation))
         return _with_seats(case, mesh)
     assert table.cad is not None
     turn = np.array(table.cad.rotation)
-    with _at_fault("housing.cad", "a solid that can be meshed", file=True):
+    with (
+        _at_fault("housing.cad", "a solid that can be meshed", file=True),
+        case.input_files.unchanged(table.cad.file),
+    ):
         meshed = mesh_cad(
             table.cad.file,
             table.cad.mesh_size,
@@ -80,6 +86,8 @@ def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
         yield
     except MeshSizeError as error:
         raise CaseError([Problem(f"{key}.mesh_size", UNSAID, f"another size of elements; {error}")]) from error
+    except ChangedFileError as error:
+        raise CaseError([Problem(f"{key}.file", UNSAID, str(error))]) from error
     except GeometryError as error:
         raise CaseError([Problem(f"{key}.file" if file else key, UNSAID, f"{expected}; {error}")]) from error
 

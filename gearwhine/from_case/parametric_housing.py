@@ -16,6 +16,7 @@ from gearwhine.case import Case, CaseError, Problem, UpdateParameter, case_docum
 from gearwhine.case.box import wall_by_face
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import Location, key_of, look_up
+from gearwhine.case.input_files import InputFiles
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import amount, si_amount
 from gearwhine.from_case.fixtures import attach_all, build_attachments
@@ -84,10 +85,13 @@ class FittedCase:
     document : dict
         The case resolved, with a wall of its own for each face.
     numbers : tuple of FittedNumber
+    files : InputFiles
+        Input files of the case, which are not read again.
     """
 
     document: dict[str, Any]
     numbers: tuple[FittedNumber, ...]
+    files: InputFiles
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -107,7 +111,7 @@ class FittedCase:
         CaseError
             Where the values make no valid case.
         """
-        return parse_case(self.document_at(values), source="update")
+        return parse_case(self.document_at(values), source="update", files=self.files.copy())
 
     def document_at(self, values: Sequence[float]) -> dict[str, Any]:
         """Return the document of the case with these values, as tables and lists."""
@@ -165,7 +169,7 @@ def fitted_case(
             numbers += [] if number is None else [number]
     if problems:
         raise CaseError(problems)
-    return FittedCase(document, tuple(numbers))
+    return FittedCase(document, tuple(numbers), case.input_files)
 
 
 def _number(

@@ -63,10 +63,13 @@ class LabelledArrays:
             stream.append_to(path)
 
     def dataset(self) -> xr.Dataset:
-        """Return the arrays as an xarray dataset."""
+        """Return the arrays as an xarray dataset, copies of those of the solution."""
         import xarray as xr
 
-        variables = dict(self.variables)
+        variables = {
+            name: (dimensions, np.array(values), attributes)
+            for name, (dimensions, values, attributes) in self.variables.items()
+        }
         for stream in self.streams:
             stream.add_to(variables)
         return xr.Dataset(variables, self.scalars, self.attributes)

@@ -1,7 +1,6 @@
-"""Files of a results folder: files that appear whole or not at all, locks, content digests, JSON.
+"""Files of a results folder: files that appear whole or not at all, locks, digests, JSON.
 
-Locks on folders serve runs that share a results folder. Digests take files by their content, libraries by version, own
-code by its text.
+Locks on folders serve runs that share a results folder. Digests take libraries by version, own code by its text.
 """
 
 import errno
@@ -73,15 +72,6 @@ def _take(handle: int, *, wait: bool) -> bool:
     except OSError:
         return False
     return True
-
-
-def file_contents(table: Any) -> dict[str, Any]:
-    """Return a digest of the bytes, and the ending, of each file that a table names, however deep.
-
-    The ending counts because a file's reader is chosen by it. A mesh file has the digests of its companions, too, the
-    files that are read with it.
-    """
-    return {str(path): _file_content(path) for path in _paths(table)}
 
 
 def with_contents(value: Any, files: Mapping[str, Any]) -> Any:
@@ -156,31 +146,10 @@ def _source_files(name: str) -> list[tuple[str, Path]]:
     return [(path.relative_to(top).as_posix(), path) for path in files]
 
 
-def _paths(value: Any) -> set[Path]:
-    if isinstance(value, Path):
-        return {value}
-    return set().union(*(_paths(inner) for inner in _inner(value)))
-
-
 def _inner(value: Any) -> list[Any]:
     if isinstance(value, Mapping):
         return list(value.values())
     return list(value) if isinstance(value, list | tuple) else []
-
-
-def _file_content(path: Path) -> dict[str, Any]:
-    # Imported here: commands without files need no meshes.
-    from meshes.formats.companions import companion_files
-
-    content: dict[str, Any] = {"sha256": _file_digest(path), "ending": path.suffix.lower()}
-    if companions := [_file_digest(companion) for companion in companion_files(path)]:
-        content["companions"] = companions
-    return content
-
-
-def _file_digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 MODE_CACHE_FILE = "modes.nc"

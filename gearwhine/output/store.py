@@ -18,7 +18,6 @@ from gearwhine.output.files import (
     COMMANDS,
     MODE_CACHE_FILE,
     SUMMARY,
-    file_contents,
     finite,
     json_text,
     listed_files,
@@ -83,7 +82,7 @@ def kept_options(
 ) -> Kept:
     """Return the parts of an earlier result in a folder by options that a new one is not asked for.
 
-    They are kept where the case and the parts that both results have are the same, number for number.
+    They are kept where the case, its input files and the parts that both results have are the same, number for number.
 
     Parameters
     ----------
@@ -102,6 +101,7 @@ def kept_options(
     now = json.loads(json_text(finite(document)))
     missing = [option for option in options if option.keys[0] in earlier and option.keys[0] not in document]
     alike = all(now.get(key) == earlier.get(key) for key in same)
+    alike = alike and earlier.get("input_files") == case.input_files.contents
     try:
         if not missing or not alike or (place / "case.toml").read_text(encoding="utf-8") != dump_case(case):
             return Kept()
@@ -152,7 +152,8 @@ def store_results(
     command : str
         One of `gearwhine.output.COMMANDS`.
     document : dict
-        Document that is stored as the summary; it gains the command, the time, the input files and the files written.
+        Document that is stored as the summary; it gains the command, the time, the input files as they were read, and
+        the files written.
     case : Case
         Case, which is stored as it is resolved.
     folder : path
@@ -174,7 +175,7 @@ def store_results(
             names.add(MODE_CACHE_FILE)
         files = [*sorted(names), (command_folder / SUMMARY).as_posix()]
         document.update(
-            command=command, made_at=_now(), input_files=_input_files(case), folder=str(folder), files=files
+            command=command, made_at=_now(), input_files=case.input_files.contents, folder=str(folder), files=files
         )
         (place / command_folder / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
         return None if command == _ADDING else command_folder
@@ -228,11 +229,3 @@ def _give_way(folder: Path, owner: str) -> None:
 
 def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
-
-
-def _input_files(case: Case) -> dict[str, Any]:
-    """Digests of the files that a case names; none where one cannot be read any more."""
-    try:
-        return file_contents(case.model_dump())
-    except OSError:
-        return {}

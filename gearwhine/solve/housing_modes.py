@@ -29,7 +29,7 @@ from gearwhine.from_case.mesh_health import (
     resolution_warnings,
     surface_point_warnings,
 )
-from gearwhine.output.files import MODE_CACHE_FILE, file_contents, installed, source_digest, texts_in, with_contents
+from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import (
@@ -69,6 +69,7 @@ MODES_CODE = (
     "housing.fem",
     "housing.model",
     "housing.modes",
+    "housing.own_copies",
     "housing.storage",
     "gearwhine.case",
     "gearwhine.from_case.fixtures",
@@ -97,7 +98,7 @@ def mode_cache_inputs(case: Case, mesh: Mesh | None = None) -> dict[str, Any]:
     """
     table = case.housing
     assert table is not None
-    files = file_contents(table.model_dump())
+    files = dict(case.input_files.contents)
     if table.mesh is not None and mesh is not None:
         files[str(table.mesh.file)] = {"mesh": mesh_digest(mesh)}
     bearings = {name: list(place) for name, place in bearing_places(case).items()}

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import gearwhine
-from gearwhine.case import SPEED_KEY, Case, CaseError, Problem, SweptKey, case_document, load_case, require
+from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
 from gearwhine.output import file_stems
-from gearwhine.output.files import PRESENTATION, file_contents, installed, source_digest, with_contents
+from gearwhine.output.files import PRESENTATION, installed, source_digest, with_contents
 from gearwhine.solve.housing_modes import housing_key, mode_cache_inputs
 from gearwhine.solve.transient_record import transient_duration
 from housing.storage.netcdf import content_key
@@ -53,15 +53,13 @@ class Point:
     duration: float
 
 
-def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey]) -> tuple[Point, ...]:
+def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, ...]:
     """Return every point of the grid, the last key fastest.
 
     Parameters
     ----------
-    source : str
-        Case file or bundled name.
-    settings : sequence of str
-        Changes by ``--set``, made before those of the sweep.
+    source : CaseSource
+        The case, as it was read.
     keys : sequence of SweptKey
         Keys of :func:`gearwhine.case.swept_keys`.
 
@@ -76,7 +74,7 @@ def sweep_points(source: str, settings: Sequence[str], keys: Sequence[SweptKey])
     for place, stem in zip(grid, stems, strict=True):
         overrides = [override for key, index in zip(keys, place, strict=True) for override in key.overrides[index]]
         try:
-            case = load_case(source, [*settings, *overrides]).case
+            case = source.changed(overrides).case
             require(case, "rotor", "operation", "transient", command="sweep")
         except CaseError as error:
             for problem in error.problems:
@@ -105,7 +103,7 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
     document = {name: table for name, table in case_document(case).items() if name not in _WITHOUT_EFFECT}
     key = content_key(
         {
-            "case": with_contents(document, file_contents(case.model_dump())),
+            "case": with_contents(document, case.input_files.contents),
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
             "source": code_digest(),
         }

@@ -10,6 +10,7 @@ from housing.errors import HousingError
 from housing.fem.matrices import Additions
 from housing.model.fixtures import port_fixture_matrices
 from housing.model.patches import Patch, Point, patch_matrix
+from housing.own_copies import keep_tuples
 from meshes import Mesh
 from meshes.elements import IntArray, facet_nodes
 
@@ -64,6 +65,7 @@ class Bushing:
 
     def __post_init__(self) -> None:
         """Check stiffness, damping and axes."""
+        keep_tuples(self, "stiffness", "damping", "axes")
         for label, amounts in (("stiffness", self.stiffness), ("damping", self.damping)):
             if np.shape(amounts) != (6,) or not all(0.0 <= amount < np.inf for amount in amounts):
                 raise HousingError(f"{label} {amounts}: expected six finite numbers, none of them negative")
@@ -133,6 +135,10 @@ class Mount:
     bushing: Bushing
     center: Point | None = None
 
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "center")
+
     def additions(self, mesh: Mesh) -> Additions:
         """Pᵀ K₆ P and Pᵀ C₆ P; see :class:`housing.model.fixtures.Fixture`."""
         center = None if self.center is None else np.array(self.center)
@@ -169,6 +175,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         """Check that the joint has two different patches."""
+        keep_tuples(self, "center")
         if self.first == self.second:
             raise HousingError(f"joint {self.name!r} ties a patch to itself; give two patches")
 

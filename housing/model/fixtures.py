@@ -18,6 +18,7 @@ from housing.errors import HousingError
 from housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
 from housing.fem.nearest_point import SurfacePoint, surface_point
 from housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
+from housing.own_copies import keep_tuples
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -135,6 +136,7 @@ class LumpedMass:
 
     def __post_init__(self) -> None:
         """Check mass, place and inertia; a tensor that no real body has is refused."""
+        keep_tuples(self, "position", "inertia", "offset")
         if not 0.0 < self.mass < np.inf:
             raise HousingError(f"mass {self.name!r} of {self.mass} kg: expected a positive one")
         if (self.patch is None) == (self.position is None):

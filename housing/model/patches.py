@@ -14,6 +14,7 @@ from housing.errors import HousingError
 from housing.fem.matrices import NOTHING, Matrices, NodeBlocks
 from housing.fem.nearest_point import SurfacePoint
 from housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
+from housing.own_copies import keep_tuples
 from meshes import Mesh, box_facets, circle_facets, plane_facets
 from meshes.elements import Facets
 
@@ -122,6 +123,7 @@ class Patch:
 
     def __post_init__(self) -> None:
         """Check that the patch is given in exactly one way."""
+        keep_tuples(self, "box", "plane", "circle")
         if sum(place is not None for place in (self.surface, self.box, self.plane, self.circle)) != 1:
             raise HousingError("a patch needs a surface, a box, a plane or a circle, one of the four")
 

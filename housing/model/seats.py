@@ -14,6 +14,7 @@ from scipy import sparse
 from housing.errors import HousingError
 from housing.fem.nearest_point import surface_point
 from housing.model.patches import patch_matrix, point_matrix
+from housing.own_copies import keep_tuples
 from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,6 +38,10 @@ class Seat:
     center: tuple[float, float, float]
     diameter: float | None = None
 
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "center")
+
 
 @dataclass(frozen=True)
 class Sensor:
@@ -54,6 +59,10 @@ class Sensor:
     name: str
     position: tuple[float, float, float]
     direction: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "position", "direction")
 
 
 @dataclass(frozen=True)

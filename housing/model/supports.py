@@ -14,6 +14,7 @@ from housing.fem.matrices import NOTHING, Additions
 from housing.fem.surface import IntArray
 from housing.model.bushings import Mount
 from housing.model.patches import Patch, rigid_motions, spread
+from housing.own_copies import keep_tuples
 from meshes import Mesh
 from meshes.elements import Facets, facet_nodes
 
@@ -51,6 +52,7 @@ class Support:
 
     def __post_init__(self) -> None:
         """Check that the support is given in exactly one way and holds something, and its amounts."""
+        keep_tuples(self, "box", "fixed", "stiffness", "damping", "plane")
         if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):

@@ -88,7 +88,7 @@ def test_one_thickness_of_all_walls_is_written_out_where_one_wall_is_set() -> No
 def test_a_sweep_goes_through_one_wall_of_all() -> None:
     source = load_case("small-gearbox").case
     keys = swept_keys(source, ["housing.box.wall.back=8 mm:12 mm:3"])
-    thick = [point.case.housing.box.walls for point in sweep_points("small-gearbox", (), keys)]  # type: ignore[union-attr]
+    thick = [point.case.housing.box.walls for point in sweep_points(load_case("small-gearbox").source, keys)]  # type: ignore[union-attr]
     assert [walls.back for walls in thick] == [0.008, 0.01, 0.012]
     assert {walls.front for walls in thick} == {0.01}
 

@@ -103,6 +103,27 @@ def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> Non
         found.plot("campbel")
 
 
+def test_what_is_done_to_a_dataset_stays_in_it(study: gw.Study, tmp_path: Path) -> None:
+    """Neither other results of the study nor what is written know of it."""
+    before, result = study.modes().dataset.copy(deep=True), study.modes()
+    for name, variable in result.dataset.variables.items():
+        if variable.dtype.kind == "f" and variable.dims and name not in result.dataset.dims:
+            variable.values *= 2.0
+    assert not result.dataset.identical(before)
+    xr.testing.assert_identical(study.modes().dataset, before)
+    result.write(tmp_path, pictures=False)
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as written:
+        for name, variable in before.variables.items():
+            np.testing.assert_array_equal(written[name].values, variable.values, err_msg=str(name))
+
+
+def test_a_dataset_of_arrays_at_hand_is_a_copy(study: gw.Study) -> None:
+    at_hand = xr.Dataset({"level": ("sensor", np.array([1.0, 2.0]))})
+    result = gw.Result("sweep", study.case, None, {}, _arrays=lambda: at_hand)
+    result.dataset["level"].values[:] = 0.0
+    assert at_hand["level"].values.tolist() == [1.0, 2.0]
+
+
 def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
     found = study.simulate()
     assert found.command == "simulate"
@@ -159,7 +180,7 @@ def test_a_case_of_python_objects_is_that_of_a_file() -> None:
 def test_what_the_case_reader_refuses_objects_refuse_in_the_same_words(tmp_path: Path) -> None:
     with pytest.raises(gw.CaseError, match=r"rotor\[0\]\.material"):
         gw.build(rotor=[{"name": "shaft", "material": "stele", "segments": [{"length": 0.5, "diameter": 0.03}]}])
-    with pytest.raises(gw.CaseError, match="a case file, which the workers read"):
+    with pytest.raises(gw.CaseError, match="sweep: expected speeds"):
         gw.build(
             material={"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7850}},
             rotor=[{"name": "shaft", "material": "steel", "segments": [{"length": 0.5, "diameter": 0.03}]}],

@@ -22,7 +22,7 @@ def test_a_star_stands_for_what_is_by_default_too() -> None:
         case = load_case("spur-pair", [*written, "rotor.*.damping_ratio=0.02"]).case
         assert [rotor.damping_ratio for rotor in case.rotor] == [0.02, 0.02]
     (key, *_) = swept_keys(load_case("spur-pair").case, ["rotor.*.damping_ratio=0.01,0.02"])
-    points = sweep_points("spur-pair", ["rotor.1.damping_ratio=0.03"], [key])
+    points = sweep_points(load_case("spur-pair", ["rotor.1.damping_ratio=0.03"]).source, [key])
     assert [[rotor.damping_ratio for rotor in point.case.rotor] for point in points] == [[0.01] * 2, [0.02] * 2]
     # What is there by default alone cannot be taken away.
     assert load_case("spur-pair", ["rotor.0.damping_ratio=0.01", "rotor.*.damping_ratio="]).case.rotor[0].damping_ratio
@@ -44,7 +44,7 @@ def test_keys_with_commas_between_move_together() -> None:
     keys = [key for key in swept_keys(case, [over]) if key.key != "operation.speed"]
     (key,) = keys
     assert key.keys == ("bearing.*.stiffness.xx", "bearing.*.stiffness.yy")
-    points = sweep_points("spur-pair", ["transient.revolutions=2", "transient.discard=1"], keys)
+    points = sweep_points(load_case("spur-pair", ["transient.revolutions=2", "transient.discard=1"]).source, keys)
     stiffnesses = [{(b.stiffness.xx, b.stiffness.yy) for b in point.case.bearing} for point in points]
     assert stiffnesses == [{(1e8, 1e8)}, {(2e8, 2e8)}, {(3e8, 3e8)}]
     with pytest.raises(CaseError, match="each key once"):

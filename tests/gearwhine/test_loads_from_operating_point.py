@@ -12,7 +12,7 @@ import xarray as xr
 
 import gearwhine as gw
 from coupling.errors import EquilibriumNotFoundError
-from gearwhine.case import CaseError, dump_case, parse_case, swept_keys
+from gearwhine.case import CaseError, dump_case, load_case, parse_case, swept_keys
 from gearwhine.cli import run_command
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
 from gearwhine.results.operating_point import sections
@@ -200,7 +200,7 @@ def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> N
     file.write_text(dump_case(given), encoding="utf-8")
     keys = swept_keys(given, ["operation.torque=30 N*m,90 N*m"])
     swept = []
-    for one in sweep_points(str(file), (), keys):
+    for one in sweep_points(load_case(str(file)).source, keys):
         result = solve_point(one.case, None, code_digest())
         assert isinstance(result, PointResult), result
         load, point = result.document["load"], describe_machine(one.case).operating_point()

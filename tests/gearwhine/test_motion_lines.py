@@ -245,7 +245,7 @@ def test_points_of_a_sweep_share_the_modes_that_radiate(over: str) -> None:
     settings = ["acoustics.method=rayleigh", "acoustics.faces=['top']", "acoustics.highest_frequency=3 kHz", ALUMINIUM]
     case = load_case("small-gearbox", settings).case
     keys = swept_keys(case, [over])
-    points = sweep_points("small-gearbox", settings, keys)
+    points = sweep_points(load_case("small-gearbox", settings).source, keys)
     rates = np.zeros((1, build_radiation(case, sounding_housing()).modal[0].shape[1], 2))
     rates[0, 4] = [1e-3, 2e-3]
     named: Any = {"line_names": ("10× input",), "line_kinds": ("other",)}

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from gearwhine.case import Case, CaseError, dump_case, load_case, mesh_frequencies
-from gearwhine.output.files import file_contents
+from gearwhine.case.input_files import file_contents
 from gearwhine.output.report import Contents, report_page
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update

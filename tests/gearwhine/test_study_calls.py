@@ -1,5 +1,6 @@
-"""A study hands on to the analyses what it is called with, and to the workers of a sweep what it was read from."""
+"""A study hands on to the analyses what it is called with, and to a sweep what its case was made of."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -62,12 +63,15 @@ def test_a_study_hands_on_what_it_is_called_with(
     assert {key: calls[0][key] for key in expected} == expected
 
 
-def test_the_workers_of_a_sweep_read_the_case_with_its_changes(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
     calls: list[tuple[Any, ...]] = []
     monkeypatch.setattr(machine, "sweep", lambda *given, **_: calls.append(given))
     gw.load("spur-pair", {"operation.torque": "20 N*m"}).sweep(["operation.speed=1000 rpm"], folder=tmp_path)
     _, source, over, folder = calls[0]
-    assert source == ("spur-pair", ("operation.torque=20 N*m",))
+    point = source.changed(["operation.speed=1000 rpm"]).case
+    assert (point.operation.torque, point.operation.speed) == (20.0, pytest.approx(1000.0 * math.pi / 30.0))
     assert (over, folder) == (["operation.speed=1000 rpm"], tmp_path)
 
 

@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 
 import gearwhine
 from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
+from gearwhine.case.input_files import file_contents
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.mesh import build_mesh
-from gearwhine.output.files import file_contents
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.transient import solve_transient
@@ -30,8 +30,8 @@ COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.d
 
 
 def points_of(*settings: str, over: tuple[str, ...] = ("operation.speed=3000 rpm,6000 rpm",)):
-    case = load_case("small-gearbox", settings).case
-    return sweep_points("small-gearbox", settings, swept_keys(case, over))
+    loaded = load_case("small-gearbox", settings)
+    return sweep_points(loaded.source, swept_keys(loaded.case, over))
 
 
 def test_a_point_is_known_again_by_what_bears_on_it() -> None:
@@ -57,13 +57,14 @@ def test_a_point_is_another_one_where_a_file_read_with_its_mesh_has_changed(tmp_
     case_file.write_text(f'{source[:begin]}[housing.mesh]\nfile = "deck.inp"\n\n{source[end:]}')
     write_mesh(build_mesh(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
     (tmp_path / "deck.inp").write_text("*INCLUDE, INPUT=box.inp\n")
-    keys = swept_keys(load_case(str(case_file)).case, ["operation.torque=50 N*m,60 N*m"])
-    before = sweep_points(str(case_file), (), keys)
+    loaded = load_case(str(case_file))
+    keys = swept_keys(loaded.case, ["operation.torque=50 N*m,60 N*m"])
+    before = sweep_points(loaded.source, keys)
     digests = file_contents([tmp_path / "deck.inp"])
-    assert sweep_points(str(case_file), (), keys) == before
     mesh = read_mesh(tmp_path / "box.inp")
     write_mesh(replace(mesh, points=mesh.points * np.array([1.0, 1.1, 1.0])), tmp_path / "box.inp")
-    after = sweep_points(str(case_file), (), keys)
+    assert sweep_points(loaded.source, keys) == before  # of the case that was read
+    after = sweep_points(load_case(str(case_file)).source, keys)
     for old, new in zip(before, after, strict=True):
         assert old.key != new.key
         assert old.modes_key != new.modes_key

@@ -39,6 +39,7 @@ from coupling.gears.geometry.involute import involute
 from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
 from housing.material import STEEL
+from housing.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -200,6 +201,7 @@ class Gear:
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
+        keep_tuples(self, "pitch_deviations", "faults")
         _check_numbers(self)
         _check_body(self)
         _check_rack(self)

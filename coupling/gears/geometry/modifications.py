@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears.errors import GearError, require_finite
+from housing.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ReliefShape = Literal["linear", "parabolic"]
@@ -145,6 +146,7 @@ class ProfileDeviation:
 
     def __post_init__(self) -> None:
         """Check the deviations and the table."""
+        keep_tuples(self, "table")
         for quantity in ("slope", "phase", "crowning"):
             require_finite(f"profile deviation {quantity}", getattr(self, quantity))
         for quantity in ("form", "waves"):

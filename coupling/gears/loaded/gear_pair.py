@@ -25,6 +25,7 @@ from coupling.gears.stiffness.models import (
     StiffnessModel,
     stiffness_under_load,
 )
+from housing.own_copies import keep_tuples
 
 
 def equivalent_mass(
@@ -112,6 +113,10 @@ class GearPair:
     misalignment: float | None = 0.0
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Keep own copies."""
+        keep_tuples(self, "face_gap")
 
     @property
     def label(self) -> str:

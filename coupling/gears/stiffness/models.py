@@ -44,6 +44,7 @@ from coupling.gears.stiffness.tooth_compliance import (
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
 )
+from housing.own_copies import keep_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -134,7 +135,8 @@ class TableStiffness:
     stiffness: FloatArray
 
     def __post_init__(self) -> None:
-        """Check the columns of the table."""
+        """Keep own copies, and check the columns of the table."""
+        keep_arrays(self, "position", "stiffness")
         position, stiffness = self.position, self.stiffness
         if position.ndim != 1 or position.size < 2 or position.shape != stiffness.shape:
             raise StiffnessModelError(

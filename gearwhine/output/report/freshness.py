@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from gearwhine.output.files import file_contents
+from gearwhine.case.input_files import file_contents
 
 _DIFFERENCES = 6  # largest number of keys of the case that are named
 _REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
