@@ -7,7 +7,7 @@ keys and are in SI.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
@@ -180,12 +180,16 @@ class CouplingSegment(Table):
     """Length from hub to hub."""
     coupling: Coupling
     """Stiffness, damping and inertia of the coupling."""
+    axial_force: Force | None = None
+    """Static axial force that it passes on, tension positive; 0 where it slides. Default: that of the shafts on both
+    sides if they have the same, else that of the rotor."""
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltCoupling:
-        """Build the coupling; it takes no property from its rotor."""
+        """Build the coupling, with its rotor's axial force where it has none of its own."""
         from rotors import Coupling as BuiltCoupling
 
-        return BuiltCoupling(self.length, **self.coupling.model_dump())
+        force = rotor.axial_force if self.axial_force is None else self.axial_force
+        return BuiltCoupling(self.length, **self.coupling.model_dump(), axial_force=force)
 
 
 class Disc(Table):
@@ -400,8 +404,18 @@ class Rotor(Table):
         if self._saved is not None:
             of_file = self._saved.rotor
             return BuiltRotor(self.name, of_file.segments, [*of_file.discs, *discs], self.mass)
+        return BuiltRotor(self.name, self._build_segments(materials), discs, self.mass)
+
+    def _build_segments(self, materials: Mapping[str, Material]) -> list[BuiltSegment | BuiltCoupling]:
+        from rotors.model.segment import forces_beside
+
         segments = [segment.build(self, materials) for segment in self.segments]
-        return BuiltRotor(self.name, segments, discs, self.mass)
+        for number, table in enumerate(self.segments):
+            if isinstance(table, CouplingSegment) and table.axial_force is None:
+                left, right = forces_beside(segments, number)
+                if left is not None and left == right:
+                    segments[number] = replace(segments[number], axial_force=left)
+        return segments
 
     def build_unbalance(self) -> list[BuiltUnbalance]:
         """Build the unbalances."""

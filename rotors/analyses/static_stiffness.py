@@ -337,8 +337,9 @@ def _pulls(gravity: Sequence[float] | None) -> list[float]:
 def _short_of_buckling(profile: Profile, nodes: FloatArray) -> FloatArray:
     """Add nodes until no element's axial force has a clamped field of its own (ω = 0 of `discretised_shaft`)."""
     section = profile.section_of_span[profile.spans(nodes)]
-    bending, force = profile.bounds[section, 1], np.abs(profile.bounds[section, 4])
-    counts = np.maximum(1.0, np.ceil(ELEMENT_MARGIN * np.diff(nodes) * np.sqrt(2.0 * force / bending) / math.pi))
+    shear, bending, force = profile.bounds[section][:, [0, 1, 4]].T
+    squared = np.maximum(2.0, shear / (shear + force)) * np.abs(force) / bending
+    counts = np.maximum(1.0, np.ceil(ELEMENT_MARGIN * np.diff(nodes) * np.sqrt(squared) / math.pi))
     if counts.max() == 1.0:
         return nodes
     number = np.repeat(np.arange(section.size), counts.astype(np.intp))

@@ -20,7 +20,6 @@ import numpy.typing as npt
 from rotors.analyses.harmonic_response import HarmonicResponse, finite_values, solve_harmonic
 from rotors.model.bearing import Bearing
 from rotors.model.loads import Bow, Unbalance
-from rotors.model.segment import Coupling, Segment
 from rotors.model.shaft import Rotor
 from rotors.transfer_matrix.rotor_shafts import bending_shaft
 from rotors.whirl.modal_projection import slowest
@@ -101,7 +100,7 @@ def bow_shape(rotor: Rotor, bow: Bow) -> BowShape:
     if vectors.size == 1:
         return BowShape(bow, np.zeros(1, dtype=np.complex128), 0.0, None)
     # The static axial force acts on the whole displacement, not on what the shaft is bent by.
-    free = replace(rotor, segments=[_unloaded(part) for part in rotor.segments])
+    free = replace(rotor, segments=[replace(part, axial_force=0.0) for part in rotor.segments])
     # The stiffness of the springs is about EI / L³.
     stiffness = float(bending_shaft(rotor).displacement_unit[0]) ** -2
     springs = [Bearing.isotropic(f"point {k}", at, stiffness) for k, at in enumerate(bow.at.tolist())]
@@ -173,7 +172,3 @@ def unbalance_response(
         slow,
         shape,
     )
-
-
-def _unloaded(part: Segment | Coupling) -> Segment | Coupling:
-    return replace(part, axial_force=0.0) if isinstance(part, Segment) else part

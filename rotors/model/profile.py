@@ -298,7 +298,7 @@ def _identity(part: Segment | Coupling) -> tuple[object, ...]:
     """Key that two segments of one section share, whatever their lengths; couplings share it at one length alone."""
     if isinstance(part, Coupling):
         stiffnesses = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
-        return (part.length, *stiffnesses)
+        return (part.length, *stiffnesses, part.axial_force)
     return (part.outer_diameter, part.inner_diameter, part.material, part.shear_coefficient, part.axial_force)
 
 
@@ -319,8 +319,13 @@ def _coupling_values(part: Coupling) -> tuple[FloatArray, FloatArray]:
     """Return the values of `_segment_values` for a coupling: massless, its compliances spread over its length."""
     shear, bending = part.lateral_stiffness * part.length, part.tilt_stiffness * part.length
     twist, stretch = part.torsional_stiffness * part.length, part.axial_stiffness * part.length
-    values = [1.0 / shear, 1.0 / bending, 0.0, 0.0, 1.0, 0.0, 1.0 / twist, 0.0, 1.0 / stretch, 0.0]
-    return np.array(values), np.array([shear, bending, 0.0, 0.0, 0.0])
+    force, bearable = part.axial_force, part.clamped_buckling_load
+    expected = f"a compression below {bearable:g} N, at which the coupling buckles between clamped shafts"
+    require(-force < bearable, "coupling axial_force", force, expected)
+    share = shear / (shear + force)
+    bent = [1.0 / (shear + force), 1.0 / bending, 0.0, 0.0, share, share * force]
+    rods = [1.0 / twist, 0.0, 1.0 / stretch, 0.0]
+    return np.array(bent + rods), np.array([shear, bending, 0.0, 0.0, force])
 
 
 def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple[float, float, FloatArray, FloatArray]]:

@@ -1,7 +1,7 @@
 """Shaft segment, cylindrical or conical, and flexible coupling between two shafts on one axis."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,8 +28,13 @@ def gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
 class Coupling:
     """A flexible coupling between two shafts on one axis, in their row of segments.
 
-    Its compliances are spread evenly over its length, as those of a massless beam with κGA = k L, EI = k_t L,
-    GJ = k_θ L and EA = k_z L; half of its mass is at either end.
+    Its compliances are spread evenly over its length L, as those of a massless beam with κGA = k L, EI = k_t L,
+    GJ = k_θ L and EA = k_z L; half of its mass is at either end. It passes the axial force P on, which does work on
+    the slope of its centre line as in a `Segment`: its energy in bending is
+
+        ½ ∫ k L (x' − β)² + k_t L β'² + P x'² dz,
+
+    over its length. So one that is rigid against tilting resists an offset of the shafts by k + P / L.
 
     Parameters
     ----------
@@ -43,11 +48,14 @@ class Coupling:
         Mass [kg] and moments of inertia [kg·m²] of the whole coupling.
     lateral_damping, axial_damping, tilt_damping, torsional_damping : float
         Dashpots parallel to the stiffnesses [N·s/m, N·m·s/rad]: c of the coupled system, which turn with the shaft.
+    axial_force : float
+        Static force that the coupling carries, tension positive [N].
 
     Raises
     ------
     RotorError
-        A length or stiffness that is not positive and finite, or a negative inertia or damping.
+        A length or stiffness that is not positive and finite, a negative inertia or damping, or an axial force that is
+        not finite.
     """
 
     length: float
@@ -62,13 +70,21 @@ class Coupling:
     tilt_damping: float = 0.0
     torsional_damping: float = 0.0
     axial_damping: float = 0.0
+    axial_force: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check that length and stiffness are positive and that inertia and damping are not negative."""
+        """Check that length and stiffness are positive, inertia and damping not negative and the force finite."""
         for attribute in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
             require_finite(f"coupling {attribute}", getattr(self, attribute), positive=True)
         for attribute in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
             require_finite(f"coupling {attribute}", getattr(self, attribute), minimum=0.0)
+        require_finite("coupling axial_force", self.axial_force)
+
+    @property
+    def clamped_buckling_load(self) -> float:
+        """Compression at which it buckles whatever holds the shafts, Engesser's 1 / (L/(4π² k_t) + 1/(k L)) [N]."""
+        bending = 4.0 * math.pi**2 * self.tilt_stiffness / self.length
+        return 1.0 / (1.0 / bending + 1.0 / (self.lateral_stiffness * self.length))
 
     @property
     def is_damped(self) -> bool:
@@ -191,3 +207,10 @@ class Segment:
         return self.length * math.fsum(
             weight * density(self.section(fraction), fraction * self.length) for fraction, weight in _GAUSS
         )
+
+
+def forces_beside(parts: Sequence[Segment | Coupling], number: int) -> tuple[float | None, float | None]:
+    """Axial forces of the nearest segments to the left and right of a part of a row [N]; None where there is none."""
+    left = next((part.axial_force for part in reversed(parts[:number]) if isinstance(part, Segment)), None)
+    right = next((part.axial_force for part in parts[number + 1 :] if isinstance(part, Segment)), None)
+    return left, right

@@ -153,7 +153,7 @@ class Rotor:
     @cached_property
     def is_compressed(self) -> bool:
         """Whether an axial force compresses some part of the shaft."""
-        return any(isinstance(part, Segment) and part.axial_force < 0.0 for part in self.segments)
+        return any(part.axial_force < 0.0 for part in self.segments)
 
     @property
     def polar_inertia(self) -> float:

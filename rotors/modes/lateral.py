@@ -13,7 +13,7 @@ import numpy.typing as npt
 from rotors.certificate import ModeCertificate
 from rotors.errors import require
 from rotors.model.bearing import RadialSupport
-from rotors.model.segment import Segment
+from rotors.model.segment import Coupling
 from rotors.model.shaft import Rotor
 from rotors.transfer_matrix.mode_shapes import ShaftFields, find_modes, require_positions
 from rotors.transfer_matrix.rotor_shafts import bending_shaft
@@ -40,7 +40,7 @@ def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> flo
     Parameters
     ----------
     rotor : Rotor
-        The shaft, with the axial forces of its segments.
+        The shaft, with the axial forces of its segments and couplings.
     supports : sequence of RadialSupport
         Springs to ground in this plane.
 
@@ -52,11 +52,10 @@ def buckling_factor(rotor: Rotor, supports: Sequence[RadialSupport] = ()) -> flo
     Raises
     ------
     RotorError
-        A support off the shaft; or compression would have to exceed half of the shear stiffness κGA first, which no
-        material bears.
+        A support off the shaft; or compression would have to exceed half of the shear stiffness κGA of a segment first,
+        which no material bears.
     """
-    forces = [part.axial_force for part in rotor.segments if isinstance(part, Segment)]
-    if min(forces, default=0.0) >= 0.0:
+    if not rotor.is_compressed:
         return np.inf
     low, high = 0.0, 1.0
     for _ in range(MOST_DOUBLINGS):
@@ -79,16 +78,15 @@ def require_unbuckled(rotor: Rotor, supports: Sequence[RadialSupport]) -> None:
         require(
             not buckled,
             f"rotor {rotor.name!r} axial force",
-            min(part.axial_force for part in rotor.segments if isinstance(part, Segment)),
+            min(part.axial_force for part in rotor.segments),
             f"compression that it bears: it buckles at {factor:.6g} times its axial forces",
         )
 
 
 def _has_buckled(rotor: Rotor, supports: Sequence[RadialSupport], factor: float) -> bool:
-    parts = [
-        replace(part, axial_force=factor * part.axial_force) if isinstance(part, Segment) else part
-        for part in rotor.segments
-    ]
+    parts = [replace(part, axial_force=factor * part.axial_force) for part in rotor.segments]
+    if any(isinstance(part, Coupling) and -part.axial_force >= part.clamped_buckling_load for part in parts):
+        return True
     continuous_shaft = bending_shaft(replace(rotor, segments=parts), supports)
     # The shaft has one scale at every frequency; the elements of a standstill are the longest.
     shaft = continuous_shaft.cut(STANDSTILL * continuous_shaft.likely_frequency(1))

@@ -12,7 +12,7 @@ rigid in shear to ten digits.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
@@ -20,7 +20,7 @@ import numpy as np
 
 from rotors.errors import RotorError
 from rotors.model.material import ElasticMaterial, Section, ShaftMaterial, ShearFormula
-from rotors.model.segment import Coupling, Segment
+from rotors.model.segment import Coupling, Segment, forces_beside
 from rotors.model.shaft import Disc
 from rotors.ross.tables import Entry, Remarks
 
@@ -135,6 +135,7 @@ def read_shaft(entries: Sequence[Entry], remarks: Remarks) -> ReadShaft:
                 segments.append(_segment(entry, remarks))
         except RotorError as error:
             raise error if entry.file in str(error) else RotorError(f"{entry.file}: {entry.key}: {error}") from None
+    segments = _passing_on(row, segments, remarks)
     lengths = np.array([0.0, *(segment.length for segment in segments)], dtype=np.longdouble)
     positions = tuple(np.cumsum(lengths).astype(np.float64).tolist())
     discs = [
@@ -259,6 +260,27 @@ def _coupling(entry: Entry, remarks: Remarks) -> tuple[Coupling, tuple[tuple[flo
         axial_damping=entry.number("ct_z", 0.0),
     )
     return coupling, () if alike else tuple(ends)
+
+
+def _passing_on(
+    row: Sequence[Entry], parts: Sequence[Segment | Coupling], remarks: Remarks
+) -> list[Segment | Coupling]:
+    """Give couplings the axial force that the segments on both sides have; one of ROSS carries none."""
+    passed = list(parts)
+    for number, (entry, part) in enumerate(zip(row, parts, strict=True)):
+        if not isinstance(part, Coupling):
+            continue
+        left, right = forces_beside(parts, number)
+        if left is None or right is None:
+            continue
+        if left != right:
+            text = f"carries no axial force, between a shaft with {left:g} N and one with {right:g} N"
+            remarks.add(entry.place, text)
+        elif left != 0.0:
+            passed[number] = replace(part, axial_force=left)
+            text = f"carries the axial force of {left:g} N of the shafts beside it, which ROSS leaves out there"
+            remarks.add(entry.place, text)
+    return passed
 
 
 def _note_unknown(entry: Entry, known_names: frozenset[str], remarks: Remarks) -> None:

@@ -130,6 +130,9 @@ def _shaft(rotor: Rotor, nodes: FloatArray, owners: Sequence[int], remarks: Rema
         if isinstance(segment, Coupling):
             text = "the spring of a coupling has no length in ROSS, and resists a tilt of the whole shaft"
             remarks.add(f"rotor {rotor.name!r} segment {owner}", text)
+            if segment.axial_force:
+                text = f"the axial force of {segment.axial_force:g} N is left out: couplings of ROSS carry none"
+                remarks.add(f"rotor {rotor.name!r} segment {owner}", text)
         else:
             _remark_on_shear(rotor, owner, segment, remarks)
             name = f"Material{len(materials)}"

@@ -12,8 +12,9 @@ that of an axial force P included, exceeds its kinetic energy for every field wh
 
     2 (ρA ω² u + C) < κGA    and    2 (ρA ω² u + C) u + ρI ω² u < EI,
 
-with the least stiffness and the largest inertia of the element; of a rod, when ρA ω² u < EA. This removes the term J₀
-from the Wittrick–Williams count and bounds the growth of any transfer matrix.
+with the least stiffness and the largest inertia of the element; of a rod, when ρA ω² u < EA. An element without mass,
+by ‖x'‖² ≤ g/(g − 1) ‖x' − β‖² + g ‖β‖² with g = κGA / (κGA − C), may bear 2 C > κGA: then g C u < EI. This removes the
+term J₀ from the Wittrick–Williams count and bounds the growth of any transfer matrix.
 """
 
 from collections.abc import Sequence

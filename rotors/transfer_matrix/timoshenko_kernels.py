@@ -247,8 +247,8 @@ def longest_element(squared: float, stiffness: FloatArray, inertia: FloatArray, 
     mass = squared * inertia[0]
     if stiffness.size == 1:
         return math.pi * math.sqrt(stiffness[0] / mass) if mass > 0.0 else math.inf
-    # Tension counts like compression: its fields grow as fast.
-    linear = squared * inertia[1] + 2.0 * abs(force)
+    # Tension counts like compression: its fields grow as fast. Only couplings, which are massless, have g above 2.
+    linear = squared * inertia[1] + max(2.0, stiffness[0] / (stiffness[0] + force)) * abs(force)
     divisor = linear + math.sqrt(linear**2 + 8.0 * mass * stiffness[1])
     if divisor == 0.0:
         return math.inf

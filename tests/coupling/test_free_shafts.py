@@ -26,9 +26,16 @@ def lateral_eigenvalues(machine: Machine, count: int) -> NDArray[np.complex128]:
 
 
 @pytest.mark.parametrize("force", [-1e5, -3e4, 5e4])
-def test_shaft_under_axial_force_whirls_in_the_machine_as_it_does_alone(force: float) -> None:
+@pytest.mark.parametrize("coupled", [False, True], ids=["one shaft", "with a coupling"])
+def test_shaft_under_axial_force_whirls_in_the_machine_as_it_does_alone(force: float, coupled: bool) -> None:
     """Supports within the ends too, where the force enters beyond them."""
-    rotor = Rotor("shaft", [Segment(LENGTH, 0.03, 0.0, STEEL, axial_force=force)], [Disc(0.3, 8.0, 0.05, 0.03)])
+    segments: list[Segment | Coupling] = [Segment(LENGTH, 0.03, 0.0, STEEL, axial_force=force)]
+    if coupled:
+        # As stiff as half the shaft, to whose tilt under the force it adds its length.
+        coupling = Coupling(0.3, 1.5e8, 3e4, 3e4, 1e8, axial_force=force)
+        segments = [Segment(at, 0.03, 0.0, STEEL, axial_force=force) for at in (0.2, 0.1)]
+        segments.insert(1, coupling)
+    rotor = Rotor("shaft", segments, [Disc(0.2, 8.0, 0.05, 0.03)])
     for left, right in ((0.0, LENGTH), (0.05, 0.5)):
         bearings = [
             Bearing("left", left, np.diag([1e7, 1e7]), np.diag([50.0, 50.0])),
@@ -41,11 +48,16 @@ def test_shaft_under_axial_force_whirls_in_the_machine_as_it_does_alone(force: f
 
 @pytest.mark.parametrize("force", [-4e5, 0.0, 3e5])
 def test_rigid_shaft_tilts_against_its_bearings_and_its_axial_force_without_damping_of_its_own(force: float) -> None:
-    """By hand: 2 k of the shift over the mass, and k L² / 2 + P L of the tilt over the moment of inertia."""
-    rotor = Rotor("rod", [Segment(LENGTH, DIAMETER, 0.0, RIGID, axial_force=force)])
+    """By hand: 2 k of the shift over the mass, and k L² / 2 + P L of the tilt over the moment of inertia.
+
+    A third of the shaft, in its middle, is a coupling without mass that is as rigid.
+    """
+    third = Segment(LENGTH / 3.0, DIAMETER, 0.0, RIGID, axial_force=force)
+    link = Coupling(LENGTH / 3.0, 1e13, 1e11, 1e11, 1e13, axial_force=force)
+    rotor = Rotor("rod", [third, link, third])
     bearings = [Bearing.isotropic(f"at {at}", at, RADIAL) for at in (0.0, LENGTH)]
     machine = resting(rotor, bearings, speed=0.01, damping_ratio=0.05)
-    inertia = rotor.mass * (LENGTH**2 / 12.0 + DIAMETER**2 / 16.0)
+    inertia = rotor.mass * (LENGTH**2 * 13.0 / 108.0 + DIAMETER**2 / 16.0)
     shift, tilt = 2.0 * RADIAL / rotor.mass, (0.5 * RADIAL * LENGTH**2 + force * LENGTH) / inertia
     found = lateral_eigenvalues(machine, 4)
     assert found.imag == pytest.approx(np.sqrt(np.repeat(np.sort([shift, tilt]), 2)), rel=1e-5)

@@ -77,6 +77,25 @@ def test_a_coupling_stands_in_the_row_with_its_own_numbers() -> None:
     assert rotor.length == pytest.approx(0.26)
 
 
+def test_a_coupling_carries_the_axial_force_of_its_rotor_or_its_own() -> None:
+    numbers = {"lateral_stiffness": 2e6, "tilt_stiffness": 5e3, "torsional_stiffness": 2e4, "axial_stiffness": 1e6}
+    piece, coupling = {"length": "100 mm", "diameter": "50 mm"}, {"length": "60 mm", "coupling": numbers}
+    segments = [piece, coupling, piece, coupling | {"axial_force": 0}, piece, coupling | {"axial_force": "1 kN"}, piece]
+    rotor = built(axial_force="-3 kN", segments=segments)
+    assert [part.axial_force for part in rotor.segments] == [-3e3, -3e3, -3e3, 0.0, -3e3, 1e3, -3e3]
+    assert [part.axial_force for part in built(segments=segments).segments] == [0.0] * 5 + [1e3, 0.0]
+
+
+def test_a_coupling_passes_on_the_axial_force_that_the_shafts_on_both_sides_have() -> None:
+    numbers = {"lateral_stiffness": 2e6, "tilt_stiffness": 5e3, "torsional_stiffness": 2e4, "axial_stiffness": 1e6}
+    coupling = {"length": "60 mm", "coupling": numbers}
+    pushed, pulled = ({"length": "100 mm", "diameter": "50 mm", "axial_force": force} for force in ("-2 kN", "5 kN"))
+    rotor = built(axial_force="300 N", segments=[coupling, pushed, coupling, coupling, pushed, coupling, pulled])
+    assert [part.axial_force for part in rotor.segments] == [300.0, -2e3, -2e3, -2e3, -2e3, 300.0, 5e3]
+    rotor = built(segments=[pushed, coupling | {"axial_force": 0}, pushed])
+    assert [part.axial_force for part in rotor.segments] == [-2e3, 0.0, -2e3]
+
+
 def test_the_discs_of_the_friswell_rotor_are_those_of_the_book() -> None:
     """Discs 70 mm thick, 280 and 350 mm across, on a 50 mm bore, density 7810: the solid's formulas."""
     case = load_case("friswell-rotor").case

@@ -85,7 +85,7 @@ def test_everything_on_a_shaft_has_its_sign_and_its_name() -> None:
         [
             rotors.Segment(0.1, 0.04, 0.01, STEEL, right_outer_diameter=0.06, right_inner_diameter=0.02),
             rotors.Segment(0.2, 0.06, 0.02, STEEL),
-            rotors.Coupling(0.06, 1e7, 1e4, 1e4, 1e7, mass=2.0),
+            rotors.Coupling(0.06, 1e7, 1e4, 1e4, 1e7, mass=2.0, axial_force=4e3),
             rotors.Segment(0.3, 0.05, 0.0, ALUMINIUM, axial_force=-5e3),
         ],
         [wheel, rotors.Disc(0.6, 3.0)],
@@ -121,7 +121,7 @@ def test_everything_on_a_shaft_has_its_sign_and_its_name() -> None:
     assert boxes(axes, "gear")[0] == pytest.approx((185.0, -55.0, 30.0, 110.0))
     assert [line[1, 0] for line in lines(axes, "pitch line")] == pytest.approx([-50.0, 50.0])
     assert set(texts(figure)) == {
-        "pinion, 28 teeth", "3 kg", "coupling", "compression 5 kN", "20 g·mm at 90°", "X1, 45°",
+        "pinion, 28 teeth", "3 kg", "coupling, tension 4 kN", "compression 5 kN", "20 g·mm at 90°", "X1, 45°",
         "ball", "stand", "housed",
     }  # fmt: skip
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["steel", "aluminium"]

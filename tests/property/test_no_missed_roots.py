@@ -100,7 +100,9 @@ def segment_rows(draw: st.DrawFn) -> list[Segment | Coupling]:
         length = draw(powers(-2.0, -0.5))
         weight = draw(st.sampled_from([0.0, 2.0]))
         tilt, twist = spring * length**2, 0.5 * spring * length**2
-        row.append(Coupling(length, spring, tilt, twist, spring, weight, 0.1 * weight, 0.06 * weight))
+        joint = Coupling(length, spring, tilt, twist, spring, weight, 0.1 * weight, 0.06 * weight)
+        # One that weighs is under tension: k L is that in which it has half its shear.
+        row.append(replace(joint, axial_force=0.5 * weight * spring * length))
         row.append(Segment(0.2, 0.05, 0.0, material))
     # A shaft, not a plate.
     assume(sum(part.length for part in row) > 0.05 * max(thicknesses(row)))
@@ -319,7 +321,7 @@ def rigid_motions(rotor: Rotor, supports: Sequence[RadialSupport]) -> int:
     """Two, less what the supports hold of shift and tilt; a pulled shaft resists tilting by itself."""
     held = [support.at for support in supports if support.stiffness > 0.0]
     apart = bool(held) and max(held) - min(held) > 1e-9 * rotor.length
-    pulled = any(isinstance(part, Segment) and part.axial_force > 0.0 for part in rotor.segments)
+    pulled = any(part.axial_force > 0.0 for part in rotor.segments)
     tilt = pulled or any(support.tilt_stiffness > 0.0 for support in supports)
     return 2 - min(2, (2 if apart else len(held[:1])) + tilt)
 

@@ -127,7 +127,10 @@ def _edges(
     """Right ends of the elements of a stretch of a segment, as fractions of the segment."""
     start, stop = stretch
     if isinstance(part, Coupling):
-        return [stop]
+        # Its own field has the wave number √(N/EI), N = P L / (k_t L²).
+        stretched = abs(part.axial_force) / (part.tilt_stiffness * part.length)
+        count = max(1, math.ceil(math.sqrt(stretched) * (stop - start) * part.length / reach))
+        return [*(start + (stop - start) * np.arange(1, count) / count).tolist(), stop]
     ends = [part.section(start), part.section(stop)]
     diameters = sorted(section.outer_diameter for section in ends)
     walls = sorted(section.outer_diameter - section.inner_diameter for section in ends)
@@ -175,7 +178,7 @@ def _section_rows(rotor: Rotor, index: int, fractions: FloatArray) -> list[tuple
     if isinstance(part, Coupling):
         springs = (part.lateral_stiffness, part.tilt_stiffness, part.torsional_stiffness, part.axial_stiffness)
         shear, bend, twist, stretch = (stiffness * part.length for stiffness in springs)
-        return [(shear, bend, 0.0, 0.0, 0.0, twist, 0.0, stretch)] * fractions.size
+        return [(shear, bend, part.axial_force, 0.0, 0.0, twist, 0.0, stretch)] * fractions.size
     present = float(rotor.mass_model == "distributed")
     rows = []
     for fraction in fractions.tolist() if part.is_conical else [0.0]:

@@ -9,7 +9,18 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import quad
 
-from rotors import Bearing, Coupling, Disc, Rotor, RotorError, Segment, ShaftMaterial, static_deflection
+from rotors import (
+    Bearing,
+    Coupling,
+    Disc,
+    RadialSupport,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    static_deflection,
+)
 from rotors.analyses.static_stiffness import StaticShaft, static_shaft
 from rotors.analyses.statics import StaticForce
 
@@ -215,7 +226,8 @@ def test_spans_of_a_micrometre_keep_their_digits() -> None:
 @pytest.mark.parametrize("force", [0.0, 4e5, -2e4])
 def test_on_bearings_it_deflects_like_the_static_deflection(mass_model: str, force: float) -> None:
     cone, *pulled = [replace(part, axial_force=force) for part in (CONE, *STEPS)]
-    parts = [cone, pulled[0], JAW, pulled[1], pulled[2], cone, pulled[0]]
+    jaw = replace(JAW, axial_force=force)
+    parts = [cone, pulled[0], jaw, pulled[1], pulled[2], cone, pulled[0]]
     rotor = Rotor("shaft", parts, [Disc(0.1, 3.0), Disc(0.4, 5.0, 0.1, 0.06)], mass_model)  # type: ignore[arg-type]
     matrix = np.diag([3e8, 2e8, 5e7, 2e4, 3e4])
     matrix[0, 1] = matrix[1, 0] = 4e7
@@ -258,6 +270,31 @@ def test_a_coupling_is_a_spring_in_the_shaft() -> None:
     turn = sum(c * ((0.35 - a) ** 2 - (0.35 - b) ** 2) / 2 + c * (b - a) for a, b, c in bend)
     assert tip[4] == pytest.approx(turn, rel=1e-12)
     assert shaft.weight([0.0, 1.0, 0.0])[[1, 7]].sum() == pytest.approx(0.3 * section.mass_per_length + JAW.mass)
+
+
+@pytest.mark.parametrize("phase", [2.0, 6.0])
+def test_a_coupling_soft_in_shear_resists_an_offset_under_compression_as_its_field_does(phase: float) -> None:
+    """Compliance under a shear force F of ends that do not tilt, z from the middle, C the compression, kL > C > kL / 2.
+
+    EI β'' + g C β = −g F with g = kL / (kL − C) and q² = g C / EI gives β = −F/C (1 − cos qz / cos(qL/2)), and
+    x' = g β + F / (kL − C) the offset ∫ x' dz. Beyond qL = π the resistance is negative, at 2π the coupling buckles.
+    """
+    shear, part, length, mass = 8e5, 0.97, 0.1, 2.0
+    share, compression = 1.0 / (1.0 - part), part * shear
+    bending = share * compression * (length / phase) ** 2
+    coupling = Coupling(length, shear / length, bending / length, 1e4, 1e6, axial_force=-compression)
+    rotor = Rotor("pair", [coupling], [Disc(0.0, mass), Disc(length, mass)])
+    shaft = static_shaft(rotor, [0.0, length])
+    wave = phase / length
+    sheared = length / (shear - compression)
+    bent = share / compression * (2.0 * math.tan(0.5 * phase) / wave - length)
+    assert shaft.stiffness[6, 6] == pytest.approx(1.0 / (bent + sheared), rel=1e-10)
+    assert shaft.stiffness[6, 0] == pytest.approx(-1.0 / (bent + sheared), rel=1e-10)
+    # And a mass on it, beside a spring to ground.
+    spring = 2.0 / abs(bent + sheared)
+    supports = [RadialSupport(0.0, math.inf, math.inf), RadialSupport(length, spring, math.inf)]
+    omega = math.sqrt((spring + 1.0 / (bent + sheared)) / mass)
+    assert solve_lateral_modes(rotor, supports, count=1).frequencies[0] == pytest.approx(omega, rel=1e-10)
 
 
 def test_a_cone_stretches_twists_and_bends_as_its_compliance_integrates() -> None:

@@ -59,6 +59,31 @@ def test_cones_couplings_tables_and_pedestals_come_back(tmp_path: Path) -> None:
         assert segment.axial_force == -300.0
 
 
+@pytest.mark.parametrize(("right", "passed"), [(-300.0, True), (200.0, False), (0.0, False)])
+def test_the_axial_force_of_a_coupling_is_told_and_comes_back_where_both_shafts_have_it(
+    right: float, passed: bool, tmp_path: Path
+) -> None:
+    shafts = [Segment(0.3, 0.05, 0.0, OURS, axial_force=force) for force in (-300.0, right)]
+    joint = Coupling(0.1, 1e8, 1e5, 2e5, 3e7, axial_force=-300.0)
+    lone, told = write_ross(tmp_path / "r.toml", Rotor("r", [shafts[0], joint, joint, shafts[1]]), element_length=1.0)
+    assert "has no length in ROSS" in lone
+    assert told == (
+        "rotor 'r' segment 1 and 1 more: the axial force of -300 N is left out: couplings of ROSS carry none"
+    )
+    found = read_ross(tmp_path / "r.toml")
+    assert [part.axial_force for part in found.rotor.segments] == [-300.0, *[-300.0 * passed] * 2, right]
+    text = (
+        "carries the axial force of -300 N of the shafts beside it, which ROSS leaves out there"
+        if passed
+        else f"carries no axial force, between a shaft with -300 N and one with {right:g} N"
+    )
+    assert f"r.toml: CouplingElement_Coupling 1 and 1 more: {text}" in found.warnings
+    free = dataclasses.replace(joint, axial_force=0.0)
+    write_ross(tmp_path / "end.toml", Rotor("r", [shafts[0], free]), element_length=1.0)
+    assert read_ross(tmp_path / "end.toml").rotor.segments[1].axial_force == 0.0
+    assert len(write_ross(tmp_path / "r.toml", Rotor("r", [shafts[0], free, shafts[1]]), element_length=1.0)) == 1
+
+
 def test_what_ross_has_no_place_for_is_said(tmp_path: Path) -> None:
     rotor = Rotor("r", [Segment(0.5, 0.05, 0.0, OURS, 0.9), Segment(0.5, 0.05, 0.0, OURS, "hutchinson")])
     tilting = Bearing("b", 0.0, np.diag([1e7, 1e7, 0.0, 1e4, 1e4]), np.zeros((2, 2)))

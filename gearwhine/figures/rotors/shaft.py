@@ -388,13 +388,13 @@ def _arranged(labels: Sequence[Label], view: ShaftView) -> LabelRow:
 def _labels_above(assembly: RotorAssembly, view: ShaftView) -> list[Label]:
     labels = []
     for part, left in zip(assembly.parts, assembly.rotor.joints.tolist(), strict=False):
-        if isinstance(part, Coupling):
+        words = ["coupling"] if isinstance(part, Coupling) else []
+        if part.axial_force:
+            sense = "tension" if part.axial_force > 0.0 else "compression"
+            words.append(f"{sense} {1e-3 * abs(part.axial_force):.3g} kN")
+        if words:
             middle = left + 0.5 * part.length
-            labels.append(Label("coupling", MM * middle, view.across(assembly.shaft_radius(middle))))
-        elif part.axial_force:
-            middle, sense = left + 0.5 * part.length, "tension" if part.axial_force > 0.0 else "compression"
-            text = f"{sense} {1e-3 * abs(part.axial_force):.3g} kN"
-            labels.append(Label(text, MM * middle, view.across(assembly.shaft_radius(middle))))
+            labels.append(Label(", ".join(words), MM * middle, view.across(assembly.shaft_radius(middle))))
     for disc in assembly.discs:
         ring = assembly.ring(disc)
         labels.append(Label(f"{plain(disc.mass)} kg", MM * disc.at, view.across(ring[0]) if ring else 0.0))
