@@ -92,6 +92,8 @@ def test_a_coupling_passes_on_the_axial_force_that_the_shafts_on_both_sides_have
     pushed, pulled = ({"length": "100 mm", "diameter": "50 mm", "axial_force": force} for force in ("-2 kN", "5 kN"))
     rotor = built(axial_force="300 N", segments=[coupling, pushed, coupling, coupling, pushed, coupling, pulled])
     assert [part.axial_force for part in rotor.segments] == [300.0, -2e3, -2e3, -2e3, -2e3, 300.0, 5e3]
+    rotor = built(segments=[pushed, coupling, pulled, coupling, pulled])
+    assert [part.axial_force for part in rotor.segments] == [-2e3, 0.0, 5e3, 5e3, 5e3]
     rotor = built(segments=[pushed, coupling | {"axial_force": 0}, pushed])
     assert [part.axial_force for part in rotor.segments] == [-2e3, 0.0, -2e3]
 

@@ -164,6 +164,10 @@ def test_a_stiff_coupling_is_a_link_that_the_force_turns(part: float) -> None:
     modes = solve_lateral_modes(rotor, held_left, count=1)
     assert modes.frequencies[0] == pytest.approx(math.sqrt((1.0 + part) * lateral / mass), rel=2e-5)
     assert buckling_factor(rotor, held_left) == pytest.approx(-1.0 / part if part < 0.0 else math.inf, rel=2e-6)
+    # Between two such couplings, of which one carries no force.
+    row = Rotor("links", [coupling, Coupling(length, lateral, 1e10, 1e4, 1e6)], [Disc(length, mass)])
+    modes = solve_lateral_modes(row, [*held_left, RadialSupport(2.0 * length, *CLAMP)], count=1)
+    assert modes.frequencies[0] == pytest.approx(math.sqrt((2.0 + part) * lateral / mass), rel=2e-5)
 
 
 @pytest.mark.parametrize("shear_over_euler", [1e6, 3.0, 0.2])
