@@ -46,7 +46,7 @@ CLOSE = 1e-10
 # Parts that differ more than this are extreme: a diameter thinner than `HAIR` of another, a disc of `HEAVY` times the
 # shaft's own inertia. Then eight digits are kept, as they are of any frequency below `SLOW` of the limit; and the modes
 # may be refused, never miscounted.
-HAIR, HEAVY, SLOW, CLOSE_IF_EXTREME = 1e-3, 1e8, 1e-6, 1e-7
+HAIR, HEAVY, SLOW, CLOSE_IF_EXTREME = 1e-2, 1e8, 1e-6, 1e-7
 EXAMPLES = int(os.environ.get("NO_MISSED_ROOTS_EXAMPLES", "40"))
 # The suite draws the same rotors each time; a search for new ones is asked for by its number.
 MANY = settings(
