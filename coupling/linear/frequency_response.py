@@ -123,9 +123,14 @@ def _pairs_of(modes: CoupledModes | None) -> Eigenpairs | None:
 
 
 def superposed(
-    pairs: Eigenpairs, loads: npt.NDArray[np.float64] | ComplexArray, frequencies: FloatArray
+    pairs: Eigenpairs,
+    loads: npt.NDArray[np.float64] | ComplexArray,
+    frequencies: FloatArray,
+    outputs: FloatArray | None = None,
 ) -> ComplexArray:
-    """H(iw) f from all eigenpairs, loads and result of shape (f, i, n).
+    """H(iw) f from all eigenpairs, loads and result of shape (f, i, n); loads (1, i, n) are the same at all w.
+
+    With output directions (o, n) the result is the motion along these alone, of shape (f, i, o).
 
     Raises
     ------
@@ -143,10 +148,13 @@ def superposed(
         raise ModesError("an undamped mode is driven at its own frequency; give it damping or leave that frequency out")
     # 1 / (s - λ) - 1 / s = λ / (s (s - λ)), without the difference's loss of digits at high frequency.
     gains = pairs.values / (s[:, None] * distance)
+    right, drift = pairs.right, pairs.drift
+    if outputs is not None:
+        right, drift = right @ outputs.T, outputs @ drift
     driven = np.einsum("mn,fin->fim", pairs.left.conj(), loads, optimize=True)
-    moved = np.einsum("fim,mn->fin", driven * gains[:, None, :], pairs.right, optimize=True)
+    moved = np.einsum("fim,mn->fin", driven * gains[:, None, :], right, optimize=True)
     if pairs.drifts:
-        moved = moved + np.einsum("fin,kn->fik", loads, pairs.drift, optimize=True) / (s**2)[:, None, None]
+        moved = moved + np.einsum("fin,kn->fik", loads, drift, optimize=True) / (s**2)[:, None, None]
     return np.asarray(moved)
 
 

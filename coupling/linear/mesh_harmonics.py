@@ -72,6 +72,25 @@ class ResponseParts(Response):
 
 
 @dataclass(frozen=True, eq=False)
+class MeshLoad:
+    """Load on the machine at a mesh harmonic, by all meshes that drive it.
+
+    Attributes
+    ----------
+    frequency : float
+        Circular frequency ω [rad/s].
+    causes : tuple of (int, int)
+        As of a `Response`.
+    load : ndarray of complex, shape (n,)
+        Load f on the coordinates of the system.
+    """
+
+    frequency: float
+    causes: tuple[tuple[int, int], ...]
+    load: ComplexArray
+
+
+@dataclass(frozen=True, eq=False)
 class MeshHarmonicModel:
     """A machine linear about its mean load, driven by its loaded meshes.
 
@@ -98,6 +117,10 @@ class MeshHarmonicModel:
             for n, contact in enumerate(contacts)
             if force is not None and force[n] > 0.0 and contact.mesh_frequency != 0.0
         )
+
+    def loads(self, limit: float) -> tuple[MeshLoad, ...]:
+        """Return the loads f of the mesh harmonics up to a limit [rad/s], ascending."""
+        return tuple(MeshLoad(w, causes, self._load(causes)) for w, causes in self._harmonics(limit))
 
     def responses(self, limit: float) -> tuple[Response, ...]:
         """Solve the motions at the mesh harmonics up to a limit [rad/s], ascending."""

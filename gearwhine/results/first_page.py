@@ -313,6 +313,7 @@ def _proofs(document: Document) -> Iterator[Finding]:
             passed=error < _MOST_ERROR,
             link=("section Motion",),
         )
+    yield from _point_proofs(document)
     for motion in document.get("motions", ()):
         if (error := motion.get("error")) is not None and motion.get("residual") is not None:
             yield Finding(
@@ -323,6 +324,33 @@ def _proofs(document: Document) -> Iterator[Finding]:
             )
     yield from _sound_proofs(document)
     yield from _basis(document)
+
+
+def _point_proofs(document: Document) -> Iterator[Finding]:
+    """Yield the energy balance of a sweep's points and the balance of their forces, each at its worst point."""
+    points = document.get("points", ()) if document.get("command") == "sweep" else ()
+    balances = [(point["energy_error"], point) for point in points if point.get("energy_error") is not None]
+    if balances:
+        largest, worst = max(balances, key=lambda balance: float(balance[0]))
+        yield Finding(
+            f"Sweep: the energy balance of {counted(len(balances), 'point')} closes to {largest:.0e} or better; worst "
+            f"at {_settings(worst)}, over {worst['steps']} steps.",
+            passed=largest < _MOST_ERROR,
+            link=("section Sweep",),
+        )
+    residuals = [(load["residual"], point) for point in points if (load := point.get("load", {})).get("residual")]
+    if residuals:
+        residual, worst = max(residuals, key=lambda balance: float(balance[0]))
+        yield Finding(
+            f"Sweep: at the operating points forces balance to {residual:.0e} of the largest load or better; worst at "
+            f"{_settings(worst)}.",
+            passed=residual < _BALANCED,
+            link=("section Sweep",),
+        )
+
+
+def _settings(point: Document) -> str:
+    return ", ".join(f"{key}={text}" for key, text in point["settings"].items())
 
 
 def _sound_proofs(document: Document) -> Iterator[Finding]:

@@ -5,7 +5,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from gearwhine.output.quantity import Quantity
+from coupling.signals.spectrum import from_decibels, rms_of_peak
+from gearwhine.output.quantity import ABSENT, Quantity
 from gearwhine.output.sections import (
     Column,
     Document,
@@ -33,10 +34,15 @@ def _peak_between(row: Mapping[str, Any]) -> str:
 
 
 def _peak_level(row: Mapping[str, Any]) -> str:
-    """Return the level of a peak: that of the sound power, or the amplitude of a sensor."""
+    """Return the level of a peak: that of the sound power, or the rms acceleration of a sensor."""
     if row["output"] == _SOUND:
         return f"L_W {row['level_db']:.1f} dB"
-    return f"{row['output']} {10.0 ** (row['level_db'] / 20.0):.3g} m/s²"
+    return f"{row['output']} {_rms(row['level_db']):.3g} m/s²"
+
+
+def _rms(level_db: float) -> float:
+    """Root mean square of an acceleration by its level [m/s²]."""
+    return float(rms_of_peak(from_decibels(level_db)))
 
 
 PEAK = (
@@ -76,8 +82,16 @@ PEAK = (
         lambda peak: peak.level_db,
         "missed_peak_level",
         unit="dB",
-        long_name="estimated level of the line there: of sound power re 1 pW, of an amplitude re 1 m/s2",
+        long_name="estimated level of the line there: of sound power re 1 pW, of an rms acceleration re 1e-6 m/s2",
     ),
+    Quantity(
+        "level_re",
+        lambda peak: "1 pW" if peak.output == _SOUND else "1e-6 m/s2 rms",
+        "missed_peak_level_reference",
+        long_name="reference of that level",
+    ),
+    Quantity("rms_m_per_s2", lambda peak: ABSENT if peak.output == _SOUND else _rms(peak.level_db)),
+    Quantity("found_over_linear_db", lambda peak: peak.found_over_linear_db),
     Quantity("rise_db", lambda peak: peak.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
 )
 """Quantities of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
@@ -86,7 +100,7 @@ PEAK = (
 _PEAK_COLUMNS = (
     Column("between [rpm]", _peak_between, numbers=("below_rpm", "above_rpm")),
     *_OF_PEAK,
-    Column("estimate", _peak_level, numbers=("level_db",)),
+    Column("estimate", _peak_level, numbers=("level_db", "rms_m_per_s2")),
     _RISE,
 )
 
@@ -136,7 +150,7 @@ def _missed(document: Document) -> Iterator[str | Table]:
     peaks = document.get("missed_peaks", ())  # not in summaries of earlier versions
     if not peaks:
         return
-    of_sensors = "" if peaks[0]["output"] == _SOUND else "; of sensors the amplitude of the line"
+    of_sensors = "" if peaks[0]["output"] == _SOUND else "; of sensors the rms of the line"
     caption = f"Peaks between the points, by the linear response{of_sensors}"
     yield from table_of(_PEAK_COLUMNS, peaks[:_MOST_PEAKS], caption)
     speeds = ", ".join(f"{speed:g} rpm" for speed in document["speeds_to_add_rpm"])

@@ -2,26 +2,29 @@
 
 A line of order o has the frequency o n at the speed n, and meets a mode of the damped frequency f at n = f / o. Where
 neither of two neighbouring speeds lies within the mode's half-power bandwidth 2 ζ f about it, the points do not resolve
-the peak. Its level is that of the line at the points times the ratio of the linear response to the mesh's transmission
-error, between the points in proportion to their distance; the transmission error is taken as that of the points. The
-sound power of that response is radiated as those of the lines are.
+the peak. Its level is that of the linear response at the mode's frequency to all that drives the line at a point, the
+transmission errors and the load shuttling of all meshes of the order with their phases, taken as that of the points. At
+the points themselves the linear response is compared with the motion: the level of the line over all outputs that was
+found there, over that of the response, is added. Of both points the estimate is the mean in proportion to their
+distance. The sound power of the response is radiated as that of the lines is.
 """
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from coupling.signals.spectrum import Spectrum, line_height, peak_of_rms
+from coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
 from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
 from gearwhine.output.quantity import warning
-from gearwhine.sweep.resonances import SOUND, Resonances
+from gearwhine.sweep.resonances import NEAR, SOUND, Resonances
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult
 
@@ -31,9 +34,9 @@ ComplexArray = npt.NDArray[np.complex128]
 _SAME = 1e-6  # relative difference of two orders that are one
 _NEAR = 0.5 + 1e-6  # largest distance of a line from its order, over the spacing of a record's lines, with rounding
 _ONE = 0.5  # distance up to which two speeds to be added are one, over the half-power half-width
-_TINY = 1e-300
-_STEPS = 21  # number of frequencies within a mode's half-power bandwidth
-_OUTSIDE = 2.0  # distance from a peak at which the curve must be lower, in half-power half-widths
+_LOWEST_DB = -1000.0  # level of silence
+_OTHER_CAUSE = 20.0  # level over that of the linear response by which a line has another cause than this response
+_SAME_MODE = 0.1  # relative difference of frequencies up to which modes of one name at two points may be the same
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,7 @@ class MissedPeak:
     half_width_rpm : float
         Half of the half-power bandwidth over the speed.
     line : str
-        Name of the mesh harmonic.
+        Name of the mesh harmonic, with all meshes that drive it.
     frequency_hz : float
         Frequency of the mode at which the line meets it [Hz].
     damping_ratio : float
@@ -60,7 +63,9 @@ class MissedPeak:
     output : str
         ``sound``, or the sensor at which the peak stands out most.
     level_db : float
-        Estimated level of the line at the peak: sound power level re 1 pW, or of the amplitude re 1 m/s².
+        Estimated level of the line at the peak: sound power level re 1 pW, or that of the rms acceleration re 1 µm/s².
+    found_over_linear_db : float
+        Level of the line in the motion at the points over that of the linear response there, which the estimate has.
     rise_db : float
         This level over that of all lines at the louder of the two points.
     """
@@ -76,6 +81,7 @@ class MissedPeak:
     mode: str
     output: str
     level_db: float
+    found_over_linear_db: float
     rise_db: float
 
 
@@ -134,12 +140,15 @@ def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
 
 
 def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], speeds: Sequence[float]) -> str:
-    """Return the option of the command for a sweep with further speeds [rpm]."""
-    along, key = next((number, key) for number, key in enumerate(keys) if SPEED_KEY in key.keys)
+    """Return the options of the command, quoted for a shell, for a sweep with further speeds [rpm]: old points stay."""
+    along = next(number for number, key in enumerate(keys) if SPEED_KEY in key.keys)
     texts = {point.point.texts[along]: _speed(point) for point in swept}
     sign = -1.0 if max(texts.values()) < 0.0 else 1.0
     texts |= {f"{sign * speed:g} rpm": sign * speed for speed in speeds}
-    return f"--over {key.key}='{','.join(sorted(texts, key=lambda text: texts[text]))}'"
+    ascending = sorted(texts, key=lambda text: texts[text])
+    values = (ascending if number == along else key.texts for number, key in enumerate(keys))
+    options = (f"{key.key}={','.join(of_key)}" for key, of_key in zip(keys, values, strict=True))
+    return " ".join(f"--over {shlex.quote(option)}" for option in options)
 
 
 def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
@@ -176,8 +185,52 @@ class _End:
     result: PointResult
     radiated: RadiatedLevel | None = None
 
-    def level(self, output: str, order: float) -> float | None:
-        """Level of a line at an output; None where it is not known."""
+    def line(self, order: float) -> int | None:
+        """Return the number of the line of an order; None where it is above the limit at this speed."""
+        same = np.flatnonzero(np.abs(self.resonances.line_orders - order) <= _SAME * order)
+        return int(same[0]) if same.size else None
+
+    def total(self, output: str) -> float:
+        """Level of all lines."""
+        if output == SOUND:
+            return float(self.result.document["sound"]["total_db"])
+        amplitude = self.result.sensor_spectra[output]
+        spectrum = Spectrum(self.result.orders, amplitude, np.zeros_like(amplitude), self.result.window)
+        return _level(float(peak_of_rms(spectrum.rms(np.inf))))
+
+    def mode_near(self, hertz: float, name: str) -> int | None:
+        """Return the number of a mode of another speed [Hz], which may be elsewhere here; None where it has left."""
+        away = np.abs(self.resonances.frequencies / hertz - 1.0)
+        away[np.array(self.resonances.names) != name] = np.inf
+        nearest = int(np.argmin(away))
+        return nearest if away[nearest] <= _SAME_MODE else None
+
+    def found_over_linear(self, outputs: Sequence[str], line: int) -> float | None:
+        """Level of a line in the motion over that of the linear response; None where it is not the line of that.
+
+        That of all outputs together: one of them may be where the response has a node, and its line of other causes.
+        """
+        order = float(self.resonances.line_orders[line])
+        found = [self._found(output, order) for output in outputs]
+        linear = [self._linear(output, line) for output in outputs]
+        known = [(level, other) for level, other in zip(found, linear, strict=True) if level is not None]
+        if not known:
+            return None
+        over = _sum([level for level, _ in known]) - _sum([other for _, other in known])
+        return over if abs(over) <= _OTHER_CAUSE else None
+
+    def near(self, output: str, line: int, mode: int) -> FloatArray:
+        """Levels of a line by the linear response about a mode, at the places `NEAR`, shape (p,)."""
+        resonances = self.resonances
+        levels: FloatArray = resonances.levels_near[resonances.outputs.index(output), line, mode]
+        rates = resonances.mode_rates[line, mode]
+        if output != SOUND or self.radiated is None or not np.any(rates):
+            return levels
+        # Even walls have the shape of the peak, the walls as they are its height.
+        return np.asarray(levels - levels[len(NEAR) // 2] + self.radiated(float(resonances.frequencies[mode]), rates))
+
+    def _found(self, output: str, order: float) -> float | None:
+        """Level of a line in the motion."""
         if output == SOUND:
             lines = self.result.document["sound"]["lines"]
             levels = (line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME * order)
@@ -191,40 +244,26 @@ class _End:
             return None
         # The line nearest to a tone between lines is lower than the tone: under Hann's window by up to 1.4 dB.
         height = float(line_height((orders[place] - order) / spacing, self.result.window))
-        return float(20.0 * np.log10(max(self.result.sensor_spectra[output][place] / height, _TINY)))
+        return _level(self.result.sensor_spectra[output][place] / height)
 
-    def total(self, output: str) -> float:
-        """Level of all lines, as of a line of their mean square."""
-        if output == SOUND:
-            return float(self.result.document["sound"]["total_db"])
-        amplitude = self.result.sensor_spectra[output]
-        spectrum = Spectrum(self.result.orders, amplitude, np.zeros_like(amplitude), self.result.window)
-        return float(20.0 * np.log10(max(float(peak_of_rms(spectrum.rms(np.inf))), _TINY)))
-
-    def mode_near(self, hertz: float) -> int:
-        """Return the number of the mode nearest to a frequency [Hz]: another speed may have it elsewhere."""
-        return int(np.argmin(np.abs(self.resonances.frequencies - hertz)))
-
-    def correction(self, output: str, mesh: int, harmonic: int, mode: int) -> float:
-        """Level by which a mode's peak over the line at this point differs from that of even walls [dB]."""
+    def _linear(self, output: str, line: int) -> float:
+        """Level of a line by the linear response."""
         resonances = self.resonances
-        if output != SOUND or self.radiated is None or harmonic > resonances.harmonic_rates.shape[1]:
-            return 0.0
-        at = np.array(
-            [float(resonances.frequencies[mode]), harmonic * resonances.mesh_orders[mesh] * self.speed_rpm / 60.0]
-        )
-        rates = (resonances.mode_rates[mesh, mode], resonances.harmonic_rates[mesh, harmonic - 1])
-        if not all(np.any(rate) for rate in rates):
-            return 0.0
-        peak, line = (self.radiated(hertz, rate) for hertz, rate in zip(at.tolist(), rates, strict=True))
-        even = self.response(output, mesh, at)
-        return peak - line - float(even[0] - even[1])
+        rates = resonances.line_rates[line]
+        if output == SOUND and self.radiated is not None and np.any(rates):
+            return self.radiated(float(resonances.line_orders[line] * self.speed_rpm / 60.0), rates)
+        return float(resonances.line_levels[resonances.outputs.index(output), line])
 
-    def response(self, output: str, mesh: int, frequencies: FloatArray) -> FloatArray:
-        """Level of the response of an output to a mesh's error at some frequencies [Hz]."""
-        resonances = self.resonances
-        curve = resonances.response[resonances.outputs.index(output), mesh]
-        return np.asarray(np.interp(frequencies, resonances.grid, curve))
+
+def _level(amplitude: float) -> float:
+    """Level of a sine by its amplitude [m/s²]."""
+    return max(float(decibels(amplitude)), _LOWEST_DB)
+
+
+def _sum(levels: Sequence[float]) -> float:
+    """Level of a sum of squares [dB]."""
+    highest = max(levels)
+    return highest + 10.0 * float(np.log10(sum(10.0 ** (0.1 * (level - highest)) for level in levels)))
 
 
 def _between(
@@ -236,36 +275,35 @@ def _between(
         assert swept_point.outcome.resonances is not None
         ends.append(_End(abs(_speed(swept_point)), swept_point.outcome.resonances, swept_point.outcome, radiated))
     low, high = ends
-    if (low.resonances.meshes, low.resonances.outputs) != (high.resonances.meshes, high.resonances.outputs):
+    if low.resonances.outputs != high.resonances.outputs:
         return
     outputs = [name for name in low.resonances.outputs if name != SOUND]
     if all("sound" in end.result.document for end in ends):
         outputs = [SOUND]
     totals = {name: max(end.total(name) for end in ends) for name in outputs}
-    resonances = low.resonances
-    for mesh, (name, order) in enumerate(zip(resonances.meshes, resonances.mesh_orders.tolist(), strict=True)):
-        for harmonic in range(1, 1 + int(60.0 * resonances.grid[-1] / (order * low.speed_rpm))):
-            peaks: dict[int, MissedPeak] = {}
-            for output in outputs:
-                for number, hertz, level in _peaks(low, high, output, mesh, harmonic):
-                    rise = level - totals[output]
-                    if rise > 0.0 and (number not in peaks or rise > peaks[number].rise_db):
-                        rpm = 60.0 / (harmonic * order)
-                        peaks[number] = MissedPeak(
-                            settings=settings,
-                            below_rpm=low.speed_rpm,
-                            above_rpm=high.speed_rpm,
-                            speed_rpm=rpm * hertz,
-                            half_width_rpm=rpm * float(resonances.half_widths[number]),
-                            line=f"{harmonic}× {name}",
-                            frequency_hz=hertz,
-                            damping_ratio=float(resonances.half_widths[number] / resonances.frequencies[number]),
-                            mode=resonances.names[number],
-                            output=output,
-                            level_db=level,
-                            rise_db=rise,
-                        )
-            yield from _apart(peaks.values())
+    # The slower point has all lines of the faster one below the limit.
+    for line, (name, order) in enumerate(zip(low.resonances.lines, low.resonances.line_orders.tolist(), strict=True)):
+        peaks: dict[int, MissedPeak] = {}
+        for found in _peaks(low, high, outputs, line):
+            rise = found.level - totals[found.output]
+            if rise > 0.0 and (found.mode not in peaks or rise > peaks[found.mode].rise_db):
+                rpm = 60.0 / order
+                peaks[found.mode] = MissedPeak(
+                    settings=settings,
+                    below_rpm=low.speed_rpm,
+                    above_rpm=high.speed_rpm,
+                    speed_rpm=rpm * found.hertz,
+                    half_width_rpm=rpm * found.half_width,
+                    line=name,
+                    frequency_hz=found.hertz,
+                    damping_ratio=found.half_width / found.hertz,
+                    mode=low.resonances.names[found.mode],
+                    output=found.output,
+                    level_db=found.level,
+                    found_over_linear_db=found.over_linear,
+                    rise_db=rise,
+                )
+        yield from _apart(peaks.values())
 
 
 def _apart(peaks: Iterable[MissedPeak]) -> Iterator[MissedPeak]:
@@ -277,36 +315,45 @@ def _apart(peaks: Iterable[MissedPeak]) -> Iterator[MissedPeak]:
             yield peak
 
 
-def _peaks(low: _End, high: _End, output: str, mesh: int, harmonic: int) -> Iterator[tuple[int, float, float]]:
-    """Yield the peaks of a line between two points that neither resolves: number of the mode, frequency, and level."""
-    order = harmonic * float(low.resonances.mesh_orders[mesh])
+class _Peak(NamedTuple):
+    """Peak of a line at an output: number of the mode, frequency and half-width [Hz], levels."""
+
+    output: str
+    mode: int
+    hertz: float
+    half_width: float
+    level: float
+    over_linear: float
+
+
+def _peaks(low: _End, high: _End, outputs: Sequence[str], line: int) -> Iterator[_Peak]:
+    """Yield the peaks of a line of the slower point between two points that neither resolves."""
+    order = float(low.resonances.line_orders[line])
     first, last = order * low.speed_rpm / 60.0, order * high.speed_rpm / 60.0
-    levels = [(end, at, end.level(output, order)) for end, at in ((low, first), (high, last))]
-    at_ends = [(end, at, level) for end, at, level in levels if level is not None]
-    resonances = low.resonances
-    if not at_ends:
-        return
-
-    def between(frequencies: FloatArray, values: Sequence[FloatArray | float]) -> FloatArray:
-        part = (frequencies - first) / (last - first)
-        return np.asarray(values[0] if len(values) == 1 else (1.0 - part) * values[0] + part * values[1])
-
-    def curve(frequencies: FloatArray) -> FloatArray:
-        values = [
-            level + end.response(output, mesh, frequencies) - end.response(output, mesh, np.array([at]))
-            for end, at, level in at_ends
-        ]
-        return between(frequencies, values)
-
-    inside = (resonances.frequencies - resonances.half_widths > first) & (
-        resonances.frequencies + resonances.half_widths < last
-    )
-    for number in np.flatnonzero(inside).tolist():
-        middle, half = float(resonances.frequencies[number]), float(resonances.half_widths[number])
-        near = middle + half * np.linspace(-1.0, 1.0, _STEPS)
-        level = curve(near)
-        top = int(np.argmax(level))
-        # A mode on the flank of a higher peak has no peak of its own.
-        if level[top] > curve(middle + half * np.array([-_OUTSIDE, _OUTSIDE])).max():
-            values = [end.correction(output, mesh, harmonic, end.mode_near(middle)) for end, _, _ in at_ends]
-            yield number, float(near[top]), float(level[top] + between(near[top], values))
+    at_high = high.line(order)
+    over_linear = low.found_over_linear(outputs, line)
+    over_linear_high = None if at_high is None else high.found_over_linear(outputs, at_high)
+    for mode, name in enumerate(low.resonances.names):
+        middle, half = float(low.resonances.frequencies[mode]), float(low.resonances.half_widths[mode])
+        part = min(max((middle - first) / (last - first), 0.0), 1.0)
+        same = high.mode_near(middle, name)
+        if same is not None:
+            middle += part * (float(high.resonances.frequencies[same]) - middle)
+            half += part * (float(high.resonances.half_widths[same]) - half)
+        if not (middle - half > first and middle + half < last):
+            continue
+        for output in outputs:
+            known = []
+            if over_linear is not None:
+                known.append((1.0 - part, low.near(output, line, mode), over_linear))
+            if same is not None and at_high is not None and over_linear_high is not None:
+                known.append((part, high.near(output, at_high, same), over_linear_high))
+            if not known:
+                continue
+            weights = np.array([weight for weight, *_ in known]) if len(known) > 1 else np.ones(1)
+            over = float(weights @ [level for *_, level in known])
+            levels = weights @ np.array([near for _, near, _ in known]) + over
+            top = int(np.argmax(levels))
+            # A mode on the flank of a higher peak has no peak of its own.
+            if 0 < top < len(NEAR) - 1:
+                yield _Peak(output, mode, middle + half * float(NEAR[top]), half, float(levels[top]), over)

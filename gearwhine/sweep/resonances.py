@@ -1,21 +1,25 @@
-"""Resonances of a sweep's point: coupled modes about the mean contact, and the linear response to mesh errors.
+"""Resonances of a sweep's point: coupled modes about the mean contact, and the mesh harmonics near them.
 
-Between two speeds of a sweep a mesh harmonic changes with this response alone, as far as the transmission error is
-static: it tells where a peak lies that the points pass by (:mod:`gearwhine.sweep.resolution`).
+Between two speeds of a sweep a mesh harmonic changes as its linear response does: it is driven by the loaded
+transmission errors and the load shuttling of all meshes of its order together, with their phases
+(:mod:`coupling.linear.mesh_harmonics`), which stay what they are as long as the load does. So the response at other
+frequencies than that of the point has the peaks that the points pass by (:mod:`gearwhine.sweep.resolution`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine, ModesError, coupled_modes
+from coupling.gears import GearError
 from coupling.linear.complex_modes import CoupledModes
-from coupling.linear.excitation_orders import excitation_lines
-from coupling.linear.frequency_response import mesh_error_response, resonance_grid, touching_meshes
-from coupling.statics.mean_mesh import mean_contact
+from coupling.linear.frequency_response import superposed
+from coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
+from coupling.signals.spectrum import decibels
 from gearwhine.case import Case
 from gearwhine.solve.sound.motion_lines import pulsating_efficiency
 
@@ -25,9 +29,12 @@ ComplexArray = npt.NDArray[np.complex128]
 SOUND = "sound"
 """Name of the output of the sound power, beside those of the sensors."""
 
+NEAR = np.concatenate([[-2.0], np.linspace(-1.0, 1.0, 21), [2.0]])
+"""Places about a mode at which the lines are solved, in half-power half-widths; the first and the last are outside."""
+
 _TWO_PI = 2.0 * np.pi
 _LOWEST_HZ = 20.0
-_SMALLEST = 1e-150  # of a response, whose logarithm is taken
+_LOWEST_DB = -1000.0  # level of silence
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,34 +49,34 @@ class Resonances:
         Half of the half-power bandwidth, ζ ω / 2π [Hz].
     names : tuple of str
         Kind and place of each mode in words.
-    meshes : tuple of str
-        Names of the meshes in contact.
-    mesh_orders : ndarray, shape (k,)
-        Mesh frequency of each over the speed of the first driver.
-    grid : ndarray, shape (f,)
-        Frequencies of the response [Hz], ascending; every resonance is resolved.
+    lines : tuple of str
+        Names of the mesh harmonics below the limit at this speed, with all meshes that drive each.
+    line_orders : ndarray, shape (l,)
+        Frequency of each over the speed of the first driver.
     outputs : tuple of str
         Sensors, and `SOUND` where the housing radiates.
-    response : ndarray, shape (o, k, f)
-        Level of each output by a unit transmission error of each mesh [dB]; of the sound the square of the housing's
-        velocity times the radiation efficiency of a pulsating sphere.
-    mode_rates : ndarray of complex, shape (k, m, n)
-        Rates of the housing's coordinates by a unit transmission error of each mesh at each mode's frequency; n is 0
-        where the housing does not radiate.
-    harmonic_rates : ndarray of complex, shape (k, h, n)
-        Such rates at the multiples of each mesh frequency at this speed, 0 above the limit.
+    line_levels : ndarray, shape (o, l)
+        Level of each line by the linear response at this speed [dB]: of a sensor that of its rms value re 1 µm/s²; of
+        the sound, up to a constant, the square of the housing's velocity times the radiation efficiency of a pulsating
+        sphere.
+    levels_near : ndarray, shape (o, l, m, p)
+        Levels that each line would have at the frequencies of the places `NEAR` about each mode.
+    line_rates : ndarray of complex, shape (l, n)
+        Rates of the housing's coordinates in each line at this speed; n is 0 where the housing does not radiate.
+    mode_rates : ndarray of complex, shape (l, m, n)
+        Rates that each line would have at each mode's frequency.
     """
 
     frequencies: FloatArray
     half_widths: FloatArray
     names: tuple[str, ...]
-    meshes: tuple[str, ...]
-    mesh_orders: FloatArray
-    grid: FloatArray
+    lines: tuple[str, ...]
+    line_orders: FloatArray
     outputs: tuple[str, ...]
-    response: FloatArray
+    line_levels: FloatArray
+    levels_near: FloatArray
+    line_rates: ComplexArray
     mode_rates: ComplexArray
-    harmonic_rates: ComplexArray
 
 
 def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Resonances | None:
@@ -87,67 +94,77 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
     steady = (case.transient is None or case.transient.run is None) and (
         case.operation is None or case.operation.base is None
     )
-    contact = mean_contact(machine.system)
-    touching = touching_meshes(machine, contact)
     heard = case.acoustics is not None and machine.housing is not None
     listens = machine.housing is not None and (machine.housing.sensors or heard)
-    if not (steady and touching and listens and limit_hz > _LOWEST_HZ):
+    if not (steady and listens and limit_hz > _LOWEST_HZ):
         return None
+    model = MeshHarmonicModel(machine)
     try:
-        modes = coupled_modes(machine.system, contact)
-        grid = resonance_grid(modes, _TWO_PI * _LOWEST_HZ, _TWO_PI * limit_hz)
-        responses = [
-            mesh_error_response(machine, grid, mesh=response, contact=contact, modes=modes) for response in touching
-        ]
-    except ModesError:
+        driven = model.loads(_TWO_PI * limit_hz)
+        modes = coupled_modes(machine.system, model.contact)
+        if not driven:
+            return None
+        chosen = _swinging(modes, limit_hz)
+        damped, widths = modes.eigenvalues.imag[chosen], -modes.eigenvalues.real[chosen]
+        lines = [_solve_line(case, machine, modes, line, damped, widths) for line in driven]
+    except (GearError, ModesError):
         return None
-    outputs: dict[str, list[FloatArray]] = {
-        name: [20.0 * _log(np.abs(response.sensor_acceleration[name])) for response in responses]
-        for name in responses[0].sensor_acceleration
-    }
-    if heard:
-        assert case.acoustics is not None
-        # The surface is not known here: a body of a square metre stands for it, in proportion alone.
-        efficiency = pulsating_efficiency(grid / _TWO_PI, 1.0, case.acoustics.speed_of_sound)
-        outputs[SOUND] = [
-            10.0 * _log((np.abs(_rates(machine, response.coordinates, grid)) ** 2).sum(axis=1) * efficiency)
-            for response in responses
-        ]
-    chosen = _swinging(modes, limit_hz)
-    # One line for each mesh, in their order.
-    orders = [line.order for line in excitation_lines(machine, shaft_orders=(), mesh_harmonics=(1,))]
-    turning_hz = abs(machine.speeds[machine.leading_rotor]) / _TWO_PI
-    most = int(limit_hz / (min(orders) * turning_hz))
-    size = 0 if machine.housing is None else machine.housing.size
-
-    def rates(hertz: FloatArray, mesh: int) -> ComplexArray:
-        moved = mesh_error_response(machine, _TWO_PI * hertz, mesh=mesh, contact=contact, modes=modes)
-        return _rates(machine, moved.coordinates, moved.frequencies)
-
-    def harmonics(mesh: int) -> ComplexArray:
-        multiples = np.asarray(orders[mesh] * turning_hz * np.arange(1, most + 1), dtype=np.float64)
-        inside = multiples[multiples <= limit_hz]
-        rates_inside = rates(inside, mesh) if len(inside) else np.zeros((0, size), dtype=np.complex128)
-        return np.concatenate([rates_inside, np.zeros((most - len(rates_inside), size), dtype=np.complex128)])
-
-    damped = modes.eigenvalues.imag[chosen] / _TWO_PI
-    none = np.zeros((len(touching), len(damped), 0), dtype=np.complex128)
     return Resonances(
-        frequencies=damped,
-        half_widths=-modes.eigenvalues.real[chosen] / _TWO_PI,
+        frequencies=damped / _TWO_PI,
+        half_widths=widths / _TWO_PI,
         # The housing stands for its own place.
         names=tuple(
             modes.kinds[number] if modes.kinds[number] == modes.where[number] else modes.labels[number]
             for number in chosen.tolist()
         ),
-        meshes=tuple(machine.meshes[number].name for number in touching),
-        mesh_orders=np.array([orders[number] for number in touching]),
-        grid=grid / _TWO_PI,
-        outputs=tuple(outputs),
-        response=np.array(list(outputs.values())),
-        mode_rates=np.array([rates(damped, number) for number in touching]) if heard else none[:, : len(damped)],
-        harmonic_rates=np.array([harmonics(number) for number in touching]) if heard else none[:, :0],
+        lines=tuple(_name(machine, line.causes) for line in driven),
+        line_orders=np.array([line.frequency for line in driven]) / abs(machine.speeds[machine.leading_rotor]),
+        outputs=(*machine.sensor_rows, *([SOUND] * heard)),
+        line_levels=np.array([line.level for line in lines]).T,
+        levels_near=np.moveaxis(np.array([line.levels_near for line in lines]), 0, 1),
+        line_rates=np.array([line.rates for line in lines]),
+        mode_rates=np.array([line.mode_rates for line in lines]),
     )
+
+
+class _Line(NamedTuple):
+    """Response of the outputs to one line, as in `Resonances`."""
+
+    level: FloatArray
+    levels_near: FloatArray
+    rates: ComplexArray
+    mode_rates: ComplexArray
+
+
+def _solve_line(
+    case: Case, machine: CoupledMachine, modes: CoupledModes, line: MeshLoad, damped: FloatArray, widths: FloatArray
+) -> _Line:
+    """Solve a line at its own frequency and about each mode [rad/s]."""
+    housing = machine.housing
+    assert housing is not None
+    sensors = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
+    heard = case.acoustics is not None
+    coordinates = machine.rows(housing.name, np.eye(housing.size)) if heard else sensors[:0]
+    # Two half-widths below a mode that is nearly overdamped may be below zero.
+    near = np.maximum(damped[:, None] + widths[:, None] * NEAR, _TWO_PI)
+    omega = np.concatenate([[line.frequency], near.ravel()])
+    moved = superposed(modes.pairs, line.load[None, None], omega, np.concatenate([sensors, coordinates]))[:, 0]
+    levels = decibels(omega[:, None] ** 2 * np.abs(moved[:, : len(sensors)]))
+    rates = 1j * omega[:, None] * moved[:, len(sensors) :]
+    if case.acoustics is not None:
+        # The surface is not known here: a body of a square metre stands for it, in proportion alone.
+        efficiency = pulsating_efficiency(omega / _TWO_PI, 1.0, case.acoustics.speed_of_sound)
+        with np.errstate(divide="ignore"):
+            sound = 10.0 * np.log10((np.abs(rates) ** 2).sum(axis=1) * efficiency)
+        levels = np.column_stack([levels, sound])
+    levels = np.maximum(levels, _LOWEST_DB)
+    at_modes = rates[1:].reshape(*near.shape, len(coordinates))[:, len(NEAR) // 2]
+    return _Line(levels[0], levels[1:].T.reshape(levels.shape[1], *near.shape), rates[0], at_modes)
+
+
+def _name(machine: CoupledMachine, causes: tuple[tuple[int, int], ...]) -> str:
+    """Name a line by the harmonics of all meshes that drive it, as the lines of a motion are named."""
+    return ", ".join(f"{harmonic}× {machine.meshes[machine.flanks(number)[0]].name}" for number, harmonic in causes)
 
 
 def _swinging(modes: CoupledModes, limit_hz: float) -> npt.NDArray[np.intp]:
@@ -156,14 +173,3 @@ def _swinging(modes: CoupledModes, limit_hz: float) -> npt.NDArray[np.intp]:
     proper = np.array([kind not in ("residual", "rigid") for kind in modes.kinds]) & (modes.eigenvalues.real < 0.0)
     chosen = np.flatnonzero(proper & (damped > 0.0) & (damped < limit_hz))
     return np.asarray(chosen[np.argsort(damped[chosen], kind="stable")])
-
-
-def _rates(machine: CoupledMachine, coordinates: ComplexArray, omega: FloatArray) -> ComplexArray:
-    """Rates of the housing's coordinates, whose shapes are normalised to the mass, shape (f, n)."""
-    assert machine.housing is not None
-    housing_rows = machine.rows(machine.housing.name, np.eye(machine.housing.size))
-    return np.asarray(1j * omega[:, None] * (coordinates @ housing_rows.T))
-
-
-def _log(values: FloatArray) -> FloatArray:
-    return np.asarray(np.log10(np.maximum(values, _SMALLEST)))

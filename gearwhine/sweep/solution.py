@@ -312,18 +312,8 @@ def _arrays(result: PointResult) -> Variables:
 
 
 def _resonance_arrays(resonances: Resonances) -> Variables:
-    mode, mesh, grid, output = ("coupled_mode",), ("mesh",), ("response_frequency",), ("output",)
-    parts, rate_attributes = (
-        ("coordinate", "part"),
-        {"units": "s-1 kg0.5", "long_name": "rates by a unit transmission error"},
-    )
-    arrays: Variables = {}
-    if resonances.mode_rates.size and resonances.harmonic_rates.size:
-        arrays = {
-            "mode_rates": ((*mesh, *mode, *parts), _parts(resonances.mode_rates), rate_attributes),
-            "harmonic_rates": ((*mesh, "harmonic", *parts), _parts(resonances.harmonic_rates), rate_attributes),
-        }
-    return arrays | {
+    mode, line, output, near = "coupled_mode", "line", "output", "place_near"
+    arrays: Variables = {
         "coupled_frequency": (mode, resonances.frequencies, {"units": "Hz", "long_name": "damped natural frequency"}),
         "coupled_half_width": (
             mode,
@@ -331,16 +321,27 @@ def _resonance_arrays(resonances: Resonances) -> Variables:
             {"units": "Hz", "long_name": "half the half-power bandwidth"},
         ),
         "coupled_name": (mode, list(resonances.names), {"long_name": "kind and place of the coupled mode"}),
-        "mesh": (mesh, list(resonances.meshes), {}),
-        "mesh_order": (mesh, resonances.mesh_orders, {"units": "1", "long_name": "mesh order over the first driver"}),
-        "response_frequency": (grid, resonances.grid, {"units": "Hz", "long_name": "frequency of the response"}),
+        "line": (line, list(resonances.lines), {"long_name": "mesh harmonic with all meshes that drive it"}),
+        "line_order": (line, resonances.line_orders, {"units": "1", "long_name": "order over the first driver"}),
         "output": (output, list(resonances.outputs), {}),
-        "response": (
-            (*output, *mesh, *grid),
-            resonances.response,
-            {"units": "dB", "long_name": "level of the output by a unit transmission error of the mesh"},
+        "line_level": (
+            (output, line),
+            resonances.line_levels,
+            {"units": "dB", "long_name": "level of the line by the linear response, of a sensor re 1e-6 m/s2"},
+        ),
+        "level_near": (
+            (output, line, mode, near),
+            resonances.levels_near,
+            {"units": "dB", "long_name": "level that the line would have about the mode"},
         ),
     }
+    if resonances.mode_rates.size:
+        of_rates = {"units": "m kg^0.5 / s", "long_name": "rates of the housing's coordinates by the linear response"}
+        arrays |= {
+            "line_response_rates": ((line, "coordinate", "part"), _parts(resonances.line_rates), of_rates),
+            "mode_rates": ((line, mode, "coordinate", "part"), _parts(resonances.mode_rates), of_rates),
+        }
+    return arrays
 
 
 def _parts(values: npt.NDArray[np.complex128]) -> FloatArray:
@@ -348,24 +349,22 @@ def _parts(values: npt.NDArray[np.complex128]) -> FloatArray:
 
 
 def _resonances(arrays: dict[str, npt.NDArray[Any]]) -> Resonances | None:
-    if "response" not in arrays:
+    if "level_near" not in arrays:
         return None
-    shape = len(arrays["mesh"]), len(arrays["coupled_frequency"]), 0
-    none = np.zeros((*shape, 2)), np.zeros((shape[0], 0, 0, 2))
-    of_modes, of_harmonics = (
-        arrays.get(name, empty) for name, empty in zip(("mode_rates", "harmonic_rates"), none, strict=True)
-    )
+    lines, modes = len(arrays["line"]), len(arrays["coupled_frequency"])
+    of_lines = arrays.get("line_response_rates", np.zeros((lines, 0, 2)))
+    of_modes = arrays.get("mode_rates", np.zeros((lines, modes, 0, 2)))
     return Resonances(
         frequencies=arrays["coupled_frequency"],
         half_widths=arrays["coupled_half_width"],
         names=tuple(map(str, arrays["coupled_name"])),
-        meshes=tuple(map(str, arrays["mesh"])),
-        mesh_orders=arrays["mesh_order"],
-        grid=arrays["response_frequency"],
+        lines=tuple(map(str, arrays["line"])),
+        line_orders=arrays["line_order"],
         outputs=tuple(map(str, arrays["output"])),
-        response=arrays["response"],
+        line_levels=arrays["line_level"],
+        levels_near=arrays["level_near"],
+        line_rates=of_lines[..., 0] + 1j * of_lines[..., 1],
         mode_rates=of_modes[..., 0] + 1j * of_modes[..., 1],
-        harmonic_rates=of_harmonics[..., 0] + 1j * of_harmonics[..., 1],
     )
 
 

@@ -122,7 +122,7 @@ def test_responses_to_a_micrometre_of_error_are_in_the_unit_that_their_row_names
 def test_a_missed_peak_has_both_speeds_and_what_peaks() -> None:
     peak = {"settings": {}, "below_rpm": 3000.0, "above_rpm": 4200.0, "line": "1x", "mode": "housing"}
     peak |= {"frequency_hz": 900.0, "speed_rpm": 3600.0, "half_width_rpm": 20.0, "rise_db": 9.0}
-    sensor = peak | {"output": "right wall", "level_db": 20.0}
+    sensor = peak | {"output": "right wall", "level_db": 140.0, "rms_m_per_s2": 10.0}
     document = {
         "points": [],
         "resumed": 0,
@@ -138,4 +138,5 @@ def test_a_missed_peak_has_both_speeds_and_what_peaks() -> None:
     assert [row["between [rpm]"] for row in found] == ["3000 and 4200"] * 2
     assert [(float(row["below_rpm"]), float(row["above_rpm"])) for row in found] == [(3000.0, 4200.0)] * 2
     assert [row["estimate"] for row in found] == ["right wall 10 m/s²", "L_W 80.0 dB"]
-    assert [float(row["level_db"]) for row in found] == [20.0, 80.0]
+    assert [float(row["level_db"]) for row in found] == [140.0, 80.0]
+    assert [row["rms_m_per_s2"] for row in found] == ["10.0", ""]

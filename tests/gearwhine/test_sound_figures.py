@@ -214,21 +214,21 @@ def test_a_sweep_marks_the_peaks_that_its_points_pass_by() -> None:
     dataset["speed"].attrs["units"] = "rpm"
     dataset = dataset.assign(
         missed_peak_speed=("missed_peak", [1500.0, 2500.0, 3500.0]),
-        missed_peak_level=("missed_peak", [85.0, -3.0, 90.0]),
+        missed_peak_level=("missed_peak", [85.0, 117.0, 90.0]),
         missed_peak_output=("missed_peak", ["sound", "roof", "sound"]),
     )
     figure = dict(draw_sweep("t", dataset))["sweep-sound"]
     (circles,) = [line for line in figure.axes[0].lines if line.get_markerfacecolor() == "none"]
     assert np.asarray(circles.get_xydata()).tolist() == [[1500.0, 85.0], [3500.0, 90.0]]
     assert any("circles: peaks that the points pass by" in text.get_text() for text in figure.texts)
-    # Of a sensor its rms: that of -3 dB re 1 m/s² as an amplitude.
+    # Of a sensor its rms: 117 dB re 1 µm/s².
     dataset = dataset.assign(
         sensor_rms=(("speed", "sensor"), np.ones((4, 1))),
         sensor_spectrum=(("speed", "sensor", "order"), np.full((4, 1, 2), np.nan)),
     ).assign_coords(sensor=["roof"], order=[0.0, 1.0])
     rms = dict(draw_sweep("t", dataset))["sweep-rms"]
     (circles,) = [line for line in rms.axes[0].lines if line.get_markerfacecolor() == "none"]
-    assert np.asarray(circles.get_xydata()).tolist() == [[2500.0, pytest.approx(10.0 ** (-0.15) / np.sqrt(2.0))]]
+    assert np.asarray(circles.get_xydata()).tolist() == [[2500.0, pytest.approx(10.0 ** (-0.15))]]
     plain = dict(draw_sweep("t", swept_sound()))["sweep-sound"]
     assert not any("circles" in text.get_text() for text in plain.texts)
 

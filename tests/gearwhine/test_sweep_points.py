@@ -118,7 +118,7 @@ def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> N
     np.testing.assert_array_equal(back.orders, result.orders)
     assert result.resonances is not None
     assert back.resonances is not None
-    assert result.resonances.mode_rates.shape[2] == result.resonances.harmonic_rates.shape[2] > 0
+    assert result.resonances.mode_rates.shape[2] == result.resonances.line_rates.shape[1] > 0
     for field in fields(result.resonances):
         np.testing.assert_array_equal(getattr(back.resonances, field.name), getattr(result.resonances, field.name))
     # Another content under the same name is not this point, nor is half a file.

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from coupling.signals.spectrum import from_decibels, rms_of_peak
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.figures.style import (
     FOOT,
@@ -86,7 +87,7 @@ def _sensor_levels(title: str, dataset: xr.Dataset, along: str, places: list[dic
         axes = panel(figure, FOOT + below + number * (_LEVELS + _LEVELS_GAP), _LEVELS)
         _draw_lines(axes, dataset["sensor_rms"].sel(sensor=sensor), along, places)
         speeds, peaks = missed.get(sensor, (np.empty(0), np.empty(0)))
-        peaks = np.sqrt(0.5) * 10.0 ** (peaks / 20.0)
+        peaks = np.asarray(rms_of_peak(from_decibels(peaks)))
         _mark_missed_peaks(axes, speeds, peaks)
         levels = np.concatenate([dataset["sensor_rms"].sel(sensor=sensor).values.ravel(), peaks])
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
