@@ -108,3 +108,11 @@ def test_a_tone_is_known_within_a_part_of_the_spacing(place: float) -> None:
         amplitude_spectrum(np.exp(-20.0 * _TIMES) * tone(0.5 * place, 1.0), _INTERVAL, "hann"), count=1
     )
     assert ring_down.resolution == pytest.approx([0.25], rel=1e-5)
+
+
+def test_a_tone_beside_a_louder_one_is_known_less_well() -> None:
+    """Four times as loud, a tone 3.2 lines off moves this one by more than a lone tone is known within."""
+    both = tone(0.5 * 200.5, 1.0) + tone(0.5 * 203.7, 4.0)
+    peaks = spectral_peaks(amplitude_spectrum(both, _INTERVAL, "hann"), count=2)
+    (at,) = np.flatnonzero(np.abs(peaks.frequencies - 0.5 * 200.5) < 0.25)
+    assert 0.05 * 0.5 < abs(peaks.frequencies[at] - 0.5 * 200.5) <= peaks.resolution[at] < 0.1
