@@ -1,7 +1,7 @@
 """Excitation orders of a machine: shafts, mesh harmonics, sidebands, passing of rolling elements, harmonic loads."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -34,6 +34,26 @@ class ExcitationLine:
     order: float
 
 
+@dataclass(frozen=True)
+class ExcitedOrders:
+    """Orders of a shaft that something excites.
+
+    Attributes
+    ----------
+    orders : frozenset of float
+        Multiples of the shaft's speed.
+    every : bool
+        Whether every whole multiple is excited, too.
+    """
+
+    orders: frozenset[float] = frozenset()
+    every: bool = False
+
+    def __contains__(self, order: float) -> bool:
+        """Whether a multiple of the shaft's speed is excited."""
+        return self.every or order in self.orders
+
+
 def excitation_lines(
     machine: CoupledMachine,
     *,
@@ -42,6 +62,7 @@ def excitation_lines(
     sidebands: int = 0,
     element_passes: Sequence[int] = (),
     load_multiples: Sequence[int] = (),
+    excited: Mapping[str, ExcitedOrders] | None = None,
 ) -> tuple[ExcitationLine, ...]:
     """Orders of all shafts, meshes and rolling elements in motion; shafts of equal speed share a line.
 
@@ -59,6 +80,9 @@ def excitation_lines(
         Multiples of the passing of rolling elements over the outer raceway, of bearings whose law follows them.
     load_multiples : sequence of int
         Multiples of harmonic torques and of harmonic motions of the base, whose frequency may be constant.
+    excited : mapping of str to ExcitedOrders, optional
+        Rotors that something excites, see :func:`excited_shaft_orders`: only their orders and sidebands are listed. By
+        default those of all rotors are.
 
     Raises
     ------
@@ -73,11 +97,12 @@ def excitation_lines(
     together: dict[float, list[str]] = {}
     for name, ratio in ratios.items():
         together.setdefault(round(ratio, 12), []).append(name)
-    lines = [
-        ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]])
-        for names in together.values()
-        for multiple in shaft_orders
-    ]
+    lines = []
+    for together_names in together.values():
+        for multiple in shaft_orders:
+            names = [name for name in together_names if excited is None or _holds(excited, name, multiple)]
+            if names:
+                lines.append(ExcitationLine(f"{multiple:g}× {', '.join(names)}", "shaft", multiple * ratios[names[0]]))
     loads = tuple(_harmonic_loads(machine, leading)) if load_multiples else ()
     lines += [
         ExcitationLine(f"{multiple}× {name}", "load", multiple * order)
@@ -87,7 +112,12 @@ def excitation_lines(
     for mesh in machine.meshes:
         teeth = mesh.geometry.driver.teeth * ratios[mesh.driver.rotor]
         name = mesh.name
-        shafts = {round(ratios[rotor], 12): rotor for rotor in (mesh.driven.rotor, mesh.driver.rotor)}
+        # A modulation of the mesh mixes with itself: every number of sidebands comes from the first order alone.
+        shafts = {
+            round(ratios[rotor], 12): rotor
+            for rotor in (mesh.driven.rotor, mesh.driver.rotor)
+            if excited is None or rotor in excited
+        }
         modulations = [*((rotor, ratios[rotor]) for rotor in shafts.values()), *loads]
         for harmonic in mesh_harmonics:
             lines.append(ExcitationLine(f"{harmonic}× {name}", "mesh", harmonic * teeth))
@@ -106,6 +136,40 @@ def excitation_lines(
         for multiple in element_passes
     ]
     return tuple(lines)
+
+
+def excited_shaft_orders(machine: CoupledMachine) -> dict[str, ExcitedOrders]:
+    """Orders of the rotors that their own imperfections and loads excite; rotors without any are left out.
+
+    Unbalance, a bow and the runout of a gear repeat once a turn, and a torque ripple by its order. Teeth that differ,
+    by pitch deviations or faults, have every order, and so has any of these where a bearing is nonlinear.
+    """
+    loads = machine.loads
+    found: dict[str, set[float]] = {}
+    for unbalance in loads.unbalances:
+        if unbalance.moment != 0.0:
+            found.setdefault(unbalance.rotor, set()).add(1.0)
+    for bow in loads.bows:
+        if bow.forces.any():
+            found.setdefault(bow.rotor, set()).add(1.0)
+    for torque in loads.torques:
+        if isinstance(torque, TorqueRipple) and torque.amplitude != 0.0 and torque.order is not None:
+            found.setdefault(torque.rotor, set()).add(torque.order)
+    every = set()
+    for mesh in machine.meshes:
+        for mounted, gear in ((mesh.driver, mesh.geometry.driver), (mesh.driven, mesh.geometry.driven)):
+            if gear.eccentricity != 0.0:
+                found.setdefault(mounted.rotor, set()).add(1.0)
+            if any(gear.pitch_deviations) or gear.faults:
+                found.setdefault(mounted.rotor, set()).add(1.0)
+                every.add(mounted.rotor)
+    if machine.system.nonlinear:
+        every.update(found)
+    return {rotor: ExcitedOrders(frozenset(orders), rotor in every) for rotor, orders in found.items()}
+
+
+def _holds(excited: Mapping[str, ExcitedOrders], rotor: str, order: float) -> bool:
+    return rotor in excited and order in excited[rotor]
 
 
 def _harmonic_loads(machine: CoupledMachine, leading: float) -> Iterator[tuple[str, float]]:

@@ -2,20 +2,23 @@
 
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
-law follows them, a sideband, any other whole order. A line at none of these is free vibration, named after its mode.
-Either may be near a mode, which is given apart from the cause.
+law follows them, a sideband, any other whole order. Orders of a shaft and their sidebands count where something
+excites them (:func:`coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to the line.
+A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given apart from
+the cause.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from coupling.assembly import CoupledMachine
 from coupling.errors import CouplingError
 from coupling.linear.complex_modes import CoupledModes
-from coupling.linear.excitation_orders import excitation_lines
+from coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders
 
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 
@@ -49,7 +52,12 @@ class LineName:
 
 
 def line_names(
-    machine: CoupledMachine, frequencies: Sequence[float], tolerance: float, modes: CoupledModes | None = None
+    machine: CoupledMachine,
+    frequencies: Sequence[float],
+    tolerance: float | npt.NDArray[np.float64],
+    modes: CoupledModes | None = None,
+    *,
+    near: float = 0.0,
 ) -> list[LineName]:
     """Names of spectral lines of a machine at its nominal speeds.
 
@@ -58,58 +66,70 @@ def line_names(
     machine : CoupledMachine
     frequencies : sequence of float
         Frequencies [Hz].
-    tolerance : float
-        Largest distance of a line from the frequency of its cause [Hz]: a small part of the spacing where the record
-        holds whole periods, half of it otherwise.
+    tolerance : float or ndarray, shape (l,)
+        Largest distance of a line from the frequency of its cause [Hz]: what its own frequency is known within, a small
+        part of the spacing where the record holds whole periods or the line is one tone, half of it otherwise.
     modes : CoupledModes, optional
         About the mean contact.
+    near : float
+        Distance within which a line is near a mode however little that is damped [Hz], where it is more than the
+        tolerance: a free vibration that dies away is no sharp line.
 
     Raises
     ------
     CouplingError
         For a machine that stands still, or a tolerance that is not positive.
     """
-    if not tolerance > 0.0:
+    tolerances = np.broadcast_to(np.asarray(tolerance, dtype=np.float64), (len(frequencies),))
+    if not np.all(np.asarray(tolerance) > 0.0):
         raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
     shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
     highest = max(frequencies, default=0.0)
     meshes = [
         abs(contact.mesh_frequency) for contact in machine.system.contacts if contact.loaded and contact.mesh_frequency
     ]
-    excited = excitation_lines(
+    excited = excited_shaft_orders(machine)
+    lines = excitation_lines(
         machine,
         shaft_orders=range(1, _SHAFT_ORDERS + 1),
         mesh_harmonics=range(1, 2 + int(highest / min(meshes))) if meshes else (),
         sidebands=_SIDEBANDS,
         element_passes=range(1, _ELEMENT_PASSES + 1),
         load_multiples=range(1, _LOAD_MULTIPLES + 1),
+        excited=excited,
     )
-    line_name_list = []
-    for frequency in frequencies:
+    named = []
+    for frequency, within in zip(frequencies, tolerances.tolist(), strict=True):
         order = frequency / shaft_frequency
-        mode = _near(modes, frequency, tolerance)
-        if frequency <= 0.5 * tolerance:
-            line_name_list.append(LineName("mean", "mean", order, None))
+        if frequency <= 0.5 * within:
+            named.append(LineName("mean", "mean", order, None))
             continue
+        mode = _near(modes, frequency, max(within, near))
+        of_shafts = within
+        if modes is not None and mode is not None:
+            # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
+            of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
         names = {
             kind: [
                 line.name
-                for line in excited
-                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= tolerance
+                for line in lines
+                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= reach
             ]
-            for kind in ("mesh", "shaft", "load", "bearing", "sideband")
-        }
+            for kind, reach in (
+                ("mesh", within), ("shaft", of_shafts), ("load", within), ("bearing", within), ("sideband", of_shafts)
+            )
+        }  # fmt: skip
         kind = next((kind for kind in names if names[kind]), None)
         if kind is not None:
             text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
-            line_name_list.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
-        elif whole := _whole_order(machine, frequency, tolerance):
-            line_name_list.append(LineName("shaft", whole, order, mode))
+            named.append(LineName(kind, text, order, mode))  # type: ignore[arg-type]
+        elif whole := _whole_order(machine, excited, frequency, of_shafts):
+            named.append(LineName("shaft", whole, order, mode))
         elif modes is not None and mode is not None:
-            line_name_list.append(LineName("mode", _label(modes, mode), order, mode))
+            named.append(LineName("mode", _label(modes, mode), order, mode))
         else:
-            line_name_list.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
-    return line_name_list
+            named.append(LineName("other", f"{order:.4g}× {machine.leading_rotor}", order, None))
+    return named
 
 
 def _label(modes: CoupledModes, mode: int) -> str:
@@ -136,15 +156,17 @@ def _nearest(names: list[str]) -> list[str]:
     return [name for name, step in zip(names, steps, strict=True) if step == min(steps)]
 
 
-def _whole_order(machine: CoupledMachine, frequency: float, tolerance: float) -> str | None:
-    """Return a multiple of a shaft's speed, the slowest multiple first."""
+def _whole_order(
+    machine: CoupledMachine, excited: Mapping[str, ExcitedOrders], frequency: float, tolerance: float
+) -> str | None:
+    """Return an excited multiple of a shaft's speed, the slowest multiple first."""
     orders = []
     for name, speed in machine.speeds.items():
         rotation_frequency = abs(speed) / (2.0 * np.pi)
         # Every line is near some multiple of a very slow shaft.
-        if (
-            rotation_frequency > 2.5 * tolerance
-            and abs(frequency - round(frequency / rotation_frequency) * rotation_frequency) <= tolerance
-        ):
-            orders.append((round(frequency / rotation_frequency), f"{round(frequency / rotation_frequency)}× {name}"))
+        if name not in excited or rotation_frequency <= 2.5 * tolerance:
+            continue
+        multiple = round(frequency / rotation_frequency)
+        if multiple in excited[name] and abs(frequency - multiple * rotation_frequency) <= tolerance:
+            orders.append((multiple, f"{multiple}× {name}"))
     return min(orders)[1] if orders else None

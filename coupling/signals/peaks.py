@@ -21,6 +21,10 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 _LONE = 0.1  # largest deviation of a tone's four lines from those of one tone, over its height
+_EXACT = 0.02  # distance that the frequency of an exact line is known within, over the spacing of lines
+_SHARPEST = 0.05  # least distance that a tone's frequency is known within, over the spacing of lines
+# Change of a tone's place by that of its two lines over its height: at most 2, and what fits its lines by chance.
+_SLOPE = 3.0
 
 
 class Peak(NamedTuple):
@@ -44,12 +48,16 @@ class SpectralPeaks:
         Place of the lower one of the two lines that a peak is found from.
     weights : ndarray of complex, shape (2, p)
         Weights of both lines in the peak.
+    resolution : ndarray, shape (p,)
+        Distance that each frequency is known within [Hz]: of a tone by the deviation of its lines from those of one
+        tone, of another peak half the spacing; without a window, where lines are exact, a small part of it.
     """
 
     frequencies: FloatArray
     amplitudes: FloatArray
     lower: IntArray
     weights: ComplexArray
+    resolution: FloatArray
 
     def __len__(self) -> int:
         """Return the number of peaks."""
@@ -88,12 +96,16 @@ def spectral_peaks(
     inner = np.arange(1, len(a) - 1)
     places = inner[(a[inner] >= a[inner - 1]) & (a[inner] > a[inner + 1]) & (f[inner] > above) & (f[inner] <= limit)]
     places = places[a[places] > floor * a[places].max(initial=0.0)]
-    lower, offset, weights = _own_lines(places) if spectrum.window == "uniform" else _tones(a, places)
+    lower, offset, weights, known = (
+        (*_own_lines(places), np.full(len(places), _EXACT)) if spectrum.window == "uniform" else _tones(a, places)
+    )
     sizes = np.abs(weights)
     amplitudes = sizes[0] * a[lower] + sizes[1] * a[lower + 1]
     order = np.argsort(-amplitudes, kind="stable")[:count]
     frequencies = f[lower] + offset * spectrum.spacing
-    return SpectralPeaks(frequencies[order], amplitudes[order], lower[order], weights[:, order])
+    return SpectralPeaks(
+        frequencies[order], amplitudes[order], lower[order], weights[:, order], known[order] * spectrum.spacing
+    )
 
 
 def _own_lines(places: IntArray) -> tuple[IntArray, FloatArray, ComplexArray]:
@@ -101,8 +113,11 @@ def _own_lines(places: IntArray) -> tuple[IntArray, FloatArray, ComplexArray]:
     return places, np.zeros(len(places)), np.outer([1.0, 0.0], np.ones(len(places), dtype=np.complex128))
 
 
-def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, ComplexArray]:
-    """Lower lines, distances above them and weights of peaks under Hann's window, where they are lone tones."""
+def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, ComplexArray, FloatArray]:
+    """Lower lines, distances above them and weights of peaks under Hann's window, where they are lone tones.
+
+    Returned last are the distances that their places are known within, over the spacing.
+    """
     # The line at 0 Hz is the mean, and none of a tone's.
     lower = np.where((a[places + 1] >= a[places - 1]) | (places == 1), places, places - 1)
     offset = tone_offset(a[lower], a[lower + 1])
@@ -113,6 +128,8 @@ def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, Compl
     heights = np.where(known, a[np.clip(beside, 0, len(a) - 1)], 0.0)
     weights = tone_weights(offset)
     size = (np.abs(weights) * heights[1:3]).sum(axis=0)
-    lone = np.abs(heights - np.abs(lines) * size).max(axis=0, initial=0.0) <= _LONE * size
+    deviation = np.abs(heights - np.abs(lines) * size).max(axis=0, initial=0.0)
+    lone = deviation <= _LONE * size
     own = _own_lines(places)
-    return np.where(lone, lower, own[0]), np.where(lone, offset, own[1]), np.where(lone, weights, own[2])
+    within = np.where(lone, np.maximum(_SLOPE * deviation / np.where(lone, size, 1.0), _SHARPEST), 0.5 + 1e-6)
+    return np.where(lone, lower, own[0]), np.where(lone, offset, own[1]), np.where(lone, weights, own[2]), within

@@ -176,13 +176,13 @@ def run(
             if has_traced_lines(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
-            document = joined(document, transient_document(transient, signature))
+            run_signature = solve_run_signature(case, transient)
+            document = joined(document, transient_document(transient, signature, run_signature))
             add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
             add_warnings(document, beyond_limit_warnings(transient))
             if signature is not None:
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
-            run_signature = solve_run_signature(case, transient)
             add_warnings(document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(case)])
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)

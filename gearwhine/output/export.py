@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 import struct
 import tomllib
 from collections import Counter
@@ -51,6 +52,7 @@ _RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right 
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
 _ATTENUATION = 100.0  # attenuation of aliases, and of what is cut off [dB]
 _TRANSITION = 0.1  # width of the cut, as a part of its frequency
+_LISTED = re.compile(r"\w+(?:, \w+)+(?=$| \[)")  # names of components in a heading, before its unit
 _LIMITS = ("trusted_below_hz", "complete_below_hz")  # attributes with the frequency below which a signal is complete
 _MEASURED = ("sensor", "microphone")  # dimensions of quantities that are measured on real machines
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
@@ -59,9 +61,9 @@ _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response",
 def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document]:
     """Write every table of the report as a CSV file: a row of headings with units, numbers with all their digits.
 
-    A column whose values are lists has one for each component, counted from 1. A number that the page shows in words or
-    in per cent has its key, and so its unit, in the heading. Texts that tell several numbers are followed by a column
-    for each of these, headed by its key.
+    A column whose values are lists has one for each component, by its name in the heading or counted from 1. A number
+    that the page shows in words or in per cent has its key, and so its unit, in the heading. Texts that tell several
+    numbers are followed by a column for each of these, headed by its key.
 
     Parameters
     ----------
@@ -137,11 +139,21 @@ def _spread(column: Column, rows: Sequence[Document]) -> Iterator[tuple[str, lis
 
 
 def _components(heading: str, values: Sequence[Any]) -> Iterator[tuple[str, list[str]]]:
-    """Yield a column for each number in values of several; empty cells where a row has none."""
+    """Yield a column for each number in values of several; empty cells where a row has none.
+
+    A heading that lists as many names before its unit as there are numbers gives each the one of its own.
+    """
     found = [dict(_numbers(value)) for value in values]
-    for place in dict.fromkeys(place for numbers in found for place in numbers):
+    places = list(dict.fromkeys(place for numbers in found for place in numbers))
+    listed = _LISTED.search(heading)
+    names = listed[0].split(", ") if listed else []
+    named = places == [(str(number),) for number in range(1, len(names) + 1)]
+    for number, place in enumerate(places):
         cells = [repr(numbers[place]) if place in numbers else "" for numbers in found]
-        yield " ".join([heading, *place]), cells
+        if listed and named:
+            yield heading[: listed.start()] + names[number] + heading[listed.end() :], cells
+        else:
+            yield " ".join([heading, *place]), cells
 
 
 def _is_number(value: Any) -> bool:

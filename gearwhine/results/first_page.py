@@ -434,7 +434,7 @@ def _sound(documents: Sequence[Document]) -> tuple[str | Table, ...]:
 
 
 def _of_motion(document: Document) -> Iterator[tuple[Iterable[Document], str]]:
-    if "run_signature" not in document:  # a spectrum over a run has no lines
+    if document.get("run") is None:  # a spectrum over a run has no lines
         yield document.get("sensors", ()), "peaks"
     for motion in document.get("motions", ()):
         yield motion["sensors"], "lines"

@@ -139,9 +139,11 @@ def leading_lines(sensors: Iterable[Document], key: str, most: int = _LINES_OF_A
     return rows
 
 
-def line_table(sensors: Iterable[Document], key: str) -> tuple[Table, ...]:
+def line_table(
+    sensors: Iterable[Document], key: str, caption: str = "Highest lines of each sensor"
+) -> tuple[Table, ...]:
     """Return the highest lines of each sensor, linked to their paths and to the housing's motion."""
-    return table_of(LINE_COLUMNS, leading_lines(sensors, key), "Highest lines of each sensor")
+    return table_of(LINE_COLUMNS, leading_lines(sensors, key), caption)
 
 
 def _line(line: Document) -> str:

@@ -1,7 +1,7 @@
 """Run of a case: quantities of the transient, its spectra and the origin of their lines, and how they are shown."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import h5netcdf
 import numpy as np
 
+from coupling.signals.peaks import Peak
 from coupling.signals.spectrum import at_time_zero
 from coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 
     from coupling.linear.complex_modes import CoupledModes
     from coupling.signals import LineName
-    from coupling.signals.peaks import Peak
     from coupling.signals.sidebands import Sideband
     from coupling.signals.spectrum import Spectrum
     from coupling.time.transient import TransientFigures
@@ -49,10 +49,11 @@ _HERTZ_LONG = ("Hz", "frequency")
 
 
 class TracedTransient(NamedTuple):
-    """Transient and, where lines are traced, their signature."""
+    """Transient and, where lines are traced, their signature; over a run its orders, where they can be told apart."""
 
     transient: "SolvedTransient"
     signature: "SolvedSignature | None" = None
+    orders: "RunSignature | None" = None
 
 
 class _NamedPeak(NamedTuple):
@@ -65,13 +66,48 @@ class _NamedPeak(NamedTuple):
 
 
 class _UnnamedPeak(NamedTuple):
-    """Peak of a spectrum whose lines are not traced."""
+    """Peak of a spectrum whose lines are not traced; over a run it is a mean."""
 
     peak: "Peak"
+    over_run: bool = False
 
 
-def _if_named(row: _NamedPeak | _UnnamedPeak) -> _NamedPeak | None:
+class _OrderPeak(NamedTuple):
+    """Highest amplitude of an order along a run, as a peak at the frequency that it has there, and its row."""
+
+    peak: "Peak"
+    row: dict[str, Any]
+
+
+_AnyPeaks = list[_NamedPeak] | list[_UnnamedPeak] | list[_OrderPeak]
+
+
+def _if_named(row: Any) -> _NamedPeak | None:
     return row if isinstance(row, _NamedPeak) else None
+
+
+def _if_over_run(row: Any) -> Any:
+    return row if isinstance(row, _OrderPeak) or (isinstance(row, _UnnamedPeak) and row.over_run) else None
+
+
+def _unnamed(row: "_Sensor | _Pair", signal: str, peaks: "list[Peak]") -> _AnyPeaks:
+    """Peaks without a signature: over a run the highest of its orders; without them the means over the run."""
+    if row.orders is not None:
+        return [
+            _OrderPeak(Peak(order["frequency_hz"], order["highest_amplitude"]), order)
+            for order in row.orders.highest_of(signal)
+        ]
+    return [_UnnamedPeak(peak, row.transient.turning is not None) for peak in peaks]
+
+
+ORDER_PEAK, MEAN_PEAK = "highest of an order along the run", "mean over the run"
+OVER_RUN = (
+    Quantity("kind", lambda row: ORDER_PEAK if isinstance(row, _OrderPeak) else MEAN_PEAK),
+    Quantity("name", lambda row: row.row["name"] if isinstance(row, _OrderPeak) else ABSENT),
+    Quantity("order", lambda row: row.row["order"] if isinstance(row, _OrderPeak) else ABSENT),
+    Quantity("at_rpm", lambda row: row.row["at_rpm"] if isinstance(row, _OrderPeak) else ABSENT),
+)
+"""Quantities of a peak over a run, which say what it is: no line at a constant speed."""
 
 
 def _near_mode(row: _NamedPeak) -> dict[str, Any] | None:
@@ -145,17 +181,18 @@ def _sidebands(unit: str) -> tuple[Quantity, ...]:
 
 
 class _Sensor(NamedTuple):
-    """Transient, its signature where lines are traced, and the name of a sensor."""
+    """Transient, its signature where lines are traced, orders of a run, and the name of a sensor."""
 
     transient: "SolvedTransient"
     signature: "SolvedSignature | None"
+    orders: "RunSignature | None"
     name: str
 
 
-def _sensor_peaks(row: _Sensor) -> list[_NamedPeak] | list[_UnnamedPeak]:
+def _sensor_peaks(row: _Sensor) -> _AnyPeaks:
     peaks, signature = row.transient.sensor_peaks(row.name).rows, row.signature
     if signature is None:
-        return [_UnnamedPeak(peak) for peak in peaks]
+        return _unnamed(row, row.name, peaks)
     lines = zip(peaks, signature.lines[row.name], strict=True)
     return [_NamedPeak(peak, line.named, signature.modes, line) for peak, line in lines]
 
@@ -173,17 +210,22 @@ def _clear(signature: "SolvedSignature", sidebands: "tuple[ShaftSidebands, ...]"
 SENSOR = (
     Quantity("name", lambda row: row.name),
     Quantity("rms_m_per_s2", lambda row: row.transient.sensor_rms(row.name)),
-    Rows("peaks", _sensor_peaks, (*_peak("amplitude_m_per_s2"), Part("", _if_named, TRACED))),
+    Rows(
+        "peaks",
+        _sensor_peaks,
+        (*_peak("amplitude_m_per_s2"), Part("", _if_named, TRACED), Part("", _if_over_run, OVER_RUN)),
+    ),
     Rows("sidebands", _sensor_sidebands, _sidebands("m_per_s2")),
 )
 """Quantities of a sensor."""
 
 
 class _Pair(NamedTuple):
-    """Transient, its signature where lines are traced, and the numbers of a gear pair's loaded contact and its own."""
+    """Transient, its signature where lines are traced, orders of a run, and a gear pair's loaded contact and number."""
 
     transient: "SolvedTransient"
     signature: "SolvedSignature | None"
+    orders: "RunSignature | None"
     contact: int
     number: int
 
@@ -235,10 +277,10 @@ def _contact(row: _Pair) -> str:
     return str(row.transient.machine.system.contacts[row.contact].name)
 
 
-def _force_peaks(row: _Pair) -> list[_NamedPeak] | list[_UnnamedPeak]:
+def _force_peaks(row: _Pair) -> _AnyPeaks:
     peaks, signature = row.transient.force_peaks(_contact(row)).rows, row.signature
     if signature is None:
-        return [_UnnamedPeak(peak) for peak in peaks]
+        return _unnamed(row, _contact(row), peaks)
     names = list(signature.force_lines.values())[row.number]
     return [_NamedPeak(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
 
@@ -263,7 +305,11 @@ PAIR = (
     ),
     Quantity("back_flank_peak_force_n", lambda row: row.transient.back_flank_peak(row.number)),
     Part("other_flanks", _other_flanks, OTHER_FLANKS),
-    Rows("force_peaks", _force_peaks, (*_peak("amplitude_n"), Part("", _if_named, NAMED))),
+    Rows(
+        "force_peaks",
+        _force_peaks,
+        (*_peak("amplitude_n"), Part("", _if_named, NAMED), Part("", _if_over_run, OVER_RUN)),
+    ),
     Rows("sidebands", _force_sidebands, _sidebands("n")),
 )
 """Quantities of a gear pair."""
@@ -501,13 +547,13 @@ TRANSIENT: Fields = (
     Part("record", lambda row: row.transient, RECORD),
     Rows(
         "sensors",
-        lambda row: [_Sensor(row.transient, row.signature, name) for name in row.transient.sensor_spectra],
+        lambda row: [_Sensor(row.transient, row.signature, row.orders, name) for name in row.transient.sensor_spectra],
         SENSOR,
     ),
     Rows(
         "gear_pairs",
         lambda row: [
-            _Pair(row.transient, row.signature, pressed, number)
+            _Pair(row.transient, row.signature, row.orders, pressed, number)
             for number, pressed in enumerate(row.transient.machine.loaded_contacts)
         ],
         PAIR,
@@ -540,9 +586,14 @@ TRANSIENT: Fields = (
 """Quantities of a transient; a row is a :class:`TracedTransient`."""
 
 
-def transient_document(solved: "SolvedTransient", signature: "SolvedSignature | None" = None) -> dict[str, Any]:
-    """Return the transient as the command's JSON; with a signature also the origin of its lines."""
-    return document_of(TRANSIENT, TracedTransient(solved, signature))
+def transient_document(
+    solved: "SolvedTransient", signature: "SolvedSignature | None" = None, orders: "RunSignature | None" = None
+) -> dict[str, Any]:
+    """Return the transient as the command's JSON; with a signature also the origin of its lines.
+
+    Over a run the peaks of sensors and mesh forces are the highest of its orders, where these are given.
+    """
+    return document_of(TRANSIENT, TracedTransient(solved, signature, orders))
 
 
 ORDER = (
@@ -556,6 +607,14 @@ ORDER = (
 )
 
 
+_EACH_UNIT = "see run_unit"  # signals differ in their unit
+
+
+def _run_attributes(signature: "RunSignature") -> dict[str, Any]:
+    # Not `trusted_below_hz`: mesh forces among the signals go on beyond it.
+    return {"window": "hann", "sensors_complete_below_hz": float(signature.limit)}
+
+
 def _run_table(name: str, tables: str, dimensions: tuple[str, ...], quantity: str) -> Quantity:
     return Quantity(
         "",
@@ -564,9 +623,9 @@ def _run_table(name: str, tables: str, dimensions: tuple[str, ...], quantity: st
         ),
         name,
         ("run_signal", *dimensions),
-        "",
+        _EACH_UNIT,
         f"peak amplitude {quantity}",
-        attributes=lambda signature: {"window": "hann"},
+        attributes=_run_attributes,
     )
 
 
@@ -579,6 +638,7 @@ RUN_SIGNATURE = (
     Quantity("to_rpm", lambda signature: signature.speeds_rpm[-1]),
     Quantity("stretches", lambda signature: len(signature.speeds_rpm)),
     Quantity("window_turns", lambda signature: signature.turns),
+    Quantity("trusted_below_hz", lambda signature: signature.limit),
     Quantity("orders", lambda signature: signature.highest()),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
     Quantity(
@@ -632,9 +692,9 @@ RUN_SIGNATURE = (
         lambda signature: signature.followed().astype(np.float32),
         "run_order_amplitude",
         ("run_signal", "named_order", "order_speed"),
-        "",
+        _EACH_UNIT,
         "peak amplitude of a shaft's or a mesh's order along the run",
-        attributes=lambda signature: {"window": "hann"},
+        attributes=_run_attributes,
     ),
 )
 """Spectra along a run and orders over its speed, of all signals."""
@@ -767,11 +827,19 @@ def report(document: Document) -> Section:
     sentences += _basis_error(document)
     tables = (
         *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
-        *(() if "run_signature" in document else line_table(document.get("sensors", ()), "peaks")),
+        *_line_table(document),
         *table_of(columns_of(BEARING), document.get("bearings", ()), "Bearings"),
         *table_of(columns_of(ORDER), document.get("run_signature", {}).get("orders", ()), "Orders along the run"),
     )
     return Section("Motion", (*sentences, *tables), pictures=_PICTURES, inner=_paths(document), curves=_CURVES)
+
+
+def _line_table(document: Document) -> tuple[Table, ...]:
+    """Return the highest lines of the sensors; none over a run with orders, and means over one without."""
+    if "run_signature" in document:
+        return ()
+    caption = "Highest lines of each sensor" if document.get("run") is None else _MEANS
+    return line_table(document.get("sensors", ()), "peaks", caption)
 
 
 def _paths(document: Document) -> tuple[Section, ...]:
@@ -815,7 +883,11 @@ def _content(document: Document) -> Iterator[str | Table]:
             yield f"  friction between its teeth takes {pair['friction']['mean_power_w']:.3g} W"
     run = document.get("run_signature")
     # Over a run whose speed varies a spectrum of the whole record has no lines.
-    yield from table_of(SENSOR_COLUMNS if run is None else SENSOR_COLUMNS[:-1], document.get("sensors", ()))
+    means = run is None and document.get("run") is not None
+    columns = SENSOR_COLUMNS if run is None and not means else SENSOR_COLUMNS[:-1]
+    yield from table_of((*columns, _MEAN_COLUMN) if means else columns, document.get("sensors", ()))
+    if means and document.get("sensors"):
+        yield _MEANS
     if traced := _signature_table(document):
         yield from traced
         yield (
@@ -825,6 +897,8 @@ def _content(document: Document) -> Iterator[str | Table]:
     if run is not None:
         yield from table_of(columns_of(ORDER), _highest_orders(run["orders"]), "Highest of the orders along the run")
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
+        if any(order["unit"] == "m/s²" for order in run["orders"]) and "trusted_below_hz" in run:
+            yield f"Orders of sensors up to {run['trusted_below_hz']:.0f} Hz, where the model is complete"
         if "window_turns" in run:
             yield (
                 f"Orders are means over {run['window_turns']} turns of the leading shaft: a resonance passed within "
@@ -852,6 +926,8 @@ def _highest_orders(orders: list[Document]) -> list[Document]:
 
 
 _HIGHEST_ORDERS = 3  # of a signal on the terminal
+_MEAN_COLUMN = replace(SENSOR_COLUMNS[-1], heading="means over the run: Hz (m/s², peak)")
+_MEANS = "Spectrum of the whole run: means over its speeds, at some of which an order reaches more"
 _SIGNATURE_COLUMNS = (
     Column("sensor", "sensor"),
     Column("Hz", "frequency_hz", ".0f"),

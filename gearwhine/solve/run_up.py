@@ -39,11 +39,14 @@ class RunSignature:
     speeds_rpm : ndarray, shape (t,)
         Speed of the leading shaft in the middle of each stretch [rpm], of the sign of the speed of operation.
     orders : dict of str to coupling.signals.OrderMap
-        Orders, in cycles each turn of the leading shaft, over its speeds of that sign.
+        Orders, in cycles each turn of the leading shaft, over its speeds of that sign; NaN of a sensor where an order's
+        frequency is beyond the trusted limit.
     named : dict of str to float
-        Orders that have names: shafts and harmonics of the meshes.
+        Orders that have names: shafts and harmonics of the meshes, of those of equal order one name for all.
     turns : int
         Turns of the leading shaft in a window of the orders; an amplitude is that of the mean over it.
+    limit : float
+        Trusted limit: the frequency up to which the orders of sensors are complete [Hz].
     """
 
     units: dict[str, str]
@@ -52,17 +55,20 @@ class RunSignature:
     orders: dict[str, signature.OrderMap]
     named: dict[str, float]
     turns: int
+    limit: float
 
     def followed(self) -> FloatArray:
         """Peak amplitude of each signal at each named order, by the windows' speeds: (signals, orders, windows)."""
         return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
 
     def highest(self) -> list[dict[str, Any]]:
-        """Return the peak of each named order of each signal along the run."""
+        """Return the peak of each named order of each signal along the run, where the model is complete."""
         rows = []
         for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
             for (order_name, order), along in zip(self.named.items(), courses, strict=True):
-                place = int(np.argmax(along))
+                if np.isnan(along).all():
+                    continue
+                place = int(np.nanargmax(along))
                 rows.append(
                     {
                         "signal": name,
@@ -75,6 +81,12 @@ class RunSignature:
                     }
                 )
         return rows
+
+    def highest_of(self, signal: str) -> list[dict[str, Any]]:
+        """Return the rows of :meth:`highest` of one signal, the highest order first."""
+        return sorted(
+            (row for row in self.highest() if row["signal"] == signal), key=lambda row: -row["highest_amplitude"]
+        )
 
 
 @dataclass(frozen=True)
@@ -128,10 +140,13 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         mapped = signature.order_map(
             turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
         )
-        orders[name] = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
+        mapped = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
+        orders[name] = (
+            _complete(mapped, solved.trusted_limit) if name in solved.histories.sensor_acceleration else mapped
+        )
     middles = next(iter(spectra.values())).times
     speeds_rpm = 60.0 * sense * turns_per_second * turning.at(middles)[1]
-    return RunSignature(units, spectra, speeds_rpm, orders, named, cut.turns)
+    return RunSignature(units, spectra, speeds_rpm, orders, named, cut.turns, solved.trusted_limit)
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
@@ -160,9 +175,15 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
     if len(times) < 2 * _ROWS:
         return f"{len(times)} samples in which the machine turns; expected {2 * _ROWS} or more"
     turns_per_second = abs(case.operation.speed) / _TWO_PI
-    total = math.floor(turns_per_second * float(np.diff(turning.at(times[[0, -1]])[0])[0]) - 1.0)
+    first, last = turns_per_second * turning.at(times[[0, -1]])[0]
+    # As `resample_by_angle` counts them: the end of the last sample's interval closes a turn.
+    last += turns_per_second * float(turning.at(times[-1:])[1][0]) * float(times[1] - times[0])
+    total = math.floor(last + 1e-9) - math.ceil(first - 1e-9)
     if total < _FEWEST_TURNS:
-        return f"{max(total, 0)} whole turns of the leading shaft in the record; expected {_FEWEST_TURNS} or more"
+        return (
+            f"{last - first:.3g} turns of the leading shaft in the record, {max(total, 0)} whole ones; "
+            f"expected {_FEWEST_TURNS} or more"
+        )
     named = _named_orders(case, solved)
     # As many turns as separate the closest orders, and the lowest from zero, as far as the run leaves some windows.
     ascending = np.unique([0.0, *named.values()])
@@ -199,7 +220,20 @@ def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
     lines = excitation_lines(solved.machine, shaft_orders=(1.0,), mesh_harmonics=tuple(range(1, _HARMONICS + 1)))
     # Exact fractions: the machine's speeds are rounded.
     whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
-    return {line.name: round(line.order * whole) / whole for line in lines}
+    together: dict[float, list[str]] = {}
+    for line in lines:
+        together.setdefault(round(line.order * whole) / whole, []).append(line.name)
+    return {", ".join(names): order for order, names in together.items()}
+
+
+def _complete(table: signature.OrderMap, limit: float) -> signature.OrderMap:
+    """Return the orders of a sensor without those whose frequency is beyond a limit [Hz]: NaN there."""
+    turning, most = np.abs(table.speeds), limit * (1.0 + 1e-9)
+    return replace(
+        table,
+        amplitude=np.where(np.outer(turning, table.orders) <= most, table.amplitude, np.nan),
+        followed={order: np.where(order * turning <= most, along, np.nan) for order, along in table.followed.items()},
+    )
 
 
 def _up_to(spectrogram: signature.Spectrogram, limit: float) -> signature.Spectrogram:

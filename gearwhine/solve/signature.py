@@ -375,9 +375,9 @@ def _ranked(
 def _named(
     solved: SolvedTransient, spectrum: Spectrum, peaks: SpectralPeaks, modes: CoupledModes
 ) -> list[signature.LineName]:
-    # Whole periods put every line exactly where it belongs; otherwise it may be half a spacing off.
-    tolerance = (0.02 if spectrum.window == "uniform" else 0.5 + 1e-6) * spectrum.spacing
-    return signature.line_names(solved.machine, peaks.frequencies.tolist(), tolerance, modes)
+    # A free vibration dies away within the record: its line is as wide as the spacing where others are exact.
+    near = (0.02 if spectrum.window == "uniform" else 0.5 + 1e-6) * spectrum.spacing
+    return signature.line_names(solved.machine, peaks.frequencies.tolist(), peaks.resolution, modes, near=near)
 
 
 def _sidebands(

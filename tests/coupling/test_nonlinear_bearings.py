@@ -27,6 +27,7 @@ from coupling import (
 from coupling.connector_forces.kernel_arrays import bearing_arrays
 from coupling.machine.components import Component, rotor_component
 from coupling.machine.connectors import LinearConnector, NonlinearConnector
+from coupling.machine.loads import Unbalance
 from coupling.signals import line_names
 from coupling.time.histories import histories, transient_outputs
 from coupling.time.transient import TransientResult
@@ -285,7 +286,12 @@ def test_balls_pass_by_themselves() -> None:
     assert [line.name for line in named[:2]] == [
         f"{multiple}× elements of bearing 0.05, {multiple}× elements of bearing 0.35" for multiple in (1, 2)
     ]
-    assert [line.kind for line in named] == ["bearing", "bearing", "shaft"]
+    # The shaft is in balance: it has no line of its own.
+    assert [line.kind for line in named] == ["bearing", "bearing", "other"]
+    # With unbalance it has every multiple, for balls are no linear springs.
+    unbalanced = replace(parts, loads=replace(parts.loads, unbalances=(Unbalance("shaft", 0.2, 1e-3, 0.0),)))
+    found = line_names(unbalanced, [25.0, 75.0, 175.0], 1e-3)
+    assert [(line.kind, line.name) for line in found] == [("shaft", f"{number}× shaft") for number in (1, 3, 7)]
     # Between the multiples there is nothing.
     between = amplitude[(lines % periods != 0) & (lines > 0)]
     assert between.max() < 0.01 * amplitude[periods]

@@ -91,3 +91,28 @@ def test_the_average_over_stretches_has_the_height_of_a_tone_whose_phase_differs
     (peak,) = spectral_peaks(averaged_spectrum(stretches, _INTERVAL, "hann"), count=1).rows
     assert peak.frequency == pytest.approx(100.2, abs=1e-3)
     assert peak.amplitude == pytest.approx(2.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("place", [200.0, 200.25, 200.5, 200.9])
+def test_a_tone_is_known_within_a_part_of_the_spacing(place: float) -> None:
+    """Noise and a tone seven lines off move it as they disturb its lines; a ring-down has half a spacing."""
+    alone = spectral_peaks(amplitude_spectrum(tone(0.5 * place, 1.0), _INTERVAL, "hann"), count=1)
+    assert alone.resolution[0] <= 0.1 * 0.5
+    assert abs(alone.frequencies[0] - 0.5 * place) <= alone.resolution[0]
+    noise = 0.4 * np.random.default_rng(3).normal(size=_COUNT)
+    disturbed = tone(0.5 * place, 1.0) + tone(0.5 * (place + 7.3), 1.0) + noise
+    peaks = spectral_peaks(amplitude_spectrum(disturbed, _INTERVAL, "hann"), count=2)
+    (at,) = np.flatnonzero(np.abs(peaks.frequencies - 0.5 * place) < 0.5)
+    assert abs(peaks.frequencies[at] - 0.5 * place) <= peaks.resolution[at] < 0.25
+    ring_down = spectral_peaks(
+        amplitude_spectrum(np.exp(-20.0 * _TIMES) * tone(0.5 * place, 1.0), _INTERVAL, "hann"), count=1
+    )
+    assert ring_down.resolution == pytest.approx([0.25], rel=1e-5)
+
+
+def test_a_tone_beside_a_louder_one_is_known_less_well() -> None:
+    """Four times as loud, a tone 3.2 lines off moves this one by more than a lone tone is known within."""
+    both = tone(0.5 * 200.5, 1.0) + tone(0.5 * 203.7, 4.0)
+    peaks = spectral_peaks(amplitude_spectrum(both, _INTERVAL, "hann"), count=2)
+    (at,) = np.flatnonzero(np.abs(peaks.frequencies - 0.5 * 200.5) < 0.25)
+    assert 0.05 * 0.5 < abs(peaks.frequencies[at] - 0.5 * 200.5) <= peaks.resolution[at] < 0.1

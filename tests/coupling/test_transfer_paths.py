@@ -1,5 +1,8 @@
 """Parts of a sensor's lines against responses of the whole machine that were solved by themselves, and their names."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,11 +14,13 @@ from coupling import (
     MachineLoads,
     MountedBearing,
     Torque,
+    Unbalance,
     assemble_machine,
     coupled_modes,
 )
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.machine.components import HousingComponent
+from coupling.machine.loads import TorqueRipple
 from coupling.signals import housing_paths, line_names, mode_parts
 from coupling.time.histories import modal_record, transient_outputs, with_modal_rows
 from gearwhine.case import load_case
@@ -132,8 +137,29 @@ def test_modal_rows_are_recorded_after_the_others(grounded: CoupledMachine) -> N
     assert not modal_record(grounded, Record(), 0).coordinates
 
 
+def imperfect(machine: CoupledMachine, **loads: Any) -> CoupledMachine:
+    """The machine on its housing with loads of its own beside the torques."""
+    torques = [Torque(torque.rotor, torque.at, torque.value) for torque in machine.loads.torques]
+    return assemble_machine(
+        machine.rotors,
+        machine.housing,
+        speeds=machine.speeds,
+        bearings=machine.bearings,
+        meshes=machine.meshes,
+        loads=MachineLoads(**{"torques": torques} | loads),
+    )
+
+
+def with_pitch_errors(machine: CoupledMachine) -> CoupledMachine:
+    """The machine with one tooth of its driver 5 µm off, which the mesh meets once a turn: every order of the shaft."""
+    geometry = machine.meshes[0].geometry
+    deviations = (5e-6, *(0.0,) * (geometry.driver.teeth - 1))
+    uneven = replace(geometry, driver=replace(geometry.driver, pitch_deviations=deviations))
+    return imperfect(replace(machine, meshes=(replace(machine.meshes[0], geometry=uneven),)))
+
+
 def test_lines_are_named_after_what_excites_them(grounded: CoupledMachine) -> None:
-    machine = on_housing(grounded)
+    machine = with_pitch_errors(on_housing(grounded))
     modes = coupled_modes(machine.system)
     shafts = {name: abs(speed) / (2.0 * np.pi) for name, speed in machine.speeds.items()}
     mesh = shafts["input"] * machine.meshes[0].geometry.driver.teeth
@@ -145,13 +171,58 @@ def test_lines_are_named_after_what_excites_them(grounded: CoupledMachine) -> No
     assert [line.kind for line in found] == ["mean", "mesh", "mesh", "sideband", "shaft", "mode", "shaft"]
     assert found[1].name == f"1× {pair}"
     assert found[2].name == f"2× {pair}"
-    assert f"1× {pair} + 1× input" in found[3].name
-    assert found[4].name.startswith("2× input")
+    assert found[3].name == f"1× {pair} + 1× input"
+    assert found[4].name == "2× input"
     assert found[5].mode == ringing
     assert found[5].name == "housing mode"
-    assert "9× input" in found[6].name
+    assert found[6].name == "9× input"
     assert found[1].order == pytest.approx(machine.meshes[0].geometry.driver.teeth)
     (other,) = line_names(machine, [0.37 * shafts["input"]], 1e-3)
     assert (other.kind, other.name) == ("other", "0.37× input")
     with pytest.raises(CouplingError, match="within 0"):
         line_names(machine, [1.0], 0.0)
+
+
+def test_orders_that_nothing_excites_name_no_line(grounded: CoupledMachine) -> None:
+    """Shafts in balance with perfect teeth have no harmonics; unbalance has the first; a ripple its own order."""
+    perfect = on_housing(grounded)
+    turning = abs(perfect.speeds["input"]) / (2.0 * np.pi)
+    mesh = turning * perfect.meshes[0].geometry.driver.teeth
+    frequencies = [turning, 2.0 * turning, 6.0 * turning, mesh + turning, mesh]
+
+    def kinds(machine: CoupledMachine) -> list[str]:
+        return [line.kind for line in line_names(machine, frequencies, 1e-3)]
+
+    assert kinds(perfect) == ["other", "other", "other", "other", "mesh"]
+    unbalanced = imperfect(perfect, unbalances=[Unbalance("input", 0.0, 1e-5, 0.0)])
+    assert kinds(unbalanced) == ["shaft", "other", "other", "sideband", "mesh"]
+    assert kinds(imperfect(perfect, unbalances=[Unbalance("input", 0.0, 0.0, 0.0)])) == kinds(perfect)
+    ripple = imperfect(perfect, torques=[*perfect.loads.torques, TorqueRipple("input", 0.0, 1.0, order=2.0)])
+    assert kinds(ripple)[:2] == ["other", "shaft"]
+    assert kinds(with_pitch_errors(perfect)) == ["shaft", "shaft", "shaft", "sideband", "mesh"]
+
+
+def test_a_mode_that_is_nearer_than_an_order_names_the_line(grounded: CoupledMachine) -> None:
+    """Between an order and a mode, each 1 Hz and less from a line, the nearer one is its cause."""
+    plain = with_pitch_errors(on_housing(grounded))
+    turning = abs(plain.speeds["input"]) / (2.0 * np.pi)
+    modes = coupled_modes(plain.system)
+    imaginary = modes.eigenvalues.imag[[kind == "housing" for kind in modes.kinds]] / (2.0 * np.pi)
+    own = float(imaginary[np.argmin(np.abs(imaginary - 1500.0))])
+    multiple = round(own / turning)
+    assert multiple < plain.meshes[0].geometry.driver.teeth - 4  # no sideband
+    # A speed of which this multiple is 1 Hz above the mode, which follows the speed a little.
+    speed = plain.speeds["input"]
+    for _ in range(4):
+        machine = plain.at_speed(speed)
+        modes = coupled_modes(machine.system)
+        imaginary = modes.eigenvalues.imag / (2.0 * np.pi)
+        own = float(imaginary[np.argmin(np.abs(imaginary - own))])
+        speed = np.sign(speed) * 2.0 * np.pi * (own + 1.0) / multiple
+    order = abs(machine.speeds["input"]) * multiple / (2.0 * np.pi)
+    assert order == pytest.approx(own + 1.0, abs=0.01)
+    near_mode, near_order = line_names(machine, [own + 0.2, order - 0.2], 2.0, modes)
+    assert (near_mode.kind, near_order.kind) == ("mode", "shaft")
+    assert near_order.name == f"{multiple}× input"
+    # What the line's frequency is known within, and no more, is what an order may be off.
+    assert line_names(machine, [order - 0.2], np.array([0.1]), None)[0].kind == "other"

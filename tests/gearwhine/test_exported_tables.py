@@ -25,7 +25,7 @@ def test_numbers_are_written_whatever_the_page_shows() -> None:
         Column("name", "name"),
         Column("force [N]", "force_n", "z.1f", shown=lambda row: f"about {row['force_n']:.1f}"),
         Column("share", "share", shown=lambda row: f"{100 * row['share']:.0f} %"),
-        Column("x, y [mm]", "position_m", ".2f", 1e3),
+        Column("place x, y [mm]", "position_m", ".2f", 1e3),
         Column("second [mm]", "position_m.1", ".2f", 1e3),
         Column("largest", lambda row: f"{row['peak']['of']:.2g} at {row['peak']['at_hz']:.0f} Hz", numbers=("peak",)),
         Column("kind", "kind", shown=lambda row: row["kind"].upper()),
@@ -40,8 +40,8 @@ def test_numbers_are_written_whatever_the_page_shows() -> None:
         "name",
         "force [N]",
         "share (share)",
-        "x, y [mm] 1",
-        "x, y [mm] 2",
+        "place x [mm]",
+        "place y [mm]",
         "second [mm]",
         "largest",
         "peak of",
@@ -56,6 +56,14 @@ def test_numbers_are_written_whatever_the_page_shows() -> None:
     assert (other[1], other[4], other[5]) == ("2", "", "")
     # The page is as it was.
     assert table.filled()[1][0] == ["a", "about 0.3", "33 %", "333.33, 666.67", "666.67", "0.33 at 2 Hz", "BENT", "yes"]
+
+
+def test_components_without_a_name_each_are_counted() -> None:
+    """Three numbers under two names, and names that the heading has none of."""
+    rows = ({"place": [1.0, 2.0, 3.0]},)
+    table = Table((Column("x, y [mm]", "place"), Column("place [m, peak]", "place")), rows)
+    headings = rows_of(_csv(table))[0]
+    assert headings == [f"{heading} {number}" for heading in ("x, y [mm]", "place [m, peak]") for number in (1, 2, 3)]
 
 
 @pytest.fixture(scope="module")

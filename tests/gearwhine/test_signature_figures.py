@@ -57,6 +57,30 @@ def test_run_up(tmp_path: Path) -> None:
     assert waterfall.axes[0].get_xlim()[1] == pytest.approx(1200.0)
 
 
+def test_an_order_below_the_axis_has_no_name_in_the_legend() -> None:
+    """Five decades are shown: an order of a millionth of another is no line; what is not known of one is a gap."""
+    times = 1e-4 * np.arange(40_000)
+    turning = SpeedProfile(np.array([0.0, 4.0]), np.array([0.5, 1.5]))
+    turns = 20.0 * turning.at(times)[0]
+    signal = (
+        np.cos(2 * np.pi * 28.0 * turns) + 1e-4 * np.cos(2 * np.pi * turns) + 1e-6 * np.cos(2 * np.pi * 9.0 * turns)
+    )
+    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2)
+    orders = replace(
+        orders, amplitude=np.where(np.outer(orders.speeds, orders.orders) < 500.0, orders.amplitude, np.nan)
+    )
+    names = {"mesh": 28.0, "shaft": 1.0, "faint": 9.0, "beyond": 60.0}
+    figure = draw_order_slices("Run-up", orders, names, unit="m/s²")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["mesh", "shaft"]
+    mesh, _ = figure.axes[0].lines
+    known = np.isfinite(np.asarray(mesh.get_ydata(), dtype=float))
+    assert known.any()
+    np.testing.assert_array_equal(known, 28.0 * orders.speeds < 500.0)
+    nothing = replace(orders, amplitude=np.full_like(orders.amplitude, np.nan))
+    assert not draw_order_slices("Run-up", nothing, names, unit="m/s²").axes[0].lines
+
+
 def test_orbits_stand_where_the_shaft_rests(tmp_path: Path) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
     circle = 1e-6 * np.column_stack([30.0 + 2.0 * np.cos(angle), -10.0 + np.sin(angle), angle])

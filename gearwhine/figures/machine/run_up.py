@@ -58,6 +58,8 @@ def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> It
             housing_frequencies=modes,
         )
         yield f"run-up-waterfall-{stem}", waterfall
+        if any(np.isnan(table).any() for table in run.orders[name].followed.values()):
+            remark = f"{remark}; up to {run.limit:.0f} Hz, where the model is complete"
         slices = draw_order_slices(f"{signal_name}: orders", run.orders[name], run.named, unit=unit, note=remark)
         yield f"run-up-orders-{stem}", slices
 
@@ -138,6 +140,8 @@ def draw_run_up_waterfall(
 def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str, note: str = "") -> Figure:
     """Draw the amplitude of some orders over the speed of the leading shaft, or the time where it settles.
 
+    Orders that nowhere reach the lower end of the axis are left out, and so is what is not known of one, its NaN.
+
     Parameters
     ----------
     title : str
@@ -156,22 +160,25 @@ def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, 
     coupling.CouplingError
         Where an order is not a line of the map.
     """
-    below = legend_height(len(named), _COLUMNS)
+    courses = {name: orders.order_slice(order) for name, order in named.items()}
+    known = {name: course[np.isfinite(course)] for name, course in courses.items()}
+    top = max((float(course.max(initial=0.0)) for course in known.values()), default=0.0)
+    bottom = top * 10.0**-_DECADES
+    visible = [name for name, course in known.items() if course.size and (course.max() > bottom or top == 0.0)]
+    below = legend_height(len(visible), _COLUMNS)
     figure = sheet(HEAD + _HEIGHT + FOOT + below, title, note)
     axes = panel(figure, FOOT + below, _HEIGHT)
     values, value_name = _axis(60.0 * orders.speeds, orders.times)
-    top, least = 0.0, np.inf
     handles = []
-    for number, (name, order) in enumerate(named.items()):
-        amplitude = orders.order_slice(order)
-        top, least = max(top, float(amplitude.max(initial=0.0))), min(least, float(amplitude.min(initial=np.inf)))
+    for number, name in enumerate(visible):
         style = "-" if number < len(SERIES) else (0, (4, 2))
         handles += axes.plot(
-            values, amplitude, color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
+            values, courses[name], color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
         )
     axes.set_xlim(float(values.min()), float(values.max()))
     axes.set(xlabel=value_name, ylabel=f"amplitude [{unit}, peak]")
     if top > 0.0:
-        log_axis(axes, max(0.7 * least, top * 10.0**-_DECADES), 2.0 * top)
+        least = min(float(known[name].min()) for name in visible)
+        log_axis(axes, max(0.7 * least, bottom), 2.0 * top)
     legend_below(figure, handles, _COLUMNS)
     return figure

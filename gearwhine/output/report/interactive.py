@@ -187,7 +187,8 @@ def _drawings(dataset: Any, declared: Curves) -> list[dict[str, Any]]:
 def _named(array: Any, otherwise: str) -> str:
     unit = array.attrs.get("units", "")
     name = str(array.attrs.get("long_name", otherwise)).rstrip(".")
-    return f"{name} [{_read(unit)}]" if unit and unit != "1" else name
+    # Signals that differ in their unit refer to another variable for it.
+    return f"{name} [{_read(unit)}]" if unit and unit != "1" and not unit.startswith("see ") else name
 
 
 def _read(unit: str) -> str:
