@@ -64,7 +64,7 @@ def with_less_effort(words: list[str]) -> list[str]:
     for many, few in FEWER_POINTS.items():
         words = [word.replace(many, few) for word in words]
     if words[0] == "sweep":
-        words = [*words, "--workers", "1"]  # each takes seconds to start
+        words = [*words, "--workers", "1"]
     return [*words, *changes]
 
 
@@ -86,7 +86,7 @@ def _look_at_reports(gearwhine: Any, folder: Path, place: Path, *, interactive: 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", RUN, ids=lambda page: page.stem)
 def test_a_page_runs_from_its_first_line_to_its_last(
-    gearwhine: Any, tmp_path: Path, page: Path, monkeypatch: pytest.MonkeyPatch
+    gearwhine: Any, tmp_path: Path, page: Path, monkeypatch: pytest.MonkeyPatch, swept_here: None
 ) -> None:
     import matplotlib.pyplot as plt
 

@@ -27,6 +27,7 @@ def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("swept_here")
 def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
     """While flanks stay together the equations are linear in the load, whatever the stiffness does over time."""
     found = example("parameter_study", "sweep")

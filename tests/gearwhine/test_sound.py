@@ -298,7 +298,7 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         kept_radiation(louder, again, build_radiation(louder, again), np.zeros((0, 3)), (20.0, 3000.0))
 
 
-def test_sweep_sounds_as_its_points_do(tmp_path):
+def test_sweep_sounds_as_its_points_do(swept_here, tmp_path):
     """Each point of a sweep has the power of a run at its speed."""
     short = COARSE | {"housing.box.mesh_size": "45 mm"}
     short |= {"transient.revolutions": 12, "transient.discard": 10, "transient.tolerance": 1e-3}
@@ -311,7 +311,7 @@ def test_sweep_sounds_as_its_points_do(tmp_path):
     assert swept.dataset["sound_line_frequency"].values[0, 0] == pytest.approx(loudest.frequency_hz)
 
 
-def test_sweep_sounds_by_the_housing_of_its_points(tmp_path):
+def test_sweep_sounds_by_the_housing_of_its_points(swept_here, tmp_path):
     """Which is another one than that of the case where the only value of a key makes it so."""
     short = ALUMINIUM | {"transient.revolutions": 4, "transient.discard": 2, "transient.tolerance": 1e-3}
     over = "rotor[0].material,housing.material=aluminium"
