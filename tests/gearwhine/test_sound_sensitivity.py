@@ -276,8 +276,12 @@ def shown_rows(table: Table) -> list[dict[str, str]]:
 
 @pytest.mark.slow
 def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
-    """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case."""
-    changes = {"acoustics.method": "erp", "acoustics.mesh_size": "26 mm"}
+    """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case.
+
+    At a speed whose mesh line meets a mode of larger elements, so that either step counts for decibels.
+    """
+    changes = {"acoustics.method": "erp", "acoustics.mesh_size": "30 mm", "housing.box.mesh_size": "45 mm"}
+    changes |= {"operation.speed": "5650 rpm"}
     result = gw.load("small-gearbox", changes).operating_point(sensitivity=True).document
     (before,) = result["loudest_lines"]
     (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
@@ -286,7 +290,7 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
         (after,) = sound_lines(solve_sound(other, solve_at_rest(other, build_mesh(other))))
         found = 10.0 * np.log10(after.line.value / 1e-12) - before["sound_power_db"]
         assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
-        assert abs(found) > 3.0
+        assert abs(found) > 2.5
 
 
 @pytest.mark.slow
