@@ -1,9 +1,11 @@
 """Shared by all tests: blocks of all elements, published values beside ours with their page, what runs first."""
 
 import gc
+import logging
 from base64 import b64decode
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from itertools import combinations_with_replacement
 from math import floor, log10
@@ -198,6 +200,30 @@ def unrendered() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", lambda figure, path, **how: Path(path).write_bytes(_POINT))
         patch.setattr(drawing_process, "draw_in_process", shapes_unrendered)
+        yield
+
+
+@pytest.fixture(scope="module")
+def swept_here() -> Iterator[None]:
+    """Solve the points of a sweep in a thread of this process, not in one of its own, which takes seconds to start.
+
+    Processes, how they start, die and are interrupted, are in ``tests/end_to_end/test_sweep_command.py``.
+    """
+    from distributed import Client, LocalCluster
+
+    from gearwhine import workers
+
+    @contextmanager
+    def thread(number: int, scratch: str, plugins: Any) -> Iterator[Client]:
+        threads = {"processes": False, "n_workers": number, "threads_per_worker": 1, "dashboard_address": None}
+        with (
+            LocalCluster(**threads, local_directory=scratch, silence_logs=logging.CRITICAL) as cluster,
+            Client(cluster, set_as_default=False) as client,
+        ):
+            yield client
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(workers, "_own_processes", thread)
         yield
 
 

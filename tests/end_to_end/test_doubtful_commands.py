@@ -82,6 +82,7 @@ def test_steady_motions_of_an_unstable_machine_warn(
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("swept_here")
 @pytest.mark.parametrize("command", ["run", "sweep"])
 def test_a_load_that_the_bearing_does_not_carry_is_warned_of(
     command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path

@@ -128,7 +128,7 @@ def test_a_killed_run_leaves_nothing_halved(start_process, tmp_path: Path, how: 
     chance = random.Random(int(how))
     process = start_process("run", "small-gearbox", "-q", "-o", "out", *SHORT)
     with suppress(subprocess.TimeoutExpired):
-        process.wait(chance.uniform(1.0, 5.0))  # a fast machine may be done before
+        process.wait(chance.uniform(1.0, 4.0))  # a fast machine may be done before
     process.send_signal(how)
     _, errors = process.communicate(timeout=60)
     out = tmp_path / "out"

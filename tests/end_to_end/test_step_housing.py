@@ -157,7 +157,9 @@ def test_a_step_file_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path)
 def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhine: Any, folder: Path) -> None:
     """Parts that touch are left apart; circles that bolts clamp are found by place and tied by the box's springs."""
     positions = ", ".join(f'["{x} mm", "{z} mm"]' for x, z in BOLTS)
-    bolted = f'{BOX}bolts = {{ diameter = "{BOLT} mm", positions = [{positions}] }}\n'
+    coarse = 32.0  # no motion of a seat is compared, which modes that lie close mix
+    box_of_larger = BOX.replace(f'mesh_size = "{MESH} mm"', f'mesh_size = "{coarse} mm"')
+    bolted = f'{box_of_larger}bolts = {{ diameter = "{BOLT} mm", positions = [{positions}] }}\n'
     case = _case(folder, bolted, boss=WITH_BOSS)
     box, _ = _modes(gearwhine, folder, case)
     bolts = gearwhine("check", case, "--json", "-q").document["housing"]["cover_bolts"]
@@ -169,6 +171,6 @@ def test_a_step_file_of_two_parts_on_bolts_has_the_modes_of_the_same_box(gearwhi
         joints += f'[[housing.joint]]\nname = "{bolt["name"]}"\naxis = "y"\ndiameter = "{2 * BOLT} mm"\n'
         joints += f"center = {bolt['position_m']}\n"
         joints += "stiffness = {" + ", ".join(f"{key} = {value}" for key, value in springs.items()) + "}\n"
-    cad = f'[housing.cad]\nfile = "bolted.step"\nmesh_size = "{MESH} mm"\nglue = false\n'
+    cad = f'[housing.cad]\nfile = "bolted.step"\nmesh_size = "{coarse} mm"\nglue = false\n'
     step, _ = _modes(gearwhine, folder, _case(folder, cad, more=joints))
     _compare(step, box)

@@ -8,10 +8,19 @@ from typing import Any
 
 import pytest
 
+from gearwhine.from_case import mesh
+from meshes import mesh_box
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "scripts" / "examples"
 
 Example = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def larger_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mesh boxes by elements of at least 60 mm, for examples whose statements do not depend on them."""
+    monkeypatch.setattr(mesh, "mesh_box", lambda box, size, **how: mesh_box(box, max(size, 0.06), **how))
 
 
 @pytest.fixture

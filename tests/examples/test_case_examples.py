@@ -15,6 +15,7 @@ RIG_BASE_RADIUS = 3.175e-3 * 28 / 2 * np.cos(np.radians(20.0))
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("larger_elements")
 def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_path: Path) -> None:
     found = example("first_steps")
     certificate = found["modes"].proofs["certificate"]
@@ -26,6 +27,7 @@ def test_first_steps_find_all_modes_and_the_mesh_harmonics(example: Any, tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("swept_here")
 def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
     """While flanks stay together the equations are linear in the load, whatever the stiffness does over time."""
     found = example("parameter_study", "sweep")
@@ -37,6 +39,7 @@ def test_dynamic_factor_does_not_depend_on_torque(example: Any) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("larger_elements")
 def test_noise_rig_carries_its_torque_and_names_the_measured_modes(example: Any) -> None:
     found = example("noise_rig_end_to_end", "rig")
     assert found["mean_force"] == pytest.approx(71.77 / RIG_BASE_RADIUS, rel=2e-3)

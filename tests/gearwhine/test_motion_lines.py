@@ -177,7 +177,9 @@ BASE = {"operation.base": {"harmonic": [{"frequency": "300 Hz", "y": "3 m/s^2"}]
 
 
 @pytest.mark.slow
-def test_a_run_up_has_no_lines_but_microphones_over_time() -> None:
+def test_a_run_up_has_no_lines_but_microphones_over_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Fewer frequencies than of a user's run: that there is a sound over time, not how close it is, counts here.
+    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 17)
     result = sounding_gearbox(TOP | RUN_UP).run()
     sound = result.solved.sound
     assert sound is not None

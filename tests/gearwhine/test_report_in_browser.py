@@ -260,28 +260,6 @@ def test_a_table_is_copied_with_tabs(browser: Browser, pages: dict[str, Path]) -
     assert rows[2] == ["2", "1007.30", "0.0200", "0.015"]
 
 
-@pytest.mark.slow
-def test_shapes_move_pause_and_are_chosen(browser: Browser, pages: dict[str, Path]) -> None:
-    browser.resize(400, 500)  # small, since it is drawn without a graphics card
-    browser.open(pages["interactive"])
-    browser.value("document.querySelector('model-viewer').scrollIntoView()")
-    browser.wait_for("document.querySelector('model-viewer').loaded")
-    browser.wait_for("!document.querySelector('model-viewer').paused")
-    told = "document.querySelector('.told').textContent"
-    assert browser.value(told).startswith(f"Operating shape {HOSTILE}")
-    in_sight(browser)  # the first picture waits for the shaders, which a busy processor compiles for long
-    assert any(moved(browser) > 0.0 for _ in range(20)), "the shape stands still"
-    browser.value("document.querySelector('.pause').click()")
-    assert any(moved(browser) == 0.0 for _ in range(20)), "the shape moves on"
-    # The button at the picture of a mode, and a link to a shape that has no picture.
-    browser.value("document.querySelector('figure[data-picture=mode-02-1007Hz] .move').click()")
-    browser.wait_for(f"{told} === 'Mode 2   1007 Hz'")
-    browser.value("document.querySelector('a[href=\"#shapes-picture-line-1000-0hz\"]').click()")
-    browser.wait_for(f"{told}.startsWith('Operating shape')")
-    assert browser.problems() == []
-    assert browser.requests() == []
-
-
 # A page that draws all the time has no idle time, hence the limit.
 SETTLED = """
 new Promise((done) => requestIdleCallback(() => requestIdleCallback(done, { timeout: 500 }), { timeout: 500 }))
@@ -310,33 +288,52 @@ def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser,
     assert browser.value(RUNNING) == [False, False]
     browser.value("document.querySelector('.plot').scrollIntoView()")
     browser.wait_for("document.querySelector('.plot .scatterlayer path')")
-    assert browser.value(RUNNING)[0]
-    browser.open(pages["interactive"])
-    browser.value("document.querySelector('figure[data-picture=mode-02-1007Hz] .move').click()")
-    browser.wait_for("document.querySelector('model-viewer').loaded")
-    assert browser.value(RUNNING)[1]
+    assert browser.value(RUNNING) == [True, False]  # the viewer is in a test of its own
     assert browser.problems() == []
     assert browser.requests() == []
 
 
 @pytest.mark.slow
-def test_each_shape_is_unpacked_once_and_only_when_it_is_shown(browser: Browser, pages: dict[str, Path]) -> None:
-    browser.resize(400, 500)
+def test_shapes_move_pause_and_are_chosen_and_each_is_unpacked_once(browser: Browser, pages: dict[str, Path]) -> None:
+    """All of it on one page: to compile the shaders of a viewer takes longer than the rest."""
+    told = "document.querySelector('.told').textContent"
+    chosen = "document.querySelectorAll('[data-shape]')"
+
+    def shown(number: int, unpacked: int) -> None:
+        """The shape is chosen and loaded, and the page has unpacked this many parts."""
+        browser.wait_for(f"document.querySelector('model-viewer').loaded && {chosen}[{number}].ariaPressed === 'true'")
+        browser.value(SETTLED)
+        assert browser.value("window.unpacked.count") == unpacked
+
+    browser.resize(200, 300)  # small, since it is drawn without a graphics card
     script = browser.call("Page.addScriptToEvaluateOnNewDocument", source=UNPACKED)["identifier"]
     try:
         browser.open(pages["interactive"])
         browser.wait_for("window.unpacked.count === 3")  # for paper: the library of curves and two drawings
-        chosen = "document.querySelectorAll('[data-shape]')"
-        for number, count in ((0, 5), (1, 6), (0, 6)):  # the viewer and a model, another model, and nothing more
-            browser.value(f"{chosen}[{number}].click(); document.querySelector('model-viewer').scrollIntoView()")
-            browser.wait_for(
-                f"document.querySelector('model-viewer').loaded && {chosen}[{number}].ariaPressed === 'true'"
-            )
-            browser.value(SETTLED)
-            assert browser.value("window.unpacked.count") == count
+        assert not browser.value(RUNNING)[1]
+        browser.value("document.querySelector('model-viewer').scrollIntoView()")
+        shown(0, 5)  # the viewer and a model
+        assert browser.value(RUNNING)[1]
+        browser.wait_for("!document.querySelector('model-viewer').paused")
+        assert browser.value(told).startswith(f"Operating shape {HOSTILE}")
+        in_sight(browser)  # the first picture waits for the shaders, which a busy processor compiles for long
+        assert any(moved(browser) > 0.0 for _ in range(20)), "the shape stands still"
+        browser.value("document.querySelector('.pause').click()")
+        assert any(moved(browser) == 0.0 for _ in range(20)), "the shape moves on"
+        # The button at the picture of a mode, a link to a shape that has no picture, and the list of shapes.
+        browser.value("document.querySelector('figure[data-picture=mode-02-1007Hz] .move').click()")
+        browser.wait_for(f"{told} === 'Mode 2   1007 Hz'")
+        shown(1, 6)  # another model
+        browser.value("document.querySelector('a[href=\"#shapes-picture-line-1000-0hz\"]').click()")
+        browser.wait_for(f"{told}.startsWith('Operating shape')")
+        shown(0, 6)  # nothing more
+        browser.value(f"{chosen}[1].click()")
+        browser.wait_for(f"{told} === 'Mode 2   1007 Hz'")
+        shown(1, 6)
     finally:
         browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
     assert browser.problems() == []
+    assert browser.requests() == []
 
 
 def test_paper_shows_all_curves_and_no_empty_frame(browser: Browser, pages: dict[str, Path]) -> None:

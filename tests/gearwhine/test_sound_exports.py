@@ -121,6 +121,7 @@ def test_lengths_that_are_none_and_folders_without_signals_are_told(exported: Ex
 def test_the_command_tells_the_sound_of_its_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     changes = {"acoustics.method": "erp", "acoustics.mesh_size": QUICK["acoustics.mesh_size"]}
     changes |= {"acoustics.highest_frequency": "2 kHz", "transient.tolerance": "1e-3"}
+    changes |= {"housing.box.mesh_size": "45 mm"}
     arguments = ["run", "small-gearbox", "--no-pictures", "-q", "-o", str(tmp_path / "out")]
     assert run_command(arguments + [f"--set={key}={value}" for key, value in changes.items()]) == 0
     said = " ".join(capsys.readouterr().out.split())

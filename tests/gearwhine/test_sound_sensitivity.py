@@ -1,6 +1,7 @@
 """Gradients of the sound power of mesh harmonics, against that of machines whose housing is moved and solved anew."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,7 @@ import pytest
 
 import gearwhine as gw
 from coupling.linear.housing_rates import HousingRates
+from coupling.machine_description import Machine
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.sensitivity import adjoint
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
@@ -54,15 +56,25 @@ def sounding(acoustics: dict[str, object]) -> Case:
     return parse_case(document)
 
 
-def solve(case: Case, mesh: Mesh, base: HousingRadiation | None = None) -> Solved:
-    """Solve a case anew on a mesh, its radiating surface too, or one whose points keep their facets."""
+def solve_at_rest(case: Case, mesh: Mesh) -> tuple[SolvedHousing, Machine, OperatingPoint]:
+    """Solve a case anew on a mesh as far as it is the same for all sounds: modes, machine and equilibrium."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
-        if base is not None:
-            patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, mesh))
         housing = solve_housing(case)
-        machine = describe_machine(case, full_housing_component(case, housing))
-        point = machine.operating_point()
+    machine = describe_machine(case, full_housing_component(case, housing))
+    return housing, machine, machine.operating_point()
+
+
+def solve_sound(
+    case: Case,
+    at_rest: tuple[SolvedHousing, Machine, OperatingPoint],
+    base: HousingRadiation | None = None,
+) -> Solved:
+    """Solve the lines of a case, its radiating surface anew, or as one whose points keep their facets."""
+    housing, machine, point = at_rest
+    with pytest.MonkeyPatch.context() as patch:
+        if base is not None:
+            patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, housing.mesh))
         lines = solve_lines(case, machine, point, housing, silent)
     assert lines is not None
     return housing, point, lines
@@ -106,41 +118,65 @@ def derivatives(case: Case, solved: Solved) -> tuple[FloatArray, HousingRates, F
 
 
 CHAINS = {
-    "erp": ({"method": "erp", "mesh_size": "30 mm", "highest_frequency": "6 kHz"}, 5e-4, 1e-5, True),
-    "rayleigh": ({"method": "rayleigh", "faces": ["top"], "highest_frequency": "3 kHz"}, 5e-4, 1e-3, False),
-    "boundary elements": ({"mesh_size": "30 mm", "highest_frequency": "3 kHz"}, 1e-2, 1e-3, False),
+    "erp": ({"method": "erp", "mesh_size": "30 mm", "highest_frequency": "6 kHz"}, 1e-5, True),
+    "rayleigh": ({"method": "rayleigh", "faces": ["top"], "highest_frequency": "3 kHz"}, 1e-3, False),
+    "boundary elements": ({"mesh_size": "30 mm", "highest_frequency": "3 kHz"}, 1e-3, True),
 }
-"""Acoustics, step of the differences, error relative to the sum of the parts, and whether facets are kept.
+"""Acoustics, error relative to the sum of the parts, and whether facets are kept.
 
 The gradient by the modes' resistance is exact, so that of the equivalent power is; where the mesh slides along the
-surface, reciprocity of the integrals takes part.
+surface, reciprocity of the integrals takes part. The points of a flat face have no holes beside them.
 """
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("chain", CHAINS)
-def test_the_whole_chain_by_the_housing(chain: str) -> None:
-    """Walls and feet together: fourth-order differences of mesh, modes, equilibrium, assembly, line and sound."""
-    acoustics, step, bound, held = CHAINS[chain]
-    case = sounding(acoustics)
+class Beside(NamedTuple):
+    """A case without a sound at a part of the way by all parameters, and what is the same of it for all sounds."""
+
+    case: Case
+    at_rest: tuple[SolvedHousing, Machine, OperatingPoint]
+
+
+@pytest.fixture(scope="module")
+def way() -> tuple[float, FloatArray, list[Beside]]:
+    """A step, all parameters' parts of the way, and the case as it is, a step ahead and a step back."""
+    case = sounding(CHAINS["erp"][0])
     mesh = build_mesh(case)
-    solved = solve(case, mesh)
-    lines, (own, rates, slopes) = sound_lines(solved), derivatives(case, solved)
-    assert len(lines) == (2 if chain == "erp" else 1)
     fitted = fitted_case(case, parameters=PARAMETERS)
     meshed = MeshedParameters(fitted, fitted.start, case, mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
-    base = lines[0].power.radiation if held else None
-    either = []
-    for size in (step, -step, 2.0 * step, -2.0 * step):
+    # So short that the curvature adds a part of 1e-6; modes to 1e-10 and better leave as much.
+    step = 1e-4
+    cases = [Beside(case, solve_at_rest(case, mesh))]
+    for size in (step, -step):
         there = fitted.at((values + size * way).tolist())
         geometry = geometry_of(there)
         assert geometry is not None
-        moved = solve(there, meshed.morph.moved(geometry), base)
-        either.append(np.array([one.line.value for one in sound_lines(moved)]))
-    expected = (8.0 * (either[0] - either[1]) - (either[2] - either[3])) / (12.0 * step)
-    assert (np.abs(own @ way - expected) < bound * np.abs(own * way).sum(axis=1)).all()
+        cases.append(Beside(there, solve_at_rest(there, meshed.morph.moved(geometry))))
+    return step, way, cases
+
+
+def with_acoustics(case: Case, acoustics: dict[str, object]) -> Case:
+    return parse_case(case_document(case) | {"acoustics": acoustics})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("chain", CHAINS)
+def test_the_whole_chain_by_the_housing(chain: str, way: tuple[float, FloatArray, list[Beside]]) -> None:
+    """Walls and feet together: differences of mesh, modes, equilibrium, assembly, line and sound."""
+    acoustics, bound, held = CHAINS[chain]
+    step, along, (here, *beside) = way
+    case = with_acoustics(here.case, acoustics)
+    solved = solve_sound(case, here.at_rest)
+    lines, (own, rates, slopes) = sound_lines(solved), derivatives(case, solved)
+    assert len(lines) == (2 if chain == "erp" else 1)
+    base = lines[0].power.radiation if held else None
+    either = []
+    for one in beside:
+        moved = solve_sound(with_acoustics(one.case, acoustics), one.at_rest, base)
+        either.append(np.array([found.line.value for found in sound_lines(moved)]))
+    expected = (either[0] - either[1]) / (2.0 * step)
+    assert (np.abs(own @ along - expected) < bound * np.abs(own * along).sum(axis=1)).all()
     # Each line answers to a step as its slope says, and to a bearing that is stiffer.
     model = solved[2].model
     for one, slope in zip(lines, own[:, 1] * slopes[1], strict=True):
@@ -240,17 +276,21 @@ def shown_rows(table: Table) -> list[dict[str, str]]:
 
 @pytest.mark.slow
 def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
-    """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case."""
-    changes = {"acoustics.method": "erp", "acoustics.mesh_size": "26 mm"}
+    """The back wall by 1 mm: mesh, modes, equilibrium, lines and sound of the changed case.
+
+    At a speed whose mesh line meets a mode of larger elements, so that either step counts for decibels.
+    """
+    changes = {"acoustics.method": "erp", "acoustics.mesh_size": "30 mm", "housing.box.mesh_size": "45 mm"}
+    changes |= {"operation.speed": "5650 rpm"}
     result = gw.load("small-gearbox", changes).operating_point(sensitivity=True).document
     (before,) = result["loudest_lines"]
     (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
     for key, thickness in (("level_db", "11 mm"), ("reverse_level_db", "9 mm")):
         other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness}).case
-        (after,) = sound_lines(solve(other, build_mesh(other)))
+        (after,) = sound_lines(solve_sound(other, solve_at_rest(other, build_mesh(other))))
         found = 10.0 * np.log10(after.line.value / 1e-12) - before["sound_power_db"]
         assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
-        assert abs(found) > 3.0
+        assert abs(found) > 2.5
 
 
 @pytest.mark.slow

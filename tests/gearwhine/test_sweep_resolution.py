@@ -268,7 +268,7 @@ COARSE = {
 
 
 @pytest.fixture(scope="module")
-def sweeps(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], dict[str, Any]]:
+def sweeps(swept_here: None, tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], dict[str, Any]]:
     """Two speeds of the small gearbox, then the same with those that the first sweep asks for."""
     folder: Path = tmp_path_factory.mktemp("sweep")
     study = gw.load("small-gearbox", COARSE)

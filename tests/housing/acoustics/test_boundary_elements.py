@@ -102,11 +102,12 @@ def sources(wavenumber):
     ("hz", "bar"),
     [(1060.6, 0.02), (1075, 0.02), (3000, 0.02), (5000, 0.05), (5020, 0.05)],
 )
-def test_sources_inside_a_box(fine_box, hz, bar):
+def test_sources_inside_a_box(fine_box, coarse_box, hz, bar):
+    surface = fine_box if hz > 2000 else coarse_box
     wavenumber = 2.0 * np.pi * hz / 343.0
-    flux = at_corners(fine_box, sources(wavenumber))
+    flux = at_corners(surface, sources(wavenumber))
     velocity = flux / (-1j * wavenumber * LABORATORY.impedance)
-    field = BoundaryElements(fine_box, LABORATORY).solve(hz, velocity)
+    field = BoundaryElements(surface, LABORATORY).solve(hz, velocity)
     exact = np.array([4.0 * np.pi, wavenumber**2 * 4.0 * np.pi / 3.0]) / LABORATORY.impedance
     assert np.all(np.abs(decibels(np.diag(field.resistance) / exact)) < bar)
     assert np.all(np.abs(decibels(np.diag(field.surface_resistance) / np.diag(field.resistance))) < 0.01)
@@ -120,6 +121,11 @@ def test_sources_inside_a_box(fine_box, hz, bar):
 def fine_box() -> RadiatingSurface:
     """Box of 3,316 triangles."""
     return box(BOX, 0.0172)
+
+
+@pytest.fixture(scope="module")
+def coarse_box() -> RadiatingSurface:
+    return box(BOX, 0.022)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.5, 0.65, 0.75])
