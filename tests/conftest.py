@@ -215,7 +215,9 @@ def swept_here() -> Iterator[None]:
 
     @contextmanager
     def thread(number: int, scratch: str, plugins: Any) -> Iterator[Client]:
-        threads = {"processes": False, "n_workers": number, "threads_per_worker": 1, "dashboard_address": None}
+        threads = {"processes": False, "n_workers": number, "threads_per_worker": 1}
+        # A port that nobody else has, as in the product: two processes of the suite may sweep at once.
+        threads |= {"dashboard_address": "127.0.0.1:0", "scheduler_kwargs": {"dashboard": False}}
         with (
             LocalCluster(**threads, local_directory=scratch, silence_logs=logging.CRITICAL) as cluster,
             Client(cluster, set_as_default=False) as client,
