@@ -20,6 +20,10 @@ def test_torque_taken_off_over_time_is_unbalanced_unless_the_input_gives_it() ->
         "spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": RAMP}
     ).case
     assert unbalanced_torque(both) == 0.0
+    # An input that falls as the output rises leaves both.
+    falling = {"time": RAMP["time"], "torque": ["0 N*m", "-6 N*m"]}
+    apart = {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": falling}
+    assert unbalanced_torque(gw.load("spur-pair", apart).case) == pytest.approx(12.0)
     shared = gw.load("spur-pair", {"operation.over_time": RAMP}).case
     assert unbalanced_torque(shared) == 0.0
 
