@@ -67,6 +67,9 @@ def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: 
     assert third["kept"] == ["over_torque", "sensitivity"]
     assert (third["over_torque"], third["sensitivity"]) == (second["over_torque"], first["sensitivity"])
     assert set(third["files"]) == set(second["files"])
+    with xr.open_dataset(out / "results.nc") as data:
+        xr.testing.assert_identical(data["misalignment_change"].load(), influences)
+        assert data["misalignment_over_torque"].notnull().all()
     assert run_command(["report", "spur-pair", "-q", "-o", str(out)]) == 0
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "Over torque" in page
