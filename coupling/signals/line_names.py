@@ -109,16 +109,15 @@ def line_names(
         if modes is not None and mode is not None:
             # Excited or not, an order of a shaft that is further off than the mode is not the line's cause.
             of_shafts = min(within, abs(float(modes.eigenvalues[mode].imag) / (2.0 * np.pi) - frequency))
+        reach = {"mesh": within, "shaft": of_shafts, "load": within, "bearing": within, "sideband": of_shafts}
         names = {
             kind: [
                 line.name
                 for line in lines
-                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= reach
+                if line.kind == kind and abs(line.order * shaft_frequency - frequency) <= distance
             ]
-            for kind, reach in (
-                ("mesh", within), ("shaft", of_shafts), ("load", within), ("bearing", within), ("sideband", of_shafts)
-            )
-        }  # fmt: skip
+            for kind, distance in reach.items()
+        }
         kind = next((kind for kind in names if names[kind]), None)
         if kind is not None:
             text = ", ".join(names[kind] if kind != "sideband" else _nearest(names[kind]))
