@@ -1,4 +1,9 @@
-"""Commands on a case as a whole: run, check, examples, report, export."""
+"""Commands on a case as a whole: run, check, examples, report, export.
+
+The physics of ``run``: :func:`gearwhine.analyses.run.run` solves housing, rotors and gear pairs in turn, the coupled
+motion by :func:`gearwhine.solve.transient.solve_transient`, which integrates in time with
+:func:`coupling.time.transient.integrate_blocks`.
+"""
 
 from collections.abc import Callable
 from pathlib import Path

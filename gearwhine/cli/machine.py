@@ -1,4 +1,8 @@
-"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sound, sweep."""
+"""Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sound, sweep.
+
+Each calls a function of :mod:`gearwhine.analyses.machine`, which solves by :mod:`gearwhine.solve`; ``run`` is in
+:mod:`gearwhine.cli.case`.
+"""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
