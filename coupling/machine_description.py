@@ -26,6 +26,7 @@ from coupling.linear.frequency_response import FrequencyResponse, mesh_error_res
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.face_compliance import face_compliance
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -296,7 +297,7 @@ class Machine:
             self.housing_component,
             speeds=self.speeds,
             bearings=self.bearings,
-            meshes=[self._mesh(pair) for pair in pairs],
+            meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
@@ -652,12 +653,17 @@ class Machine:
         gears = {gear.name: gear for gear in self.gears}
         return gears[pair.driver], gears[pair.driven]
 
-    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
-        driver, driven = (
-            MountedGear(gear.name, gear.shaft, gear.at, self.shaft(gear.shaft).axis)
-            for gear in self._gears_of(loaded.pair)
-        )
-        return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
+    def _mesh(self, loaded: LoadedGearPair, components: Sequence[RotorComponent]) -> GearMesh:
+        gears = []
+        for gear, middle in zip(self._gears_of(loaded.pair), loaded.geometry.common_middles, strict=True):
+            shaft = self.shaft(gear.shaft)
+            carried = carrying_length(gear, shaft.rotor)
+            modal = next(part.modal for part in components if part.name == shaft.name)
+            width = loaded.geometry.face_width
+            missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+        friction, faces = loaded.pair.friction, loaded.tilting_faces
+        return GearMesh(*gears, loaded.geometry, loaded.contact, loaded.backlash, friction, faces=faces)
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
