@@ -89,15 +89,15 @@ class _GapRates:
 
     Attributes
     ----------
-    law : ndarray, shape (j, 3, 3)
-        Derivative of the mesh's law over mean approach, slope and tilt [N/m per m for the approach].
+    stiffness : ndarray, shape (j, 3, 3)
+        Derivative of the mesh's stiffness over mean approach, slope and tilt; of the first, k, [N/m per m].
     error : ndarray of complex, shape (j, harmonics)
         Derivative of e [m per m].
     shuttling : ndarray of complex, shape (j, harmonics, n)
         Derivative of the moments on the coordinates.
     """
 
-    law: FloatArray
+    stiffness: FloatArray
     error: ComplexArray
     shuttling: ComplexArray
 
@@ -292,7 +292,7 @@ class LineModel(MeshHarmonicModel):
         rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
-        by_law = np.zeros((FACE_STATIONS, 3, 3))
+        stiffness = np.zeros((FACE_STATIONS, 3, 3))
         error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
         shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
 
@@ -304,10 +304,8 @@ class LineModel(MeshHarmonicModel):
             for way in (1.0, -1.0):
                 step = way * _STIFFNESS_STEP * compression
                 far = moved(station, step)
-                stiffness = self._mesh(number, far, _STIFFNESS_POINTS).mean_mesh_stiffness
-                by_law[station] += self.machine.face(number, far).law(force, stiffness, _STIFFNESS_POINTS) / (
-                    2.0 * step
-                )
+                mean = self._mesh(number, far, _STIFFNESS_POINTS).mean_mesh_stiffness
+                stiffness[station] += self.machine.face(number, far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
                 step = way * _GAP_STEP * compression
                 near = moved(station, step)
                 error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
@@ -315,7 +313,7 @@ class LineModel(MeshHarmonicModel):
                     order = round(load.frequency / (2.0 * np.pi * rate))
                     if order <= HARMONICS:
                         shuttling[station, order - 1] += load.amplitude / (2.0 * step)
-        return _GapRates(by_law, error, shuttling)
+        return _GapRates(stiffness, error, shuttling)
 
     def _by_gap(self, line: Line, number: int) -> FloatArray:
         """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
@@ -326,12 +324,12 @@ class LineModel(MeshHarmonicModel):
         # The damping is c/k times the law: c = 2 ζ sqrt(k m), or given.
         lost = 1j * w * float(self.contact.damping[number]) / stiffness
         falls = 0.5 if self.pairs[mesh].pair.damping is None else 1.0
-        change = (1.0 + lost) * rates.law - falls * lost / stiffness * rates.law[:, :1, :1] * law
+        change = (1.0 + lost) * rates.stiffness - falls * lost / stiffness * rates.stiffness[:, :1, :1] * law
         total = -(change @ deflection) @ along
         for cause, harmonic in line.causes:
             if cause == number:
                 driven = np.outer(rates.error[:, harmonic - 1], law[0])
-                driven = driven + rates.law[:, 0] * self._errors[number][harmonic - 1]
+                driven = driven + rates.stiffness[:, 0] * self._errors[number][harmonic - 1]
                 total = total + driven @ along + rates.shuttling[:, harmonic - 1] @ line.adjoint
         return np.asarray(total.real)
 

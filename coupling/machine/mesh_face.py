@@ -1,8 +1,8 @@
 r"""Face of a mesh: tilting stiffness of the flanks, stiffness centre, and the moments of a load off the middle.
 
-The contact forces of a mesh are spread over its face, so it resists not only the approach of the flanks in the middle of
-the face but also its slope over the face and, of helical gears, the relative tilt of the shafts at the place on the line
-of action where the teeth touch. With δ the mean approach over the face and y = (slope, tilt), the mean over a mesh
+The contact forces of a mesh are spread over its face. So the mesh resists not only the approach of its flanks, but also
+the slope of the approach over the face and, with helical gears, the relative tilt of the shafts at the place on the
+line of action where the teeth touch. With δ the mean approach over the face and y = (slope, tilt), the mean over a mesh
 period of the loads under a mean force F is, linear in y about the mean load,
 
     force:   F(δ*),        δ* = δ + a (y - y₀),
@@ -36,12 +36,12 @@ import numpy.typing as npt
 from coupling.gears import GearError, GearPairGeometry, ToothContact
 from coupling.gears.contact.face_slices import face_stations, mean_and_slope
 from coupling.gears.loaded.face_load import FaceContact, FaceTangent
-from coupling.machine.coordinates import MachineCoordinates
-from coupling.machine.load_shuttling import shuttling_loads
 from coupling.machine.connectors import ContactConnector, LinearConnector
+from coupling.machine.coordinates import MachineCoordinates
 from coupling.machine.coupled_system import HarmonicLoad
-from coupling.machine.mounted_parts import GearMesh
+from coupling.machine.load_shuttling import shuttling_loads
 from coupling.machine.mesh_kinematics import LineOfAction
+from coupling.machine.mounted_parts import GearMesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -177,8 +177,8 @@ def mesh_face(
 ) -> MeshFace:
     """Face of the flanks that a driver closes by a rotation of a sense, with the contact law ``contact``.
 
-    ``middle`` is the approach in the middle of the face by each coordinate, shape (n,). The stations of the face move with the sections of the shafts that carry them, as in the static model
-    (:mod:`coupling.statics.static_model`).
+    ``middle`` is the approach in the middle of the face by each coordinate, shape (n,). The stations of the face move
+    with the sections of the shafts that carry them, as in the static model (:mod:`coupling.statics.static_model`).
     """
     line = mesh.line_of_action(sense)
     stations = face_stations(mesh.geometry.face_width)

@@ -6,6 +6,7 @@ description of the parts.
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -46,9 +47,7 @@ class OwnDynamics(OwnStatics):
 
     def _nodes(self, shaft: str) -> FloatArray:
         coarse = super()._nodes(shaft)
-        cuts = [
-            np.linspace(a, b, 1 + math.ceil((b - a) / ELEMENT)) for a, b in zip(coarse[:-1], coarse[1:], strict=True)
-        ]
+        cuts = [np.linspace(a, b, 1 + math.ceil((b - a) / ELEMENT)) for a, b in pairwise(coarse.tolist())]
         return np.unique(np.round(np.concatenate(cuts), 12))
 
     def _blank(self, one):  # type: ignore[no-untyped-def]

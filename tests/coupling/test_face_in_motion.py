@@ -134,7 +134,7 @@ def test_mean_forces_in_motion_are_those_of_the_equilibrium(stiffness: ConstantS
     pairs = [replace(pair, stiffness=stiffness, misalignment=None) for pair in model.gear_pairs]
     model = replace(model, gear_pairs=pairs)
     point = model.operating_point()
-    means, motion = mean_equilibrium(model.at_operating_point(point).assemble().system)
+    means, _ = mean_equilibrium(model.at_operating_point(point).assemble().system)
     expected = [pair.force for pair in point.pairs]
     assert expected[1] > 1.5 * expected[0]
     assert [mean.force for mean in means if mean is not None] == pytest.approx(expected, rel=1e-3)
