@@ -38,7 +38,7 @@ from gearwhine.case.load import (
 )
 from gearwhine.case.measured import Measured, Update, UpdateParameter
 from gearwhine.case.model import Case, case_document, dump_case, require
-from gearwhine.case.operation import Operation, Sweep, TorqueLine, Transient
+from gearwhine.case.operation import Operation, OrderTracking, Sweep, TorqueLine, Transient
 from gearwhine.case.rotors import CouplingSegment, Probe, Rotor, RotorAnalysis, Segment, TorsionalAnalysis, TorsionProbe
 from gearwhine.case.speeds_and_torques import (
     applied_torques,
@@ -74,6 +74,7 @@ __all__ = [
     "MeshFile",
     "Mount",
     "Operation",
+    "OrderTracking",
     "Probe",
     "Problem",
     "RollingStiffness",
