@@ -483,7 +483,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         return None
     return sliding_flanks(
         coordinates,
-        [(gear.rotor, at) for gear, at in zip((mesh.driver, mesh.driven), mesh.stations, strict=True)],
+        list(zip((mesh.driver, mesh.driven), mesh.stations, strict=True)),
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.line_of_action(sense),
@@ -505,7 +505,7 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
         motions = rotor.motions(at)
-        compression = flank.turning(rotor.rotation(at)) + flank.across(motions) + flank.axial(motions)
+        compression = flank.turning(rotor.rim_rotation(mounted.name, at)) + flank.across(motions) + flank.axial(motions)
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

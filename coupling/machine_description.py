@@ -7,7 +7,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,15 +17,18 @@ import numpy.typing as npt
 from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import Gear, GearPairGeometry
+from coupling.gears.contact.contact_law import without_body_twist
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.gears.stiffness.models import twist_by_gear
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.gear_bodies import GearBody, gear_body, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -44,6 +47,7 @@ from coupling.machine.parts import (
     Shaft,
     ShaftGear,
     carrying_length,
+    gear_inertia_on_shaft,
     inertia_with_discs,
     require_names,
     require_seats,
@@ -56,7 +60,14 @@ from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.operating_point_search import solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticPair, StaticShaftPart, static_bearing, static_pair
+from coupling.statics.static_model import (
+    StaticGear,
+    StaticPair,
+    StaticRim,
+    StaticShaftPart,
+    static_bearing,
+    static_pair,
+)
 from coupling.time.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
@@ -208,6 +219,34 @@ class Machine:
             for shaft in self.shafts
         )
 
+    @cached_property
+    def gear_bodies(self) -> tuple[GearBody, ...]:
+        """Bodies of the gears whose rims turn against their hubs in motion, see :mod:`coupling.machine.gear_bodies`."""
+        twists: dict[str, list[tuple[float, float]]] = {}
+        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
+            for name, gear, twist in zip(
+                (pair.driver, pair.driven),
+                (geometry.driver, geometry.driven),
+                twist_by_gear(pair.stiffness, geometry),
+                strict=True,
+            ):
+                twists.setdefault(name, []).append((gear.base_radius, twist))
+        bodies = []
+        for mounted in self.gears:
+            shaft = self.shaft(mounted.shaft)
+            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
+            if self._pair_count(mounted.name) > 1:
+                limit = np.inf
+            body = gear_body(
+                mounted.gear,
+                mounted.at,
+                gear_inertia_on_shaft(mounted, shaft.rotor),
+                stiffest(twists.get(mounted.name, [])),
+                limit,
+            )
+            bodies += [] if body is None else [body]
+        return tuple(bodies)
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft against each other."""
@@ -296,7 +335,9 @@ class Machine:
             self.housing_component,
             speeds=self.speeds,
             bearings=self.bearings,
-            meshes=[self._mesh(pair) for pair in pairs],
+            meshes=[
+                self._mesh(pair, {body.gear: body for part in components for body in part.bodies}) for pair in pairs
+            ],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
@@ -323,6 +364,7 @@ class Machine:
             Where a rolling bearing is loaded beyond its theory.
         """
         pairs = []
+        rims = {body.gear: body for body in self.gear_bodies if self._pair_count(body.gear) > 1}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if not carrying:
@@ -331,7 +373,8 @@ class Machine:
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = turning_sense(self.speeds[driver.shaft])
             gears = self._static_gears((driver, driven), geometry)
-            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
+            twist = _twist_of_bodies(pair, geometry, rims)
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, twist))
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
@@ -341,6 +384,7 @@ class Machine:
                 self.constant_torques,
                 gravity,
                 self.forces,
+                [StaticRim(rim.gear, rim.stiffness) for rim in rims.values()] if pairs else (),
             )
         except EquilibriumNotFoundError as error:
             raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
@@ -606,7 +650,15 @@ class Machine:
             moments_at=moments_at,
             thrusts_at=thrusts_at,
         )
-        return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
+        names = [gear.name for gear in gears]
+        return rotor_component(
+            shaft.name,
+            modal,
+            start=shaft.start,
+            damping_ratio=shaft.damping_ratio,
+            axis=shaft.axis,
+            bodies=[body for body in self.gear_bodies if body.gear in names],
+        )
 
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
@@ -647,17 +699,30 @@ class Machine:
             if gear.shaft == shaft
         ]
 
+    def _pair_count(self, gear: str) -> int:
+        """Count the pairs that a gear takes part in."""
+        return sum(gear in (pair.driver, pair.driven) for pair in self.gear_pairs)
+
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""
         gears = {gear.name: gear for gear in self.gears}
         return gears[pair.driver], gears[pair.driven]
 
-    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
+    def _mesh(self, loaded: LoadedGearPair, bodies: Mapping[str, GearBody]) -> GearMesh:
+        """Place a pair on its shafts; what the rims in ``bodies`` turn is no part of its contact law."""
         driver, driven = (
             MountedGear(gear.name, gear.shaft, gear.at, self.shaft(gear.shaft).axis)
             for gear in self._gears_of(loaded.pair)
         )
-        return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
+        twist = _twist_of_bodies(loaded.pair, loaded.geometry, bodies)
+        contact = without_body_twist(loaded.contact, twist)
+        return GearMesh(driver, driven, loaded.geometry, contact, loaded.backlash, loaded.pair.friction, twist)
+
+
+def _twist_of_bodies(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:
+    """Twist of those bodies of a pair whose rims are coordinates, along the line of action [m/N]."""
+    gears = zip((pair.driver, pair.driven), (geometry.driver, geometry.driven), strict=True)
+    return sum(gear.base_radius**2 / bodies[name].stiffness for name, gear in gears if name in bodies)
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:

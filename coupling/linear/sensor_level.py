@@ -85,7 +85,9 @@ class SensorLevel:
             :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
-        stiffness, direction = mesh.mean_mesh_stiffness, model.machine.system.contacts[number].direction
+        # The machine has the twist of the gears' bodies beside its contacts.
+        stiffness = mesh.mean_stiffness_without(model.machine.meshes[self.mesh].body_twist)
+        direction = model.machine.system.contacts[number].direction
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
         shuttling = model.shuttling_loads(number, contact, force)
         before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])

@@ -1,7 +1,8 @@
 """Gear pair: its specification, and its mesh under the mean torque: contact law, mesh damping, transmission error.
 
-The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k and the equivalent mass m of the
-two gears rotating against each other: ``2 ζ sqrt(k m)``.
+The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k between the rims and the
+equivalent mass m of the two gears rotating against each other: ``2 ζ sqrt(k m)``. The twist of the gears' bodies, which
+lies between the rims and the shafts, has no part in k.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, tooth_contact
+from coupling.gears.contact.contact_law import ToothContact, tooth_contact, without_body_twist
 from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
@@ -24,6 +25,7 @@ from coupling.gears.stiffness.models import (
     SquareStiffness,
     StiffnessModel,
     stiffness_under_load,
+    twist_by_gear,
 )
 from housing.own_copies import keep_tuples
 
@@ -85,7 +87,7 @@ class GearPair:
     stiffness : StiffnessModel or str
         Model of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
     damping_ratio : float
-        Fraction of critical damping of the two gears rotating against each other.
+        Fraction of critical damping of the two rims rotating against each other.
     damping : float, optional
         Damping coefficient of the mesh [N s/m], in place of the ratio.
     backlash : float, optional
@@ -287,9 +289,14 @@ def load_gear_pair(
     static = loaded_transmission_error(carrying, force)
     hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
-    # mesh periods, which are not alike with pitch deviations or damaged teeth.
-    loaded = (hunting or static).mean_mesh_stiffness
-    mean_mesh_stiffness = loaded if force > 0.0 else contact.unloaded_mean_mesh_stiffness
+    # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims, so
+    # the twist of the bodies behind them has no part in it.
+    twist = sum(twist_by_gear(model, geometry))
+    mean_mesh_stiffness = (
+        (hunting or static).mean_stiffness_without(twist)
+        if force > 0.0
+        else without_body_twist(contact, twist).unloaded_mean_mesh_stiffness
+    )
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)
