@@ -28,6 +28,7 @@ from coupling.linear.frequency_response import FrequencyResponse, mesh_error_res
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.face_compliance import face_compliance
 from coupling.machine.gear_bodies import GearBody, gear_body, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
@@ -335,9 +336,7 @@ class Machine:
             self.housing_component,
             speeds=self.speeds,
             bearings=self.bearings,
-            meshes=[
-                self._mesh(pair, {body.gear: body for part in components for body in part.bodies}) for pair in pairs
-            ],
+            meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
@@ -708,15 +707,21 @@ class Machine:
         gears = {gear.name: gear for gear in self.gears}
         return gears[pair.driver], gears[pair.driven]
 
-    def _mesh(self, loaded: LoadedGearPair, bodies: Mapping[str, GearBody]) -> GearMesh:
-        """Place a pair on its shafts; what the rims in ``bodies`` turn is no part of its contact law."""
-        driver, driven = (
-            MountedGear(gear.name, gear.shaft, gear.at, self.shaft(gear.shaft).axis)
-            for gear in self._gears_of(loaded.pair)
-        )
+    def _mesh(self, loaded: LoadedGearPair, components: Sequence[RotorComponent]) -> GearMesh:
+        """Place a pair on its shafts; what the rims of the components turn is no part of its contact law."""
+        gears = []
+        for gear, middle in zip(self._gears_of(loaded.pair), loaded.geometry.common_middles, strict=True):
+            shaft = self.shaft(gear.shaft)
+            carried = carrying_length(gear, shaft.rotor)
+            modal = next(part.modal for part in components if part.name == shaft.name)
+            width = loaded.geometry.face_width
+            missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+        friction, faces = loaded.pair.friction, loaded.tilting_faces
+        bodies = {body.gear: body for part in components for body in part.bodies}
         twist = _twist_of_bodies(loaded.pair, loaded.geometry, bodies)
         contact = without_body_twist(loaded.contact, twist)
-        return GearMesh(driver, driven, loaded.geometry, contact, loaded.backlash, loaded.pair.friction, twist)
+        return GearMesh(*gears, loaded.geometry, contact, loaded.backlash, friction, body_twist=twist, faces=faces)
 
 
 def _twist_of_bodies(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:

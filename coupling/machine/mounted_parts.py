@@ -6,9 +6,11 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry, ToothContact
+from coupling.gears import Gear, GearPairGeometry, ToothContact
+from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.geometry.pair import pair_label
 from coupling.machine.bearing_laws import BearingLaw, RollingLaw
+from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
 from rotors import Bearing
@@ -94,12 +96,30 @@ class MountedBearing:
 
 @dataclass(frozen=True)
 class MountedGear:
-    """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m]."""
+    """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m].
+
+    Attributes
+    ----------
+    name, rotor : str
+    at : float
+    axis : tuple of float
+    carried : tuple of float, optional
+        Ends of the length of the rotor that moves with the gear's body, from the rotor's left end [m]: the body is
+        rigid beyond. By default the gear moves with the section in the middle of the common face.
+    missing : FaceCompliance, optional
+        What the rotor's modes lack of its compliance over the common face; none by default.
+    """
 
     name: str
     rotor: str
     at: float
     axis: tuple[float, float]
+    carried: tuple[float, float] | None = None
+    missing: FaceCompliance | None = None
+
+    def compliance(self, gear: Gear) -> FloatArray:
+        """Compliance over mean approach, slope and tilt that the rotor's modes lack under this gear, (3, 3)."""
+        return np.zeros((3, 3)) if self.missing is None else self.missing.along_action(gear.base_radius)
 
 
 @dataclass(frozen=True)
@@ -118,6 +138,9 @@ class GearMesh:
         Coefficient of friction between the teeth, from 0 to 0.5.
     body_twist : float
         Twist of the gears' bodies against their shafts, along the line of action [m/N], in series with the contact.
+    faces : FaceSlices, optional
+        Slices by which flanks that carry evenly resist tilting, see :mod:`coupling.machine.mesh_face`. By default those
+        of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
     """
 
     driver: MountedGear
@@ -127,6 +150,7 @@ class GearMesh:
     backlash: float | None = None
     friction: float = 0.0
     body_twist: float = 0.0
+    faces: FaceSlices | None = None
 
     @property
     def name(self) -> str:

@@ -33,6 +33,7 @@ from gearwhine.solve.plausibility import (
     centrifugal_warnings,
     constant_speed_warnings,
     machine_warnings,
+    parted_flank_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
@@ -401,6 +402,7 @@ def steady(
     )
     document = steady_document(case.title, solved)
     add_warnings(document, [*constant_speed_warnings(case), *machine_warnings(loaded.machine)])
+    add_warnings(document, parted_flank_warnings(loaded.machine, solved.contact_loss))
     loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":

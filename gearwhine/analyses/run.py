@@ -46,6 +46,7 @@ from gearwhine.solve.plausibility import (
     add_uncertainty,
     bearing_load_warnings,
     beyond_limit_warnings,
+    parted_flank_warnings,
     settling_warnings,
     unbalanced_torque_warnings,
     unstable_modes_warnings,
@@ -180,6 +181,7 @@ def run(
             document = joined(document, transient_document(transient, signature, run_signature))
             add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
             add_warnings(document, beyond_limit_warnings(transient))
+            add_warnings(document, parted_flank_warnings(transient.machine, transient.result.contact_loss))
             if signature is not None:
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)

@@ -31,6 +31,8 @@ _DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, 
 _ROUNDING = 1e-6  # part of the load below which a component counts as zero
 _MOST = 0.5  # part of the power of an acceleration above the limit without a warning
 _SETTLED = 0.02  # free vibration at the begin of a record, as a part of that at the start, without a warning
+_PARTED = 1e-3  # part of the time in which flanks are apart without a warning
+_HELD = 0.1  # part of the resistance to a tilt of the face that flanks may have without that warning
 _HIGHEST = 5  # lines of a sensor that are looked at
 _OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
 
@@ -309,6 +311,38 @@ def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
     """
     system = machine.system
     return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))
+
+
+def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> list[dict[str, Any]]:
+    """Warn of flanks that part in motion and whose resistance to tilting, linear about the mean load, holds shafts.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    contact_loss : ndarray, shape (c,)
+        Part of the time in which the flanks of each contact are apart.
+    """
+    system = machine.system
+    rigid, stiffest = system.rigid_body_motions
+    tilts = [one for one in system.linear if one.of_contact is not None and contact_loss[one.of_contact] > _PARTED]
+    if not tilts:
+        return []
+    held = system.mean_stiffness + stiffest * rigid @ rigid.T
+    warnings = []
+    for tilt in tilts:
+        assert tilt.of_contact is not None
+        yielding = tilt.directions.T @ np.linalg.solve(held, tilt.directions)
+        # Part of a moment on the slope of the face that its flanks resist, and not the shafts.
+        part = float((tilt.stiffness @ yielding)[0, 0])
+        name, loss = system.contacts[tilt.of_contact].name, float(contact_loss[tilt.of_contact])
+        if part > _HELD:
+            message = (
+                f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the shafts; "
+                f"the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, as under the "
+                "mean load"
+            )
+            warnings.append(warning("parted flanks", message, contact=name, contact_loss=loss, part=part))
+    return warnings
 
 
 _BANDS = 8  # bands of equal width up to the limit

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, tooth_contact, without_body_twist
+from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, without_body_twist
 from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
@@ -228,6 +228,15 @@ class LoadedGearPair:
     static: LoadedMesh
     hunting: LoadedMesh | None
     mesh_frequency: float | None
+
+    @property
+    def tilting_faces(self) -> FaceSlices:
+        """Slices of the face by which the flanks resist tilting: those of the contact, or of flanks that carry evenly.
+
+        A given spring lies evenly over the face.
+        """
+        even = face_slices(self.geometry)
+        return self.contact.faces or slices_of_teeth(even, self.model, self.geometry)
 
     @property
     def torque(self) -> float:
