@@ -14,7 +14,7 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
-from gearwhine.results.operating_point import misalignment_words
+from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.solve.case_summary import check_case
 
 if TYPE_CHECKING:
@@ -206,6 +206,7 @@ PAIR = (
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
     Quantity("mean_force_n", lambda pair: pair.mean_force),
+    Quantity("mean_force_from", lambda pair: pair.force_origin),
     Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
     Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
@@ -444,6 +445,7 @@ def _pair_summary(pair: Document) -> str:
     line = f"{pair['driver']} → {pair['driven']}: {teeth} teeth, contact ratio {pair['total_contact_ratio']:.3f}"
     if pair["mesh_frequency_hz"] is not None:
         line += f", mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean force {pair['mean_force_n']:.1f} N"
+        line += share_words(pair.get("mean_force_from"))
     return line
 
 
@@ -617,6 +619,7 @@ def _pair_lines(pair: Document, on_bearings: bool) -> list[str]:
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+        lines[-1] += share_words(pair.get("mean_force_from"))
     origin = pair.get("misalignment_from", "default")
     if origin != "default" or (pair["mean_force_n"] and on_bearings):
         words = misalignment_words(pair.get("misalignment_rad"), origin, None)
