@@ -113,7 +113,11 @@ class BearingLoad:
         if not self.mounted.needs_load or self.rolling is None:
             return self.mounted
         nominal, law = self.mounted.bearing, self.mounted.law
-        bearing = replace(nominal, stiffness=linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness)
+        stiffness = linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness
+        bearing = replace(nominal, stiffness=stiffness)
+        if self.mounted.damping_time > 0.0:
+            damping = nominal.spatial_damping + self.mounted.damping_time * stiffness
+            bearing = replace(bearing, damping=damping)
         if isinstance(law, RollingLaw):
             return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
         return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
