@@ -114,7 +114,7 @@ def damping_sentence(document: Document) -> list[str]:
     return [f"Damping of {'; '.join(lines)}."] if lines else []
 
 
-_TIGHT, _WIDE = 0.5, 3.0  # widths of a band [dB] below and from which a line is shown with a digit more or less
+_TIGHT, _WIDE = 0.5, 6.0  # widths of a band [dB] below which a line is shown with a digit more, and from which with one
 
 
 def band_words(row: Document) -> str:
