@@ -7,6 +7,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,7 +17,7 @@ import numpy.typing as npt
 
 from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import Gear, GearPairGeometry
+from coupling.gears import Gear, GearError, GearPairGeometry
 from coupling.gears.contact.contact_law import without_body_twist
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
@@ -74,7 +75,7 @@ from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
 from housing.own_copies import keep_tuples
-from rotors import Coupling, Rotor, modal_rotor
+from rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
@@ -262,9 +263,12 @@ class Machine:
         return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
-        """Contact law of every gear pair, and its static mesh under the mean torque."""
-        loaded = []
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+        """Contact law of every gear pair, and its static mesh under the mean torque.
+
+        Flanks whose misalignment is None take that of the operating point, see :attr:`assembled`.
+        """
+        loaded, pairs = [], self._aligned.gear_pairs
+        for pair, geometry, torque in zip(pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = (
                 inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
                 for gear in self._gears_of(pair)
@@ -402,8 +406,13 @@ class Machine:
     @property
     def needs_operating_point(self) -> bool:
         """Whether a bearing's stiffness or a pair's misalignment is still to follow from the loads."""
+        return self._needs_alignment or any(mounted.needs_load for mounted in self.bearings)
+
+    @property
+    def _needs_alignment(self) -> bool:
+        """Whether a torque on shafts in bearings loads flanks whose misalignment is None."""
         unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
-        return unaligned or any(mounted.needs_load for mounted in self.bearings)
+        return unaligned and bool(self.bearings) and any(torque.value != 0.0 for torque in self.constant_torques)
 
     def at_operating_point(
         self, point: OperatingPoint | None = None, *, gravity: Sequence[float] | None = None
@@ -427,6 +436,11 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
+        about = self._with_flanks_of(point) if point.pairs else self
+        return replace(about, bearings=[bearing.linearised for bearing in point.bearings])
+
+    def _with_flanks_of(self, point: OperatingPoint) -> "Machine":
+        """Return the machine whose pairs have the gap over the face of an operating point, where they give none."""
         gaps = point.flank_gaps([pair.label for pair in self.gear_pairs if pair.misalignment is None])
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
@@ -434,11 +448,27 @@ class Machine:
             else pair
             for pair in self.gear_pairs
         ]
-        return replace(self, bearings=[bearing.linearised for bearing in point.bearings], gear_pairs=pairs)
+        return replace(self, gear_pairs=pairs)
 
     @cached_property
     def _linearised(self) -> "Machine":
-        return self.at_operating_point() if self.needs_operating_point else self
+        if any(mounted.needs_load for mounted in self.bearings):
+            return self.at_operating_point()
+        return self._aligned
+
+    @cached_property
+    def _aligned(self) -> "Machine":
+        """The machine with the misalignment of its operating point; as it is where none is found, with a warning."""
+        if not self._needs_alignment:
+            return self
+        try:
+            return self._with_flanks_of(self.operating_point())
+        except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError) as error:
+            if any(mounted.needs_load for mounted in self.bearings):
+                raise
+            message = f"flanks are taken as aligned, as the machine has no operating point: {error}"
+            warnings.warn(message, stacklevel=2)
+            return self
 
     @cached_property
     def assembled(self) -> CoupledMachine:

@@ -263,7 +263,7 @@ class Study:
         from gearwhine.analyses import machine
         from gearwhine.solve.gear_pairs import aims_at_sensor
 
-        housing = self.housing if aims_at_sensor(self.case) else None
+        housing = self.housing if aims_at_sensor(self.case) else self._kept.solved
         return machine.gears(self.case, housing=housing, progress=self.progress)
 
     def operating_point(

@@ -14,7 +14,8 @@ from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
 from rotors import Bearing
-from rotors.rolling_bearings import RollingBearing
+from rotors.errors import require_finite
+from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,6 +38,9 @@ class MountedBearing:
     rolling : RollingBearing or None
     offset : ndarray, shape (5,), or None
         Force of the linear law at zero deflection [N, N m]: force at the operating point less K times the deflection.
+    damping_time : float
+        Damping over stiffness of a bearing whose stiffness follows from its load [s], beside the damping that the
+        bearing has.
     """
 
     bearing: Bearing
@@ -45,14 +49,23 @@ class MountedBearing:
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
+    damping_time: float = 0.0
 
     def __post_init__(self) -> None:
         """Keep own copies."""
         keep_arrays(self, "offset")
+        require_finite(f"damping time of bearing {self.bearing.name!r}", self.damping_time, minimum=0.0)
 
     @classmethod
     def from_elements(
-        cls, name: str, at: float, rotor: str, seat: str | None, rolling: RollingBearing, *, damping: float = 0.0
+        cls,
+        name: str,
+        at: float,
+        rotor: str,
+        seat: str | None,
+        rolling: RollingBearing,
+        *,
+        damping: float | None = None,
     ) -> "MountedBearing":
         """Mount a rolling bearing whose stiffness follows from its load at the machine's operating point.
 
@@ -66,19 +79,21 @@ class MountedBearing:
             None for the ground.
         rolling : RollingBearing
             Such as that of :func:`rotors.rolling_bearings.catalogue_bearing`.
-        damping : float
-            Along x and y [N s/m].
+        damping : float, optional
+            Along x and y [N s/m]. By default `rotors.rolling_bearings.ROLLING_DAMPING_TIME` times the stiffness.
 
         Raises
         ------
         rotors.RotorError
             For a place or a damping that no bearing has.
         """
+        across = 0.0 if damping is None else damping
         return cls(
-            Bearing(name, at, np.zeros((5, 5)), np.diag([damping, damping, 0.0, 0.0, 0.0])),
+            Bearing(name, at, np.zeros((5, 5)), np.diag([across, across, 0.0, 0.0, 0.0])),
             rotor,
             seat,
             rolling=rolling,
+            damping_time=ROLLING_DAMPING_TIME if damping is None else 0.0,
         )
 
     @property

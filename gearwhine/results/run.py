@@ -24,6 +24,7 @@ from gearwhine.results.motion import (
     SENSOR_COLUMNS,
     MeshFigures,
     NamedParts,
+    damping_sentence,
     leading_lines,
     line_table,
     mesh_sentence,
@@ -321,6 +322,7 @@ CONVENTIONS = {
     "phase": "of the cosine at t = 0 of the histories' time axis, also where the record begins later",
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
+    "band_db": "change of the line by all damping doubled and halved, below and above, by the linear model",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
 }
 SIGNATURE = (
@@ -866,6 +868,7 @@ def report(document: Document) -> Section:
     if document.get("run") is not None:
         sentences.append(f"{_acceleration(document['run'])}.")
     sentences += _basis_error(document)
+    sentences += damping_sentence(document)
     tables = (
         *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
         *_line_table(document),

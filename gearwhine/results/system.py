@@ -11,6 +11,7 @@ from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
+from gearwhine.results.motion import band_words, damping_sentence
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -527,7 +528,7 @@ _WHIRL = 0.5  # circularity from which a sense of whirl is named
 
 def report(document: Document) -> Section:
     """Chapter of the report."""
-    content = tuple(_content(document))
+    content = (*_content(document), *damping_sentence(document))
     return Section("Coupled system", content, pictures=_PICTURES, curves=_CURVES)
 
 
@@ -695,6 +696,7 @@ def _lines(lines: list[Document]) -> Iterator[str | Table]:
         of_sensor = [
             {"sensor": sensor, "frequency_hz": line["frequency_hz"], "cause": line["cause"]}
             | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
+            | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
             for line in lines
         ]
         rows += sorted(of_sensor, key=lambda row: -row["together"])[:_LINES]
@@ -711,6 +713,7 @@ _LINE_COLUMNS = (
     Column("by transmission error", "by_transmission_error", ".3g"),
     Column("by load shuttling", "by_load_shuttling", ".3g"),
     Column("together", "together", ".3g"),
+    Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
 )
 
 _CROSSING_COLUMNS = (

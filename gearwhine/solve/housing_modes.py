@@ -348,6 +348,21 @@ def solve_housing(
     )
 
 
+def kept_housing(case: Case, folder: Path | None, progress: Progress = silent) -> SolvedHousing | None:
+    """Return the housing of a case from the modes that a results folder keeps; None where it keeps none of it.
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        As :func:`solve_housing`.
+    """
+    if folder is None or case.housing is None or not (folder / MODE_CACHE_FILE).exists():
+        return None
+    mesh = build_mesh(case) if case.housing.mesh is not None else None
+    record, _ = read_mode_cache(folder, mode_cache_inputs(case, mesh))
+    return None if record is None else solve_housing(case, progress, folder=folder)
+
+
 def _damping_array(matrix: FloatArray) -> LabelledArray:
     return LabelledArray(_COORDINATES, matrix, "s-1", "damping of what is fastened, by modes and attachments")
 

@@ -97,7 +97,8 @@ class GearPair:
         Coefficient of friction between the teeth.
     misalignment : float, optional
         Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
-        point, see :meth:`coupling.Machine.at_operating_point`.
+        point, see :meth:`coupling.Machine.at_operating_point`. Flanks of a pair apart from a machine, or in one
+        without such a point, are aligned then.
     face_gap : tuple of float
         Gap of the flanks over the face that comes with the misalignment [m], at the stations of
         :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
@@ -112,7 +113,7 @@ class GearPair:
     damping: float | None = None
     backlash: float | None = None
     friction: float = 0.0
-    misalignment: float | None = 0.0
+    misalignment: float | None = None
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
 
@@ -161,23 +162,14 @@ class GearPair:
         geometry : GearPairGeometry
         sense : int
             Sense of rotation of the driver about z: 1 or -1.
-
-        Raises
-        ------
-        GearError
-            Where the misalignment has still to be found at the operating point of a machine.
         """
-        if self.misalignment is None:
-            raise GearError(
-                f"{geometry.label}: its misalignment is left to the machine's operating point; expected an angle, or "
-                "`Machine.at_operating_point`"
-            )
+        misalignment = self.misalignment or 0.0
         bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
         straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        even = self.misalignment == 0.0 and not any(self.face_gap)
+        even = misalignment == 0.0 and not any(self.face_gap)
         if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
-        return face_slices(geometry, sense=sense, misalignment=self.misalignment, face_gap=self.face_gap)
+        return face_slices(geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap)
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
         """Refuse faults for which the mesh has no solution, before it is solved.
