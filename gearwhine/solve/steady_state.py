@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
 from coupling.machine.base_motion import BaseMotion
+from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.periodic.continuation import ResponseCurve
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.superposition import (
@@ -390,6 +391,7 @@ def _motion(
     limit = _HARMONICS * ratio * max(mesh_frequencies(case), default=1000.0) if case.gear_pair else 1000.0
     if housing is not None:
         limit = housing.trusted_limit_hz
-    samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
+    rate = max(_OVERSAMPLING * limit, least_sampling_rate(response.system)[0])
+    samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
     record = response.record(transient_outputs(machine), samples)
     return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, base), limit)
