@@ -63,7 +63,7 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
 def least_sampling_rate(
     system: CoupledSystem, begin: float = 0.0, end: float = 0.0, *, fastest: float = 1.0
 ) -> tuple[float, float]:
-    """Sampling rate at which no excitation folds down to a lower frequency, and the excitation that asks for it.
+    """Return the sampling rate at which no excitation folds down to a lower frequency, and its frequency.
 
     Parameters
     ----------

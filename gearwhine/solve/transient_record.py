@@ -303,7 +303,8 @@ def sampling(
     steady = turning is None and not varies_within(system, settings.record_from, settings.duration)
     orders = _driving_orders(system, nominal)
     if 8 * signals * settings.samples <= largest:
-        stretch, window = settings.samples, "hann"
+        window: Window = "hann"
+        stretch = settings.samples
         if turning is None:
             stretch, window = _whole_stretch(case, system, orders if steady else None, per_revolution, stretch)
         return Sampling(settings, block or SAMPLES_PER_BLOCK, coupled_decimation(1, 0.25), stretch, window)
@@ -366,7 +367,7 @@ def _driving_orders(system: CoupledSystem, revolution: float) -> list[float]:
 def _whole_stretch(
     case: Case, system: CoupledSystem, orders: list[float] | None, per_revolution: int, samples: int
 ) -> tuple[int, Window]:
-    """Number of samples at the end of a record that hold whole periods, and the window for them.
+    """Return the number of samples at the end of a record that hold whole periods, and the window for them.
 
     The stretch has whole periods of all shafts and orders; else, under Hann's window, of the first driver's shaft and
     the meshes, where it is nearly all of the record; else it is the whole record. ``orders`` is None where a load
