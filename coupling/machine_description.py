@@ -7,6 +7,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
+import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -29,6 +30,7 @@ from coupling.linear.frequency_response import FrequencyResponse, mesh_error_res
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.machine.face_compliance import face_compliance
 from coupling.machine.gear_bodies import GearBody, gear_body, stiffest
 from coupling.machine.gear_train import (
@@ -513,6 +515,10 @@ class Machine:
         ModesError
             Where a mode fails its proof.
         """
+        for shaft in self.shafts:
+            ratio = abs(self.speeds[shaft.name] / self.speed) if self.speed != 0.0 else 0.0
+            for speed in np.ravel(speeds):
+                shaft.rotor.require_speed("speed", ratio * float(speed))
         return system_campbell(self.assembled, speeds, frequency_limit=frequency_limit, progress=progress)
 
     def mesh_error_response(self, frequencies: FloatArray, *, mesh: int = 0) -> FrequencyResponse:
@@ -567,7 +573,8 @@ class Machine:
         discard : int
             Number of revolutions before the record begins.
         points_per_revolution : int
-            Number of samples of the record in a revolution; the largest step is their interval.
+            Least number of samples of the record in a revolution, doubled until no excitation folds down to a lower
+            frequency; the largest step is the interval of so many.
         tolerance : float
             Tolerance of the local error of a step, see :class:`coupling.TransientSettings`.
         driving : Driving
@@ -584,10 +591,13 @@ class Machine:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
         coupled = self.assembled if driving is CONSTANT else self._linearised.assemble(driving=driving)
+        duration, record_from = revolutions * period, discard * period
+        least = least_sampling_rate(coupled.system, record_from, duration)[0] * period
+        samples = points_per_revolution * 2 ** max(math.ceil(math.log2(max(least / points_per_revolution, 1.0))), 0)
         settings = TransientSettings(
-            duration=revolutions * period,
-            record_from=discard * period,
-            sample_interval=period / points_per_revolution,
+            duration=duration,
+            record_from=record_from,
+            sample_interval=period / samples,
             largest_step=period / points_per_revolution,
             tolerance=tolerance,
         )

@@ -11,7 +11,7 @@ overlapping stretches: lines of a steady sine keep their height, and the average
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -27,6 +27,7 @@ ACCELERATION_REFERENCE = 1e-6
 ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
+_WHOLE = 1e-6  # tolerance of a whole number of cycles: a line leaks as large a part of its height
 _NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # bandwidth of the window over the spacing of lines
 
 
@@ -169,6 +170,29 @@ def at_time_zero(lines: ComplexArray, frequencies: FloatArray, start: float) -> 
         Time of the first sample [s].
     """
     return np.asarray(lines * np.exp(-2j * np.pi * start * frequencies))
+
+
+def whole_period_samples(
+    count: int, interval: float, frequencies: Sequence[float], *, least: float = 0.5
+) -> int | None:
+    """Largest number of a record's samples in which all frequencies make whole cycles; None where there is none.
+
+    Parameters
+    ----------
+    count : int
+        Number of samples of the record.
+    interval : float
+        Between samples [s].
+    frequencies : sequence of float
+        Frequencies [Hz].
+    least : float
+        Least part of the record. A record of one common period at least has half its samples in whole ones.
+    """
+    counts = np.arange(count, max(math.ceil(least * count), 1) - 1, -1)
+    for frequency in frequencies:
+        cycles = counts * (interval * frequency)
+        counts = counts[np.abs(cycles - np.rint(cycles)) < _WHOLE]
+    return int(counts[0]) if counts.size else None
 
 
 def _frequencies(count: int, interval: float) -> FloatArray:
