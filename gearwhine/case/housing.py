@@ -360,6 +360,12 @@ class Housing(Table):
         return value
 
     @property
+    def mesh_size(self) -> float | None:
+        """Edge length of the elements [m]; None where the housing is meshed already, or to an accuracy."""
+        source = self.box or self.cad
+        return None if source is None else source.mesh_size
+
+    @property
     def damping_points(self) -> tuple[tuple[float, float], ...]:
         """The damping table as (frequency in Hz, ratio), ascending; empty for the other forms."""
         if not isinstance(self.damping_ratio, dict):

@@ -24,9 +24,9 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.mesh_health import (
+    discretisation_warnings,
     noted_on_failure,
     require_meshable,
-    resolution_warnings,
     surface_point_warnings,
 )
 from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
@@ -301,7 +301,7 @@ def solve_housing(
         if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _TWO_PI)
+            warnings += discretisation_warnings(case, mesh, modes)
         else:
             modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
             damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
@@ -391,12 +391,17 @@ def _solve_modes(
     except HousingError as error:
         raise CaseError([Problem(f"housing.{key}", UNSAID, f"what this model has; {error}")]) from error
     damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
+    progress("estimating the error by the mesh")
+    begin = time.perf_counter()
+    modes = described.with_discretisation_errors(free, matrices, modes)
+    estimated = time.perf_counter() - begin
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
     health = described.health(free, matrices, modes)
     health.require()
     checks = housing_checks(described, health, effective_mass(matrices, mesh.points, modes))
-    seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
+    checked = time.perf_counter() - begin
+    seconds = {"assembly": assembled, **modes.seconds, "error_estimate": estimated, "checks": checked}
     return modes, matrices.total_mass, damping, checks, seconds
 
 
