@@ -10,7 +10,7 @@ from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.quantity import add_warnings, warning
+from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import (
     COMPARISON,
@@ -25,7 +25,9 @@ from gearwhine.solve.comparison import (
     ResponseCorrelation,
     compare_responses_document,
     compare_with_survey,
+    comparison_warnings,
     plan_housing,
+    require_comparable,
     write_plan,
 )
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
@@ -139,6 +141,7 @@ def compare(
         Where the case has nothing measured, or its modes are not known as high as the measured ones.
     """
     require(case, "housing", "measured", command="compare")
+    require_comparable(case)
     solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
     comparison, survey = compare_with_survey(case, solved, progress)
     document = comparison_document(comparison, solved)
@@ -148,6 +151,7 @@ def compare(
         progress("comparing responses")
         likeness = compare_responses_document(case, solved, survey)
         document |= {} if likeness is None else {"responses": responses_document(likeness)}
+    add_warnings(document, comparison_warnings(comparison))
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> None:
@@ -164,7 +168,7 @@ def compare(
         "compare",
         case,
         comparison,
-        document | origin_document(solved),
+        joined(document, origin_document(solved)),
         _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
         _figures=figures,
         _files=files,
@@ -292,9 +296,11 @@ def render(
     """
     modes = modes or (None if lines or measured else "dominant")
     check_request(case, modes, mode_format, lines, measured=measured)
+    if measured:
+        require_comparable(case)
     solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
     comparison, survey = None, None
-    if case.measured is not None and (measured or solved.strengths is not None):
+    if case.measured is not None:
         comparison, survey = compare_with_survey(case, solved, progress)
     document = origin_document(solved)
 

@@ -35,7 +35,7 @@ from gearwhine.results.run import (
 )
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
@@ -112,6 +112,7 @@ def run(
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
     require_machine(case)
+    require_comparable(case)
     if case.housing is not None and pictures:
         _require_renderer()
     start = time.perf_counter()
@@ -148,6 +149,7 @@ def run(
         if case.measured is not None:
             comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
+            add_warnings(document, comparison_warnings(comparison))
 
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if case.rotor and case.operation:
