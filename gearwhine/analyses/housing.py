@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, require
+from gearwhine.case import Case, CaseError, require
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
@@ -31,6 +31,7 @@ from gearwhine.solve.comparison import (
     write_plan,
 )
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from housing import HousingError
 from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
@@ -301,7 +302,11 @@ def render(
     solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
     comparison, survey = None, None
     if case.measured is not None:
-        comparison, survey = compare_with_survey(case, solved, progress)
+        try:
+            comparison, survey = compare_with_survey(case, solved, progress)
+        except (CaseError, HousingError):
+            if measured:
+                raise  # else the modes are drawn without their measured partners
     document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
