@@ -262,7 +262,7 @@ def render(
     case: Case,
     modes: str | None = None,
     *,
-    view: str = "iso",
+    view: str = "auto",
     mode_format: ModeFormat = "png",
     lines: Sequence[float] = (),
     measured: bool = False,
@@ -278,7 +278,8 @@ def render(
     case : Case
     modes : str, optional
         ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
-    view : {"iso", "front", "back", "left", "right", "top", "iso-opposite"}
+    view : str
+        One of :data:`housing.pictures.views.VIEWS`; "auto" is for each shape the corner that shows most of its motion.
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
     lines : sequence of float

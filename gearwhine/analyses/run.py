@@ -226,15 +226,15 @@ def run(
             # The tables of lines name modes, and the report links their pictures.
             lines_told = leading_lines(document.get("sensors", ()), "peaks")
             named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
-            draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress, named)
+            draw_modes(solved.housing, comparison, "dominant", "auto", "png", place, progress, named)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)
             if solved.sound is not None:
-                draw_sound_pictures(solved.sound, place, progress)
+                draw_sound_pictures(solved.sound, place, progress, solved.housing.up)
             if solved.transient is not None and solved.signature is not None:
                 lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
                 if lines:
-                    draw_operating_shapes(solved.housing, lines, "iso", "png", place, progress)
+                    draw_operating_shapes(solved.housing, lines, "auto", "png", place, progress)
 
     return Result(
         "run",

@@ -421,7 +421,12 @@ class ShapePair:
 
 
 def draw_measured_shapes(
-    title: str, positions: FloatArray, edges: IntArray, pairs: Sequence[ShapePair], towards_eye: FloatArray
+    title: str,
+    positions: FloatArray,
+    edges: IntArray,
+    pairs: Sequence[ShapePair],
+    towards_eye: FloatArray,
+    upwards: FloatArray | None = None,
 ) -> Figure:
     """Draw pairs of shapes, two pairs in a row, the measured one left.
 
@@ -434,9 +439,12 @@ def draw_measured_shapes(
         Points that the wires join.
     pairs : sequence of ShapePair
     towards_eye : ndarray, shape (3,)
-        Unit vector from the survey to the camera; y points up.
+        Unit vector from the survey to the camera.
+    upwards : ndarray, shape (3,), optional
+        Unit vector that points upwards; by default y.
     """
-    flat, depth = _projected(positions, towards_eye)
+    upwards = np.array([0.0, 1.0, 0.0]) if upwards is None else upwards
+    flat, depth = _projected(positions, towards_eye, upwards)
     reach = _REACH * float(np.linalg.norm(np.ptp(positions, axis=0)))
     low, high = flat.min(axis=0) - reach, flat.max(axis=0) + reach
     width = (SHEET_WIDTH - 2.0 * _MARGIN - (_IN_A_ROW - 1) * _GAP) / (2 * _IN_A_ROW)
@@ -464,14 +472,14 @@ def draw_measured_shapes(
             axes.set_ylim(low[1], high[1])
             axes.set_aspect("equal")
             axes.text(0.02, 1.0, name, transform=axes.transAxes, fontsize=NOTE - 0.5, color=GREY, va="bottom")
-            moved, _ = _projected(positions + shape * (reach / largest), towards_eye)
+            moved, _ = _projected(positions + shape * (reach / largest), towards_eye, upwards)
             _wires(axes, flat, moved, np.linalg.norm(shape, axis=1) / largest, edges, near)
     return figure
 
 
-def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _projected(positions: FloatArray, towards_eye: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return places on the picture, shape (n, 2), and nearness to the eye, shape (n,)."""
-    right = np.cross([0.0, 1.0, 0.0], towards_eye)
+    right = np.cross(up, towards_eye)
     right /= np.linalg.norm(right)
     upward = np.cross(towards_eye, right)
     return positions @ np.stack([right, upward], axis=1), positions @ towards_eye
