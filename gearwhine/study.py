@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from gearwhine.case import Case, CaseSource, LoadedCase, load_case
 from gearwhine.progress import Progress, silent
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from gearwhine.analyses.case import Format
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
-    from gearwhine.mode_pictures import ModeFormat
+    from gearwhine.mode_pictures import ModeFormat, View
     from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
@@ -225,7 +225,7 @@ class Study:
         self,
         modes: str | None = None,
         *,
-        view: Literal["iso", "front", "back", "left", "right", "top", "iso-opposite"] = "iso",
+        view: View = "auto",
         mode_format: ModeFormat = "png",
         measured: bool = False,
     ) -> Result[SolvedHousing]:

@@ -499,7 +499,7 @@ def sound(
 
     def files(place: Path, *, pictures: bool) -> None:
         if pictures:
-            add_warnings(result.document, draw_sound_pictures(solved, place, progress))
+            add_warnings(result.document, draw_sound_pictures(solved, place, progress, housing.up))
 
     result = Result(
         "sound",

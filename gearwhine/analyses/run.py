@@ -36,7 +36,7 @@ from gearwhine.results.run import (
 )
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
-from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_pairs import analyse_pairs
@@ -116,6 +116,7 @@ def run(
     if case.transient is not None:
         require(case, "rotor", "operation", command="run")
     require_machine(case)
+    require_comparable(case)
     if case.housing is not None and pictures:
         _require_renderer()
     start = time.perf_counter()
@@ -152,6 +153,7 @@ def run(
         if case.measured is not None:
             comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
+            add_warnings(document, comparison_warnings(comparison))
 
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if case.rotor and case.operation:
@@ -234,15 +236,15 @@ def run(
             # The tables of lines name modes, and the report links their pictures.
             lines_told = leading_lines(document.get("sensors", ()), "peaks")
             named = {row["by_mode"] for row in lines_told if row["by_mode"] is not None}
-            draw_modes(solved.housing, comparison, "dominant", "iso", "png", place, progress, named)
+            draw_modes(solved.housing, comparison, "dominant", "auto", "png", place, progress, named)
             if load is not None:
                 draw_load_pictures(solved.housing, load, place, progress)
             if solved.sound is not None:
-                draw_sound_pictures(solved.sound, place, progress)
+                draw_sound_pictures(solved.sound, place, progress, solved.housing.up)
             if solved.transient is not None and solved.signature is not None:
                 lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
                 if lines:
-                    draw_operating_shapes(solved.housing, lines, "iso", "png", place, progress)
+                    draw_operating_shapes(solved.housing, lines, "auto", "png", place, progress)
 
     return Result(
         "run",

@@ -191,7 +191,7 @@ class Draft:
         Nested tables and lists of the case file.
     broken : frozenset of str
         Top-level tables that are readable in parts only; a missing entry in them proves nothing.
-    box, operation, transient, sweep, analysis, acoustics
+    box, operation, transient, sweep, analysis, acoustics, measured
         Tables; None where one is missing or cannot be read.
     """
 
@@ -213,6 +213,7 @@ class Draft:
     sweep: Sweep | None
     analysis: RotorAnalysis | None
     acoustics: Acoustics | None
+    measured: Measured | None
 
     @cached_property
     def readable_pairs(self) -> list[tuple[int, Gear, Gear]]:
@@ -251,6 +252,7 @@ _DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "sweep": (Sweep, ("sweep",)),
     "analysis": (RotorAnalysis, ("rotor_analysis",)),
     "acoustics": (Acoustics, ("acoustics",)),
+    "measured": (Measured, ("measured",)),
 }
 _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "seats": (Seat, ("housing", "seat")),

@@ -322,6 +322,7 @@ MEASURED = (
     _optional("file", lambda measured: None if measured.survey is None else str(measured.file)),
     Part("", lambda measured: measured.survey, _SURVEY),
     _optional("align", _alignment),
+    Quantity("pairing", lambda measured: measured.paired_by),
 )
 """Quantities of the measurement on the housing."""
 
@@ -489,11 +490,20 @@ def _operation_lines(operation: Document) -> Iterator[str]:
         yield "base moves: " + ", ".join(moves + ["a table over time"] * base["over_time"])
 
 
+_PAIRED_BY = {
+    "shapes": "shapes",
+    "nearest": "nearest frequencies in order",
+    "order": "order of frequency",
+    "dominance": "dominance",
+}
+
+
 def _measured_lines(measured: Document) -> list[str]:
     """Return lines on the measured modes; for a file also on the content that was read."""
     lines = []
     if "frequencies_hz" in measured:
-        lines.append(", ".join(f"{frequency:.6g}" for frequency in measured["frequencies_hz"]) + " Hz")
+        listed = ", ".join(f"{frequency:.6g}" for frequency in measured["frequencies_hz"])
+        lines.append(f"{listed} Hz; paired with the model's by {_PAIRED_BY[measured['pairing']]}")
     if "points" in measured:
         kind = "" if "frequencies_hz" not in measured else f"; {'complex' if measured['complex'] else 'real'} shapes"
         size = " x ".join(f"{1e3 * side:.4g}" for side in measured["extent_m"])

@@ -19,7 +19,7 @@ from gearwhine.output.sections import (
     table_of,
 )
 from gearwhine.results.bearing_lives import LONGEST_LIFE
-from gearwhine.results.comparison import LINKED_PAIR
+from gearwhine.results.comparison import LINKED_PAIR, rule_of
 from gearwhine.results.line_columns import LINE_NAME
 from gearwhine.results.motion import amplitude_words, band_words, leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
@@ -487,7 +487,7 @@ def _compared(documents: Sequence[Document]) -> tuple[str | Table, ...]:
         if pairs := compared.get("pairs"):
             sentence = (
                 f"Errors of the frequencies: {compared['rms_error_percent']:.2f} % root mean square, "
-                f"{compared['max_error_percent']:.2f} % at most; paired by {compared['pairing']}."
+                f"{compared['max_error_percent']:.2f} % at most; paired by {rule_of(compared)}."
             )
             return (sentence, *table_of(LINKED_PAIR, pairs))
     return ()

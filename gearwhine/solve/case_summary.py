@@ -23,6 +23,7 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 from gearwhine.solve.sound import check_before_modes
@@ -111,6 +112,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         Where a part of it cannot be built, or its housing's mesh is wrong.
     """
     require_machine(case)
+    require_comparable(case)
     for rotor in case.rotor:
         # A load that a rolling bearing cannot carry is refused here as by the commands that solve it.
         build_bearings(case, rotor.name)
