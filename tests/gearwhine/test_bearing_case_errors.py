@@ -15,7 +15,6 @@ ROLLERS = {**BALLS, "element_length": "8 mm"}
 RINGS = {"type": "deep-groove", "bore": "25 mm", "outer_diameter": "52 mm", "width": "15 mm"}
 ONE_WRONG = {
     # ranges
-    "bearing stiffness": ("bearing.0.stiffness.xx", "0 N/m", "bearing[0].stiffness.xx", "above 0 N/m"),
     # keys, forms and choices
     "load of a spring": ("bearing.0.load", {"x": "5 N"}, "bearing[0].load", "only the stiffness of a rolling bearing"),
     "rollers without length": (

@@ -489,10 +489,10 @@ def _check_rack(gear: Gear) -> None:
             f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
             f"at most {full * 1e3:.4g} mm"
         )
-    if gear.rack_corner_arc.depth <= 0.0:
+    if gear.generating_shift > gear.dedendum:
         raise GearError(
-            f"{label}profile_shift {gear.profile_shift:g} lifts the rack's corner above the pitch line; "
-            f"at most {gear.dedendum - gear.rack_tip_radius / gear.module:.4g} here"
+            f"{label}profile_shift {gear.profile_shift:g} withdraws the rack's teeth beyond the pitch line on which "
+            f"they roll; at most {gear.dedendum + gear.profile_shift - gear.generating_shift:.4g} here"
         )
 
 

@@ -37,7 +37,8 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.iso6336 import Iso6336Stiffness
+from coupling.gears.stiffness.foundation import require_thick_ring
+from coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
 from coupling.gears.stiffness.tooth_compliance import (
     CornellStiffness,
     ElasticRingStiffness,
@@ -203,6 +204,21 @@ def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
         return STIFFNESS_MODELS[name](**parameters)
     except TypeError as error:
         raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
+
+
+def require_model_fit(name: str, geometry: GearPairGeometry) -> None:
+    """Refuse gears that a model by name does not cover, before it is solved.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a thin ring under "potential-energy", or profile shifts beyond those of "iso6336".
+    """
+    if name == PotentialEnergyStiffness.name:
+        for gear in (geometry.driver, geometry.driven):
+            require_thick_ring(gear)
+    elif name == Iso6336Stiffness.name:
+        iso6336_stiffness(geometry)
 
 
 def stiffness_under_load(name: str, geometry: GearPairGeometry, force: float) -> StiffnessModel:
