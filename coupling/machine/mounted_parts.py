@@ -6,11 +6,13 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
+from coupling.errors import CouplingError
 from coupling.gears import GearPairGeometry, ToothContact
 from coupling.gears.geometry.pair import pair_label
 from coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
+from numerics.findings import Instance, Text, attribute_findings, refuse
 from rotors import Bearing
 from rotors.rolling_bearings import RollingBearing
 
@@ -45,8 +47,15 @@ class MountedBearing:
     offset: FloatArray | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
+        refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
+        rules = {
+            "rotor": Text(),
+            "seat": Text(optional=True),
+            "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
+        }
+        refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
 
     @classmethod
     def from_elements(

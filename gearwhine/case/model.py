@@ -88,6 +88,9 @@ class Case(Table):
     """Parameters that are fitted to the measured modes."""
     acoustics: Acoustics | None = None
     """Sound that the housing radiates."""
+    unusual: tuple[Annotated[str, Field(max_length=1000)], ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Key paths, `*` for any entry, whose unlikely values are meant: at them and below them no implausible value is
+    warned of. What cannot be stays an error."""
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
     """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
     a colon."""

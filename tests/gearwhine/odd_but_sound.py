@@ -191,7 +191,7 @@ MACHINES: dict[str, dict[str, Any]] = {
     "composite shaft": shaft()
     | {"material": {"steel": {"youngs_modulus": "120 GPa", "poisson_ratio": 0.3, "density": "1600 kg/m^3"}}},
     "massless shaft with a disc": shaft(discs=[{"at": "0.5 m", **LUMPED, "diametral_inertia": "0.01 kg*m^2"}])
-    | {"material": {"steel": STEEL | {"density": "1 kg/m^3", "unusual": True}}},
+    | {"material": {"steel": STEEL | {"density": "1 kg/m^3"}}},
     "point mass": shaft(discs=[{"at": "0.5 m", "mass": "4 kg"}]),
     "thin disc": shaft(discs=[{"at": "0.5 m", **LUMPED, "diametral_inertia": "0.01 kg*m^2"}]),
     "printed inertias of a thin disc": shaft(

@@ -189,9 +189,9 @@ ONE_WRONG = {
     ),
     "matrix that pushes": (
         "bearing.0.stiffness",
-        {"matrix": [[0.0] * 3 + [-1.0] * 2] * 5},
-        "bearing[0].stiffness.matrix[3][3]",
-        "at least 0",
+        {"matrix": [[0.0] * 3 + ["-1 N/m"] * 2] * 5},
+        "bearing[0].stiffness.matrix[0][3]",
+        "a force per angle",
     ),
     "matrix of four rows": (
         "bearing.1.damping",

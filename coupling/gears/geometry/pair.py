@@ -21,6 +21,7 @@ at the centre distance ``a = (rb_k + rb_i) / cos(w)``; from it follow profile sh
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -31,6 +32,7 @@ import numpy.typing as npt
 from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError, require_finite
 from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.involute import inverse_involute, involute
+from numerics.findings import Finding
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -102,6 +104,11 @@ class GearPairGeometry:
         _check_faces(self)
         _check_distance(self)
         _check_contact(self)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is unlikely of the pair: contact ratios."""
+        return tuple(_ratio_findings(self))
 
     # ---------------------------------------------------------- working values
 
@@ -451,6 +458,23 @@ def _check_contact(pair: GearPairGeometry) -> None:
             raise InterferenceError(
                 f"{pair.label}: the tip of {tip.name!r} hits the root of {rooted.name!r} by {-clearance * 1e3:.4g} mm"
             )
+
+
+_MOST_IN_CONTACT = 20.0
+"""Total contact ratio beyond which a face is unlikely wide."""
+
+
+def _ratio_findings(pair: GearPairGeometry) -> Iterator[Finding]:
+    """Yield contact ratios that gears hardly have."""
+    part = ("gear pair", f"{pair.driver.name} -> {pair.driven.name}")
+    if pair.contact_ratio < 1.0:
+        expected = (
+            "1 or more: the teeth carry by their overlap alone, so that misalignment may take them out of contact"
+        )
+        yield Finding(part, "contact_ratio", pair.contact_ratio, expected, "warning")
+    if pair.total_contact_ratio > _MOST_IN_CONTACT:
+        expected = f"at most {_MOST_IN_CONTACT:g} pairs in contact at once"
+        yield Finding(part, "total_contact_ratio", pair.total_contact_ratio, expected, "warning")
 
 
 def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowest: float) -> None:

@@ -198,12 +198,17 @@ def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
     StiffnessModelError
         For an unknown name, or parameters that the model does not take or misses.
     """
-    if name not in STIFFNESS_MODELS:
-        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
+    require_known_model(name)
     try:
         return STIFFNESS_MODELS[name](**parameters)
     except TypeError as error:
         raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
+
+
+def require_known_model(name: str) -> None:
+    """Raise `StiffnessModelError` for a name that no model has."""
+    if name not in STIFFNESS_MODELS:
+        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
 
 
 def require_model_fit(name: str, geometry: GearPairGeometry) -> None:

@@ -16,6 +16,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
+from gearwhine.case.checks.keys_of_attributes import key_in_gear
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
@@ -252,7 +253,10 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         try:
             built.setdefault(gear.name, gear.build())
         except GearError as error:
-            yield Finding(("gear", index), f"a gear that can be made; {error}", UNSAID)
+            for finding in error.findings:
+                yield Finding(("gear", index, *key_in_gear(gear, finding.attribute)), finding.expected)
+            if not error.findings:
+                yield Finding(("gear", index), f"a gear that can be made; {error}", UNSAID)
     seen: dict[frozenset[str], int] = {}
     for index, pair in draft.gear_pairs:
         first = seen.setdefault(frozenset((pair.driver, pair.driven)), index)

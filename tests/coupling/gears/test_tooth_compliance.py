@@ -117,7 +117,7 @@ def test_thin_body_outside_the_fitted_range_is_refused() -> None:
 
 @pytest.mark.parametrize("ratio", [10.0, 20.0])
 def test_small_bore_in_a_large_wheel_adds_the_twist_of_the_exact_ring(ratio: float) -> None:
-    """From h = 7 to a smaller bore the body yields more by its twist, as the exact elastic ring of the default model."""
+    """From h = 7 to a smaller bore the body yields more by its twist, as the exact elastic ring does."""
     pinion = GEARS[0]
     compliance = {}
     for model in ("potential-energy", "elastic-ring"):
