@@ -9,7 +9,7 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,7 +22,7 @@ from coupling.gears import Gear, GearError, GearPairGeometry
 from coupling.gears.contact.contact_law import without_body_twist
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
-from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
 from coupling.gears.stiffness.models import twist_by_gear
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
@@ -59,6 +59,7 @@ from coupling.machine.parts import (
     rotor_with_gears,
 )
 from coupling.machine.shaft_dashpots import ShaftDashpots
+from coupling.machine.solids import force_findings, machine_findings, unbalance_findings
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
@@ -77,6 +78,7 @@ from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
 from housing.own_copies import keep_tuples
+from numerics.findings import Finding, Instance, Number, attribute_findings, refuse
 from rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
@@ -146,12 +148,34 @@ class Machine:
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces")
+        refuse(_type_findings(self), CouplingError)
         require_names(self)
         require_stations(self)
         require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         self._require_power_flow()
         self._require_thrust_carried()
+        refuse(self.findings, CouplingError)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is impossible or unlikely of the machine: places of its parts, meshes, loads and speeds."""
+        return tuple(self._findings())
+
+    def _findings(self) -> Iterator[Finding]:
+        meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
+        yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
+        for shaft in self.shafts:
+            tips = [mounted.gear.tip_radius for mounted in self._gears_on(shaft.name)]
+            yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
+        for place, force in enumerate(self.forces):
+            yield from force_findings(force, self.shaft(force.rotor).rotor, place)
+        for mounted in self.gears:
+            yield from mounted.gear.findings
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            yield from pair.findings(geometry)
+            speed = self.speeds[self._gears_of(pair)[0].shaft]
+            yield from operation_findings(geometry, torque, speed)
 
     @cached_property
     def housing_component(self) -> HousingComponent | None:
@@ -253,8 +277,9 @@ class Machine:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft against each other."""
-        return tuple(text for location in self.axial_locations for text in location.warnings)
+        """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft, and :attr:`findings`."""
+        of_location = (text for location in self.axial_locations for text in location.warnings)
+        return (*of_location, *map(str, self.findings))
 
     def shaft(self, name: str) -> Shaft:
         """Return the shaft of this name."""
@@ -392,7 +417,8 @@ class Machine:
                 [StaticRim(rim.gear, rim.stiffness) for rim in rims.values()] if pairs else (),
             )
         except EquilibriumNotFoundError as error:
-            raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
+            of_location = (text for location in self.axial_locations for text in location.warnings)
+            raise EquilibriumNotFoundError("; ".join((str(error), *of_location))) from error
 
     def preload_point(self) -> OperatingPoint:
         """Solve static equilibrium without torques, forces and weight, which gives the bearings' preloads.
@@ -780,3 +806,24 @@ def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
             dashpots.append(ShaftDashpots(label, rotor.name, left, left + part.length, *values))
         left += part.length
     return dashpots
+
+
+def _type_findings(machine: Machine) -> Iterator[Finding]:
+    """Yield parts of a wrong kind, and numbers that are none."""
+    part = ("machine", "")
+    number = Number()
+    yield from attribute_findings(part, machine, speed=number, torque=number, torque_at=number)
+    kinds: dict[str, type] = {
+        "shafts": Shaft,
+        "bearings": MountedBearing,
+        "gears": ShaftGear,
+        "gear_pairs": GearPair,
+        "outputs": Output,
+        "forces": ShaftForce,
+    }
+    for attribute, kind in kinds.items():
+        for place, entry in enumerate(getattr(machine, attribute)):
+            if not isinstance(entry, kind):
+                yield Finding(part, f"{attribute}.{place}", entry, f"a {kind.__name__}")
+    housing = Instance((HousingModes, HousingComponent), "modes of a housing, or None", optional=True)
+    yield from attribute_findings(part, machine, housing=housing)

@@ -6,6 +6,7 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
+from coupling.errors import CouplingError
 from coupling.gears import Gear, GearPairGeometry, ToothContact
 from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.geometry.pair import pair_label
@@ -13,6 +14,7 @@ from coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
+from numerics.findings import Instance, Text, attribute_findings, refuse
 from rotors import Bearing
 from rotors.errors import require_finite
 from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
@@ -52,8 +54,15 @@ class MountedBearing:
     damping_time: float = 0.0
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
+        refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
+        rules = {
+            "rotor": Text(),
+            "seat": Text(optional=True),
+            "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
+        }
+        refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
         require_finite(f"damping time of bearing {self.bearing.name!r}", self.damping_time, minimum=0.0)
 
     @classmethod

@@ -17,10 +17,13 @@ from coupling.machine.gear_train import LARGEST_OFFSET, Output
 from coupling.machine.loads import AnyTorque, Drive, ShaftForce
 from coupling.machine.mounted_parts import MountedBearing
 from housing.own_copies import keep_tuples
+from numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from numerics.names import twin_of
 from rotors import Disc, Rotor, Segment
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
 from rotors.model.profile import StiffnessDiameter
+from rotors.model.shaft import inertia_findings
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -58,8 +61,19 @@ class Shaft:
     mode_count: int | None = None
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check every number."""
         keep_tuples(self, "axis", "unbalances")
+        kind = Instance(Rotor, "a rotor")
+        refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
+        rules = {
+            "axis": Numbers(2),
+            "start": Number(unit="m"),
+            "damping_ratio": Number(at_least=0.0, below=1.0),
+            "frequency_limit": Number(above=0.0, optional=True, unit="rad/s"),
+            "mode_count": Number(at_least=1, optional=True),
+            "bow": Instance(Bow, "a bow, or None", optional=True),
+        }
+        refuse(attribute_findings(("shaft", self.name), self, **rules), CouplingError)
 
     @property
     def name(self) -> str:
@@ -95,8 +109,19 @@ class ShaftGear:
     stiffens_shaft: bool = True
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check place and inertia."""
         keep_tuples(self, "inertia")
+        refuse(attribute_findings(("shaft gear", ""), self, gear=Instance(Gear, "a gear")), CouplingError)
+        rules: dict[str, Rule] = {"shaft": Text(), "at": Number(at_least=0.0, unit="m")}
+        if self.inertia is not None:
+            rules["inertia"] = Numbers(3, Number(at_least=0.0))
+        findings = [*attribute_findings(("gear", self.name), self, **rules)]
+        if self.inertia is not None and not findings:
+            findings += [
+                replace(finding, part=("gear", self.name), attribute="inertia")
+                for finding in inertia_findings(self.at, *self.inertia)
+            ]
+        refuse(findings, CouplingError)
 
     @property
     def name(self) -> str:
@@ -301,6 +326,11 @@ def require_names(machine: MachineParts) -> None:
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
+        for name in names:
+            twin = twin_of(name, names)
+            if twin is not None:
+                expected = "names that look different: their characters are others, such as Cyrillic letters"
+                raise CouplingError(f"{kind} {name!r} looks like {kind} {twin!r}; expected {expected}")
     if not machine.shafts:
         raise CouplingError("a machine without shafts; expected at least one")
     needed = [(f"bearing {bearing.bearing.name!r}", "shaft", bearing.rotor) for bearing in machine.bearings]

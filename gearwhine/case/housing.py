@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import ConfigDict, Discriminator, Field, Tag, field_validator, model_validator
 
 from gearwhine.case import units
-from gearwhine.case.box import FACES, FOOT_SURFACES, Box
+from gearwhine.case.box import Box
 from gearwhine.case.fields import (
     MOST_ENTRIES,
     Angle,
@@ -215,8 +215,6 @@ class Seat(Table):
     def _not_taken(cls, name: str) -> str:
         if name == "ground":
             raise wrong("another name than 'ground', which bearings use for what does not move")
-        if name in (*FACES, *FOOT_SURFACES):
-            raise wrong("another name than that of a face or foot of a box")
         return name
 
     @model_validator(mode="after")

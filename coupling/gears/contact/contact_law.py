@@ -195,8 +195,9 @@ class ToothContact:
 
     def __post_init__(self) -> None:
         """Check the values, the curves of the pairs, the pitch gaps and the indices of variants."""
-        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
-            raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
+        least = 0.0 if self.enters_by_slices else 1.0  # the next pair of helical teeth enters at the other end
+        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= least):
+            raise GearError(f"tooth contact: contact_ratio must be at least {least:g}, got {self.contact_ratio!r}")
         if not (math.isfinite(self.damping) and self.damping >= 0.0):
             raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
         if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):

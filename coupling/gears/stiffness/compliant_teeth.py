@@ -212,13 +212,14 @@ class CompliantTeeth(ABC):
 
     def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
-        both = geometry.contact_ratio - 1.0
+        # Helical teeth with less than one pair in a plane share their bodies along the face: as at a ratio of one.
+        both = max(geometry.contact_ratio - 1.0, 0.0)
         driver, driven = map(self._neighbours, geometry.carrying_gears)
-        if driver is None or driven is None or both <= 0.0:
+        if driver is None or driven is None or (both == 0.0 and geometry.driver.helix_angle == 0.0):
             return 0.0, 0.0
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
         behind = 0.5 * both * (1.0 + nodes)
-        ahead = behind + 1.0
+        ahead = np.minimum(behind + 1.0, geometry.contact_ratio)
         # The driver pushes against its own rotation, so that its next tooth in the sense of the load entered later.
         of_driver = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
         of_driven = driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))

@@ -37,7 +37,8 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.iso6336 import Iso6336Stiffness
+from coupling.gears.stiffness.foundation import require_thick_ring
+from coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
 from coupling.gears.stiffness.tooth_compliance import (
     CornellStiffness,
     ElasticRingStiffness,
@@ -206,12 +207,32 @@ def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
     StiffnessModelError
         For an unknown name, or parameters that the model does not take or misses.
     """
-    if name not in STIFFNESS_MODELS:
-        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
+    require_known_model(name)
     try:
         return STIFFNESS_MODELS[name](**parameters)
     except TypeError as error:
         raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
+
+
+def require_known_model(name: str) -> None:
+    """Raise `StiffnessModelError` for a name that no model has."""
+    if name not in STIFFNESS_MODELS:
+        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
+
+
+def require_model_fit(name: str, geometry: GearPairGeometry) -> None:
+    """Refuse gears that a model by name does not cover, before it is solved.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a thin ring under "potential-energy", or profile shifts beyond those of "iso6336".
+    """
+    if name == PotentialEnergyStiffness.name:
+        for gear in (geometry.driver, geometry.driven):
+            require_thick_ring(gear)
+    elif name == Iso6336Stiffness.name:
+        iso6336_stiffness(geometry)
 
 
 def stiffness_under_load(name: str, geometry: GearPairGeometry, force: float) -> StiffnessModel:
