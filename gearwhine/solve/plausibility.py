@@ -338,9 +338,9 @@ def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> 
         name, loss = system.contacts[tilt.of_contact].name, float(contact_loss[tilt.of_contact])
         if part > _HELD:
             message = (
-                f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the shafts; "
-                f"the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, as under the "
-                "mean load"
+                f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the "
+                f"shafts; the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, as "
+                "under the mean load"
             )
             warnings.append(warning("parted flanks", message, contact=name, contact_loss=loss, part=part))
     return warnings
