@@ -339,8 +339,8 @@ def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> 
         if part > _HELD:
             message = (
                 f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the "
-                f"shafts; the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, as "
-                "under the mean load"
+                f"shafts; the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, "
+                "as under the mean load"
             )
             warnings.append(warning("parted flanks", message, contact=name, contact_loss=loss, part=part))
     return warnings
