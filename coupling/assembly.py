@@ -30,7 +30,7 @@ from coupling.machine.components import (
     pedestal_component,
 )
 from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
-from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
+from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
 from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
@@ -93,6 +93,18 @@ class CoupledMachine:
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    @property
+    def train_inertia(self) -> float:
+        """Polar inertia of the leading rotor's train, reduced to that rotor: Σ J (Ω / Ω_lead)² [kg m²]."""
+        speeds, lead = self.speeds, self.leading_rotor
+        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in self.meshes]
+        train = next(train for train in trains([rotor.name for rotor in self.rotors], pairs) if lead in train)
+        return sum(
+            float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
+            for rotor in self.rotors
+            if rotor.name in train
+        )
 
     @property
     def loaded_contacts(self) -> tuple[int, ...]:
@@ -519,7 +531,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         return None
     return sliding_flanks(
         coordinates,
-        [(gear.rotor, at) for gear, at in zip((mesh.driver, mesh.driven), mesh.stations, strict=True)],
+        list(zip((mesh.driver, mesh.driven), mesh.stations, strict=True)),
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.line_of_action(sense),
@@ -541,7 +553,7 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
         motions = rotor.motions(at)
-        compression = flank.turning(rotor.rotation(at)) + flank.across(motions) + flank.axial(motions)
+        compression = flank.turning(rotor.rim_rotation(mounted.name, at)) + flank.across(motions) + flank.axial(motions)
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

@@ -6,6 +6,7 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
+from coupling.errors import CouplingError
 from coupling.gears import Gear, GearPairGeometry, ToothContact
 from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.geometry.pair import pair_label
@@ -13,8 +14,10 @@ from coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
+from numerics.findings import Instance, Text, attribute_findings, refuse
 from rotors import Bearing
-from rotors.rolling_bearings import RollingBearing
+from rotors.errors import require_finite
+from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,6 +40,9 @@ class MountedBearing:
     rolling : RollingBearing or None
     offset : ndarray, shape (5,), or None
         Force of the linear law at zero deflection [N, N m]: force at the operating point less K times the deflection.
+    damping_time : float
+        Damping over stiffness of a bearing whose stiffness follows from its load [s], beside the damping that the
+        bearing has.
     """
 
     bearing: Bearing
@@ -45,14 +51,30 @@ class MountedBearing:
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
+    damping_time: float = 0.0
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
+        refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
+        rules = {
+            "rotor": Text(),
+            "seat": Text(optional=True),
+            "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
+        }
+        refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
+        require_finite(f"damping time of bearing {self.bearing.name!r}", self.damping_time, minimum=0.0)
 
     @classmethod
     def from_elements(
-        cls, name: str, at: float, rotor: str, seat: str | None, rolling: RollingBearing, *, damping: float = 0.0
+        cls,
+        name: str,
+        at: float,
+        rotor: str,
+        seat: str | None,
+        rolling: RollingBearing,
+        *,
+        damping: float | None = None,
     ) -> "MountedBearing":
         """Mount a rolling bearing whose stiffness follows from its load at the machine's operating point.
 
@@ -66,19 +88,21 @@ class MountedBearing:
             None for the ground.
         rolling : RollingBearing
             Such as that of :func:`rotors.rolling_bearings.catalogue_bearing`.
-        damping : float
-            Along x and y [N s/m].
+        damping : float, optional
+            Along x and y [N s/m]. By default `rotors.rolling_bearings.ROLLING_DAMPING_TIME` times the stiffness.
 
         Raises
         ------
         rotors.RotorError
             For a place or a damping that no bearing has.
         """
+        across = 0.0 if damping is None else damping
         return cls(
-            Bearing(name, at, np.zeros((5, 5)), np.diag([damping, damping, 0.0, 0.0, 0.0])),
+            Bearing(name, at, np.zeros((5, 5)), np.diag([across, across, 0.0, 0.0, 0.0])),
             rotor,
             seat,
             rolling=rolling,
+            damping_time=ROLLING_DAMPING_TIME if damping is None else 0.0,
         )
 
     @property
@@ -131,10 +155,13 @@ class GearMesh:
     driver, driven : MountedGear
     geometry : GearPairGeometry
     contact : ToothContact
+        Contact law between the rims of the gears.
     backlash : float, optional
         Gap between the back flanks along their line of action [m]; None where they can never meet.
     friction : float
         Coefficient of friction between the teeth, from 0 to 0.5.
+    body_twist : float
+        Twist of the gears' bodies against their shafts, along the line of action [m/N], in series with the contact.
     faces : FaceSlices, optional
         Slices by which flanks that carry evenly resist tilting, see :mod:`coupling.machine.mesh_face`. By default those
         of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
@@ -146,6 +173,7 @@ class GearMesh:
     contact: ToothContact
     backlash: float | None = None
     friction: float = 0.0
+    body_twist: float = 0.0
     faces: FaceSlices | None = None
 
     @property

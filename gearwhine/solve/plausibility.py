@@ -16,6 +16,7 @@ from coupling import CoupledMachine, coupled_modes
 from coupling import stability as coupled_stability
 from coupling.gears.geometry.pair import pair_label
 from coupling.linear.complex_modes import Stability
+from coupling.linear.damping_band import DampingBand
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
@@ -364,15 +365,41 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     """
     if error is None:
         return
-    holders = [document, *document.get("motions", ())]
-    sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
-    rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
+    rows = _sensor_lines(document)
     frequencies = np.unique([line["frequency_hz"] for _, line in rows])
     errors = error.at(_TWO_PI * frequencies)
     for name, line in rows:
         line["uncertainty"] = float(errors[name][np.searchsorted(frequencies, line["frequency_hz"])])
     if limit_hz is not None:
         document["basis_error"] = _bands(error, limit_hz)
+
+
+def _sensor_lines(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Return the lines of a document's sensors, and of those of its motions, each with the sensor's name."""
+    holders = [document, *document.get("motions", ())]
+    sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
+    return [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
+
+
+def add_damping_bands(document: dict[str, Any], bands: DampingBand) -> None:
+    """Add ``band_db`` to every line of the document's sensors, [below, above]: damping doubled and halved.
+
+    ``mesh_lines`` have one by sensor.
+    """
+    rows, harmonics = _sensor_lines(document), document.get("mesh_lines") or ()
+    frequencies = np.unique([line["frequency_hz"] for line in (*(line for _, line in rows), *harmonics)])
+    if not frequencies.size or not bands.machine.sensor_rows:
+        return
+    by_sensor = bands.at(_TWO_PI * frequencies)
+
+    def band(sensor: str, line: dict[str, Any]) -> list[float]:
+        below, above = by_sensor[sensor][np.searchsorted(frequencies, line["frequency_hz"])].tolist()
+        return [below, above]
+
+    for sensor, line in rows:
+        line["band_db"] = band(sensor, line)
+    for line in harmonics:
+        line["band_db"] = {sensor: band(sensor, line) for sensor in by_sensor}
 
 
 def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:
