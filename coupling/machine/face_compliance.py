@@ -89,10 +89,13 @@ def face_compliance(
             stiffness[node, node] += support.stiffness
             stiffness[count + node, count + node] += support.tilt_stiffness
         shapes = np.hstack(lateral.evaluate(shaft.places))
-        bending = _missing(np.linalg.inv(stiffness), shapes, lateral.frequencies, loads.reshape(3, -1))
+        bending = _missing(
+            np.asarray(np.linalg.inv(stiffness), dtype=np.float64), shapes, lateral.frequencies, loads.reshape(3, -1)
+        )
     rows = [6 * node + 5 for node in range(count)]
     elastic = torsional.frequencies > 0.0
-    flexibility = np.linalg.pinv(shaft.stiffness[np.ix_(rows, rows)], rcond=_RIGID, hermitian=True)
+    turning = shaft.stiffness[np.ix_(rows, rows)]
+    flexibility = np.asarray(np.linalg.pinv(turning, rcond=_RIGID, hermitian=True), dtype=np.float64)
     shapes = torsional.evaluate(shaft.places)[elastic]
     twisting = _missing(flexibility, shapes, torsional.frequencies[elastic], torques)
     return FaceCompliance(bending, twisting)

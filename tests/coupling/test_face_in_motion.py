@@ -66,7 +66,7 @@ def mid_span(sense: int) -> Machine:
         ShaftGear(toothed("pinion", 23, 1.0, 25e-3), "in", 0.12, (0.5, 4e-4, 2.5e-4)),
         ShaftGear(toothed("wheel", 41, -1.0, 25e-3), "out", 0.12, (2.2, 4.5e-3, 2.4e-3)),
     ]
-    pair = GearPair("pinion", "wheel", ConstantStiffness(4e8), damping_ratio=0.0)
+    pair = GearPair("pinion", "wheel", ConstantStiffness(4e8), damping_ratio=0.0, misalignment=0.0)
     places = [(shaft, at) for shaft in ("in", "out") for at in (0.02, 0.22)]
     return machine(shafts, places, gears, [pair], speed=sense * 314.0, torque=150.0)
 
@@ -82,7 +82,7 @@ def overhung(sense: int, stiffness: ConstantStiffness | SquareStiffness) -> Mach
         ShaftGear(toothed("pinion", 23, 1.0, WIDTH), "in", 0.21, (1.2, 8e-4, 6e-4)),
         ShaftGear(toothed("wheel", 41, -1.0, WIDTH), "out", 0.21, (4.0, 8e-3, 5e-3)),
     ]
-    pair = GearPair("pinion", "wheel", stiffness, damping_ratio=0.0, backlash=1e-4)
+    pair = GearPair("pinion", "wheel", stiffness, damping_ratio=0.0, backlash=1e-4, misalignment=0.0)
     places = [("in", 0.02), ("in", 0.15), ("out", 0.02), ("out", 0.15)]
     return machine(shafts, places, gears, [pair], speed=sense * 150.0, torque=150.0)
 
@@ -108,7 +108,7 @@ def power_split(sense: int, stiffness: ConstantStiffness) -> Machine:
         for shaft, (name, teeth, inertia) in names.items()
     ]
     pairs = [
-        GearPair(*each, stiffness, damping_ratio=0.0)
+        GearPair(*each, stiffness, damping_ratio=0.0, misalignment=0.0)
         for each in (("pinion", "upper"), ("pinion", "lower"), ("upper", "wheel"), ("lower", "wheel"))
     ]
     places = [(shaft, at) for shaft in names for at in (0.02, 0.2)]

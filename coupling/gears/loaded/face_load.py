@@ -151,9 +151,9 @@ class FaceTangent:
     def in_series(self, compliance: FloatArray) -> FaceTangent:
         """Return the tangent with a compliance (3, 3) over mean approach, slope and tilt behind it."""
         arms = np.append(1.0, self.centre)
-        whole = self.mean_stiffness * np.outer(arms, arms)
+        whole: FloatArray = np.asarray(self.mean_stiffness * np.outer(arms, arms), dtype=np.float64)
         whole[1:, 1:] += self.stiffness
-        whole = np.linalg.solve(np.eye(3) + whole @ compliance, whole)
+        whole = np.asarray(np.linalg.solve(np.eye(3) + whole @ compliance, whole), dtype=np.float64)
         return _condensed(0.5 * (whole + whole.T), self.moments)
 
 
