@@ -9,7 +9,15 @@ import numpy as np
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
-from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, NamedParts, line_table, mesh_sentence
+from gearwhine.results.motion import (
+    BEARING,
+    MESH,
+    SENSOR_COLUMNS,
+    NamedParts,
+    damping_sentence,
+    line_table,
+    mesh_sentence,
+)
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -427,7 +435,7 @@ def report(document: Document) -> Section:
         tables += table_of(columns_of(BEARING), motion.get("bearings", ()), "Bearings")
         tables += line_table(motion["sensors"], "lines")
     tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")
-    return Section("Steady state", (*_content(document), *tables), pictures=_PICTURES)
+    return Section("Steady state", (*_content(document), *damping_sentence(document), *tables), pictures=_PICTURES)
 
 
 _PICTURES = (

@@ -180,6 +180,14 @@ class SolvedSteady:
     loudest: tuple[LoudestPoint, ...] = ()
     assumed_damping: tuple[str, ...] = ()
 
+    @property
+    def contact_loss(self) -> FloatArray:
+        """Largest part of the time in which the flanks of each contact are apart in any of the motions, shape (c,)."""
+        losses = [motion.response.contact_loss for motion in self.motions]
+        losses += [] if self.superposed is None else [self.superposed.contact_loss]
+        losses += [] if self.curve is None else [self.curve.contact_loss.max(axis=0)]
+        return np.asarray(np.max(losses, axis=0))
+
     def bearing_parts(self, motion: SteadyMotion | None = None) -> list[tuple[str, SignalParts]]:
         """Mean and alternating part of each bearing's load in one motion, or in all that are superposed.
 
