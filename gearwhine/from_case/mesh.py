@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.box import FACES
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, did_you_mean
 from gearwhine.case.housing import Region
@@ -18,6 +19,7 @@ from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mes
 from meshes.bores import CylindricalBore
 from meshes.errors import MeshSizeError
 from meshes.lengths import UNITS
+from meshes.quality import WaveCarrier
 
 
 def ignore_warning(warning: str) -> None:
@@ -46,7 +48,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     assert table is not None
     if table.box is not None:
         with _at_fault("housing.box", "a box that can be meshed"):
-            return mesh_box(box_geometry(table.box, table.seat), table.box.mesh_size, order=order)
+            return mesh_box(box_geometry(table.box, table.seat), box_mesh_size(case), order=order)
     if table.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
             with case.input_files.unchanged(table.mesh.file):
@@ -71,6 +73,28 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     for remark in meshed.remarks:
         warn(f"{table.cad.file.name}: {remark}")
     return _with_seats(case, meshed.mesh.rotated(turn))
+
+
+_WAVES = 5.0  # elements to a bending wave in a first mesh, whose estimated error says how much smaller they are to be
+_WALLS = 2.0  # and their least size over the wall's thickness
+
+
+def box_mesh_size(case: Case) -> float:
+    """Return the size of a box's elements [m]; with an accuracy in its place, that of a first, coarse mesh."""
+    table = case.housing
+    assert table is not None
+    assert table.box is not None
+    if table.box.mesh_size is not None:
+        return table.box.mesh_size
+    walls = table.box.walls
+    thinnest = min(getattr(walls, face) for face in FACES)
+    size = _WALLS * thinnest
+    if table.frequency_limit is not None:
+        steel = case.material[table.material]
+        omega = 2.0 * np.pi * table.frequency_limit
+        wave = WaveCarrier(steel.youngs_modulus, steel.poisson_ratio, steel.density, omega).shortest_wave(thinnest)
+        size = max(size, wave / _WAVES)
+    return min(size, min(table.box.size) / 2.0)
 
 
 def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
