@@ -12,11 +12,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+from scipy.spatial import cKDTree
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin import NearestSkin, Skin, skin_of
 from housing.acoustics.skin_points import FacetPoints, SkinPoints
 from housing.errors import TriangleSizeError
+from housing.fem.outer_facets import triangle_middles
 from housing.fem.surface import flat_face_numbers, surface_quadrature
 from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals
@@ -37,6 +39,9 @@ _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # corners of a triang
 _SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
 _BESIDE = 0.1  # edges that a point of a cap lies beside the skin, across its normal
+_PARTS = 8  # a triangle's edges are cut into these parts for the area of what it closes
+_GRAZING = 1e-3  # cosine between skin and normal below which a line does not meet the skin, but runs along it
+_EDGEWISE = 1e-6  # part of a skin triangle by which a line may miss it at its edge
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
 _SAME_WAY = 0.7  # least cosine between their normals there
 _LARGE = 0.02  # part of the surface's area above which a flat face has a label of its own
@@ -54,12 +59,15 @@ class SurfaceVelocity:
         Skin of the mesh's boundary.
     nearest : NearestSkin
         Nearest points of the six points of each triangle, triangle after triangle.
+    resting_caps : bool
+        Whether what closes holes is at rest. Else it moves as the rim that is nearest, as covers and bearings do.
     """
 
     mesh: Mesh
     surface: RadiatingSurface
     skin: Skin
     nearest: NearestSkin
+    resting_caps: bool = False
 
     @cached_property
     def facets(self) -> IntArray:
@@ -84,10 +92,53 @@ class SurfaceVelocity:
         """Triangles that close a hole for the most part, shape (n_triangles,)."""
         return np.asarray(self._cap_points @ _WEIGHTS > 0.5)
 
-    @property
+    @cached_property
+    def _over_holes(self) -> BoolArray:
+        """Points of the triangles over a hole, shape (n_triangles, 6)."""
+        over = np.zeros(self._cap_points.shape, dtype=bool)
+        for triangle in self._near_caps.tolist():
+            over[triangle] = self._over_hole(triangle, _SHARES)
+        return over
+
+    @cached_property
     def cap_area(self) -> float:
-        """Area of the surface beside the skin [m²]."""
-        return float(self.surface.areas @ (self._cap_points @ _WEIGHTS))
+        """Area of the surface over holes [m²]."""
+        shares = triangle_middles(_PARTS)
+        parts = [self.surface.areas[one] * self._over_hole(one, shares).mean() for one in self._near_caps.tolist()]
+        return float(sum(parts))
+
+    @cached_property
+    def _near_caps(self) -> IntArray:
+        """Triangles that close holes, and those that share a vertex with them."""
+        touched = np.zeros(len(self.surface.points), dtype=bool)
+        touched[self.surface.triangles[self._cap_points.any(axis=1)]] = True
+        return np.flatnonzero(touched[self.surface.triangles].any(axis=1))
+
+    @cached_property
+    def _skin_tree(self) -> tuple[cKDTree, float]:
+        """Tree of the middles of the skin's triangles, and the largest distance of a corner from its middle [m]."""
+        middles = self.skin.corners.mean(axis=1)
+        reach = float(np.linalg.norm(self.skin.corners - middles[:, None], axis=2).max())
+        return cKDTree(middles), reach
+
+    def _over_hole(self, triangle: int, shares: FloatArray) -> BoolArray:
+        """Whether the line along its normal through each point of a triangle meets no skin that looks its way.
+
+        Points by their shares of the corners, shape (n, 3). Skin farther off than an edge is that of another wall.
+        """
+        corners, normal = self.surface.corners[triangle], self.surface.normals[triangle]
+        tree, size = self._skin_tree
+        middle = corners.mean(axis=0)
+        reach = float(np.linalg.norm(corners - middle, axis=1).max()) + self.edge + size
+        near = np.array(tree.query_ball_point(middle, reach), dtype=np.int64)
+        near = near[self.skin.normals[near] @ normal > _GRAZING]
+        first, *others = np.moveaxis(self.skin.corners[near], 1, 0)
+        # p + t n = a + u (b - a) + v (c - a) for every point p and skin triangle a b c.
+        frame = np.stack([others[0] - first, others[1] - first, np.broadcast_to(-normal, first.shape)], axis=2)
+        gaps = (shares @ corners)[:, None] - first
+        u, v, t = np.moveaxis(np.einsum("kij,pkj->pki", np.linalg.inv(frame), gaps), 2, 0)
+        met = (u >= -_EDGEWISE) & (v >= -_EDGEWISE) & (u + v <= 1.0 + _EDGEWISE) & (np.abs(t) <= self.edge)
+        return np.asarray(~met.any(axis=1))
 
     @cached_property
     def distances(self) -> FloatArray:
@@ -129,6 +180,8 @@ class SurfaceVelocity:
         """Points of the skin that the triangles move with; see :meth:`transfer`."""
         facets = self.facets.ravel()
         silent = np.isin(facets, _members(self.mesh, without))
+        if self.resting_caps:
+            silent |= self._over_holes.ravel()
         groups, first = [], 0
         for block in self.mesh.boundary:
             chosen = np.flatnonzero((facets >= first) & (facets < first + len(block)) & ~silent)
@@ -184,7 +237,7 @@ class SurfaceVelocity:
         return labels
 
 
-def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
+def surface_velocity(mesh: Mesh, surface: RadiatingSurface, *, resting_caps: bool = False) -> SurfaceVelocity:
     """Find the points of a housing's skin that a radiating surface moves with.
 
     Parameters
@@ -193,12 +246,14 @@ def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
         The housing's finite elements.
     surface : RadiatingSurface
         Radiating surface around the housing.
+    resting_caps : bool
+        See :class:`SurfaceVelocity`.
     """
     skin = skin_of(mesh, mesh.boundary)
     edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
     normals = np.repeat(surface.normals, len(_WEIGHTS), axis=0)
     return SurfaceVelocity(
-        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge)
+        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge), resting_caps
     )
 
 
