@@ -232,6 +232,15 @@ class Seat(Table):
         return BuiltSeat(self.name, self.center)
 
 
+class Face(Table):
+    """`[[housing.face]]`: a name for a flat face of a CAD or mesh file, by a point on it [m]."""
+
+    name: Name
+    """Name of the face, as of a surface of the file: for supports, `still` faces, results."""
+    at: Point
+    """Point on the face."""
+
+
 class Support(Patch):
     """`[[housing.support]]`: a patch of the surface, held fast, or on springs and dashpots."""
 
@@ -339,6 +348,8 @@ class Housing(Table):
     """Housing from a mesh file. Exactly one of `box`, `cad` and `mesh`."""
     seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
     """Bearing seats, `[[housing.seat]]`."""
+    face: tuple[Face, ...] = Field(default=(), max_length=1000)
+    """Names of flat faces of a CAD or mesh file, `[[housing.face]]`."""
     support: tuple[Support, ...] = Field(default=(), max_length=1000)
     """Supports, `[[housing.support]]`."""
     mount: tuple[Mount, ...] = Field(default=(), max_length=1000)

@@ -61,8 +61,8 @@ def next_size(steps: list[RefinementStep], accuracy: float) -> float:
         before = steps[-2]
         fall = math.log(before.largest_error / last.largest_error)
         order = min(max(fall / math.log(before.mesh_size_m / last.mesh_size_m), _ORDERS[0]), _ORDERS[1])
-    needed = (_AIM * accuracy / last.largest_error) ** (1.0 / order)
-    factor = min(max(needed, _FINER[0]), _FINER[1])
+    needed: float = (_AIM * accuracy / last.largest_error) ** (1.0 / order)
+    factor: float = min(max(needed, _FINER[0]), _FINER[1])
     unknowns, in_all = last.dofs * factor**-_GROWTH, last.dofs * needed**-_GROWTH
     too_many = unknowns > MOST_UNKNOWNS or in_all > _FORESEEN * MOST_UNKNOWNS
     if too_many or len(steps) >= _MOST_STEPS:

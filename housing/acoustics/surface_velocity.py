@@ -19,7 +19,7 @@ from housing.acoustics.skin import NearestSkin, Skin, skin_of
 from housing.acoustics.skin_points import FacetPoints, SkinPoints
 from housing.errors import TriangleSizeError
 from housing.fem.outer_facets import triangle_middles
-from housing.fem.surface import flat_face_numbers, surface_quadrature
+from housing.fem.surface import boundary_members, flat_face_names, flat_face_numbers, nearest_axis
 from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals
 from meshes.shape_functions import quadrature, shape_functions
@@ -179,7 +179,7 @@ class SurfaceVelocity:
     def points(self, without: Sequence[str | Facets] = ()) -> SkinPoints:
         """Points of the skin that the triangles move with; see :meth:`transfer`."""
         facets = self.facets.ravel()
-        silent = np.isin(facets, _members(self.mesh, without))
+        silent = np.isin(facets, boundary_members(self.mesh, without))
         if self.resting_caps:
             silent |= self._over_holes.ravel()
         groups, first = [], 0
@@ -202,38 +202,21 @@ class SurfaceVelocity:
         """Label of the housing's face that each triangle lies on.
 
         A face has the name of the mesh's surface that holds most of it, as ``top``. Another flat face of at least
-        2 % of the surface is ``face 3 (+y)``, with the axis nearest to its normal, and the rest is ``other (+y)``.
+        2 % of the surface has that of its place, ``+y at 0, 10, 0 mm``, and the rest is ``other (+y)``.
         Triangles over holes are ``cap``.
         """
-        boundary = self.mesh.boundary
-        n_facets = sum(len(block) for block in boundary)
         share = np.repeat(self.surface.areas, len(_WEIGHTS)) * np.tile(_WEIGHTS, len(self.surface.triangles))
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
-        names = np.array([""] * n_facets, dtype=object)
-        sizes = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(self.mesh, boundary)])
-        whole = np.bincount(numbers, sizes)
-        for name in self.mesh.surfaces:
-            members = _members(self.mesh, (name,))
-            part = np.bincount(numbers[members], sizes[members], len(whole))
-            names[np.isin(numbers, np.flatnonzero(part > 0.5 * whole))] = name
-        large = [n for n in np.argsort(-area, kind="stable").tolist() if area[n] > _LARGE * self.surface.area]
-        for place, number in enumerate(large):
-            at = numbers == number
-            if not names[at][0]:
-                names[at] = f"face {place + 1}"
+        faces = flat_face_names(self.mesh)
+        told = [face.is_surface or area[number] > _LARGE * self.surface.area for number, face in enumerate(faces)]
         middle = self.facets[:, int(np.argmax(_WEIGHTS))]
         labels = []
         for e, facet in enumerate(middle.tolist()):
-            axis = _direction(self.surface.normals[e])
-            label = names[facet]
-            if self.caps[e]:
-                label = "cap"
-            elif not label:
-                label = f"other ({axis})"
-            elif label.startswith("face "):
-                label = f"{label} ({axis})"
-            labels.append(str(label))
+            axis = nearest_axis(self.surface.normals[e])
+            number = numbers[facet]
+            label = faces[number].name if told[number] else f"other ({axis})"
+            labels.append("cap" if self.caps[e] else label)
         return labels
 
 
@@ -385,27 +368,3 @@ def _triangle_skin(surface: RadiatingSurface) -> Skin:
     numbers = np.arange(len(surface.triangles))
     places = np.tile(_CORNERS, (len(numbers), 1, 1))
     return Skin(surface.triangles, surface.corners, numbers, places)
-
-
-def _members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
-    """Numbers of the boundary facets, block after block, that belong to surfaces."""
-    wanted = [
-        block for surface in surfaces for block in (mesh.surface(surface) if isinstance(surface, str) else surface)
-    ]
-    members, first = [np.empty(0, dtype=np.int64)], 0
-    for block in mesh.boundary:
-        corners = np.sort(block.corners, axis=1)
-        for other in wanted:
-            if other.of.n_corners == corners.shape[1]:
-                both = np.concatenate([corners, np.sort(other.corners, axis=1)])
-                _, number = np.unique(both, axis=0, return_inverse=True)
-                number = number.ravel()
-                members.append(first + np.flatnonzero(np.isin(number[: len(corners)], number[len(corners) :])))
-        first += len(block)
-    return np.unique(np.concatenate(members))
-
-
-def _direction(normal: FloatArray) -> str:
-    """Axis nearest to a normal, as ``+y``."""
-    axis = int(np.argmax(np.abs(normal)))
-    return f"{'+' if normal[axis] > 0.0 else '-'}{'xyz'[axis]}"

@@ -117,6 +117,8 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
         expected = "exactly one of 'frequency_limit' (such as '3.2 kHz') and 'modes' (such as 25)"
         yield Finding(("housing",), expected, limits or NOTHING)
     yield from _check_resolution(housing)
+    if "box" in housing and housing.get("face"):
+        yield Finding(("housing", "face"), f"none of a box, whose faces are named already: {', '.join(FACES)}", UNSAID)
     ratios, modes = housing.get("damping_ratio"), housing.get("modes")
     if isinstance(ratios, list) and isinstance(modes, int) and len(ratios) != modes:
         yield Finding(("housing", "damping_ratio"), f"a ratio for each of the {modes} modes (there are {len(ratios)})")
