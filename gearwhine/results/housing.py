@@ -240,8 +240,9 @@ def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
 
 def write_shapes(path: Path, housing: "SolvedHousing") -> None:
     """Write the mesh with every mode shape as a point array, for ParaView and its like."""
-    import meshio
+    from meshes.formats.meshio_formats import load_meshio
 
+    meshio = load_meshio()
     shapes = {
         f"mode {number:02d}, {frequency:.1f} Hz": shape
         for number, (frequency, shape) in enumerate(

@@ -7,6 +7,7 @@ files, and the versions of the code and the source of what solves them.
 A new key of the housing therefore counts until it is listed as one that changes no mode.
 """
 
+import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -138,6 +139,21 @@ def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord
     return (record if record.key == content_key(inputs) else None), None
 
 
+def _upwards(case: Case) -> tuple[float, ...]:
+    """Return the unit vector that points upwards: against gravity, else the file's z of a part turned about it, else y.
+
+    A file whose shafts lie along its x or y has its z upwards, as programs for design have it; `shafts_along = "y"`
+    makes that the machine's x.
+    """
+    gravity = None if case.operation is None else case.operation.gravity
+    if gravity is not None and any(gravity):
+        size = math.hypot(*gravity)
+        return tuple(-part / size for part in gravity)
+    housing = case.housing
+    form = None if housing is None else housing.cad or housing.mesh
+    return (1.0, 0.0, 0.0) if form is not None and form.shafts_along == "y" else (0.0, 1.0, 0.0)
+
+
 @dataclass(frozen=True)
 class SolvedHousing:
     """Solved housing: mesh, modes, damping, seats, sensors, dominance and checks.
@@ -177,6 +193,8 @@ class SolvedHousing:
         Whether that file also holds these sensors, so that it need not be written again.
     warnings : list of dict
         Warnings, as in the documents.
+    up : tuple of float
+        Unit vector that points upwards in pictures.
     """
 
     mesh: Mesh
@@ -197,6 +215,7 @@ class SolvedHousing:
     source: Path | None = None
     source_holds: bool = False
     warnings: list[dict[str, Any]] = field(default_factory=list)
+    up: tuple[float, ...] = (0.0, 1.0, 0.0)
 
     @property
     def trusted_limit_hz(self) -> float:
@@ -409,11 +428,27 @@ def _solve_on_one_mesh(
         record=record,
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
+        up=_upwards(case),
         warnings=warnings
         + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
     )
+
+
+def kept_housing(case: Case, folder: Path | None, progress: Progress = silent) -> SolvedHousing | None:
+    """Return the housing of a case from the modes that a results folder keeps; None where it keeps none of it.
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        As :func:`solve_housing`.
+    """
+    if folder is None or case.housing is None or not (folder / MODE_CACHE_FILE).exists():
+        return None
+    mesh = build_mesh(case) if case.housing.mesh is not None else None
+    record, _ = read_mode_cache(folder, mode_cache_inputs(case, mesh))
+    return None if record is None else solve_housing(case, progress, folder=folder)
 
 
 def _damping_array(matrix: FloatArray) -> LabelledArray:
