@@ -85,8 +85,8 @@ class SensorLevel:
             :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
-        # The machine has the twist of the gears' bodies beside its contacts.
-        stiffness = mesh.mean_stiffness_without(model.machine.meshes[self.mesh].body_twist)
+        # The machine has the rims on their hubs beside its contacts.
+        stiffness = mesh.mean_stiffness_without(model.machine.meshes[self.mesh].behind_rims)
         direction = model.machine.system.contacts[number].direction
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
         shuttling = model.shuttling_loads(number, contact, force)
