@@ -19,14 +19,8 @@ _CASE = ("case.toml", _SUMMARY)
 _MODES = (*_CASE, "modes.nc")
 _DATA = (*_MODES, "results.nc")
 _SHAPES = (
-    "mode-*.png",
-    "mode-*.glb",
-    "mode-*.gif",
-    "mode-*.mp4",
     "modes.png",
-    "line-*.png",
-    "line-*.gif",
-    "line-*.mp4",
+    *(f"{kind}Hz.{ending}" for kind in ("mode-[0-9]*", "line-[0-9]*") for ending in ("png", "glb", "gif", "mp4")),
 )
 _COMPARED = ("comparison.csv", "comparison.png", "mac.*", "auto-mac.png", "cross-orthogonality.png", "comac.*")
 _LOAD, _SYSTEM, _SOUND = "load-*.png", ("system*.png", "transmissibility-*.png"), "sound-*.png"
