@@ -341,7 +341,7 @@ def test_a_result_is_held_against_the_keys_that_its_command_reads(
 def test_a_known_source_a_third_off_is_no_tick(error: float, passed: bool | None) -> None:
     sound = {"known_source_error": error, "known_source_rms": 0.05}
     (finding,) = _sound_proofs({"sound": sound})
-    assert "(bound: 26 %, 2 dB)" in finding.text
+    assert "(bound: 25.9 %, 2 dB)" in finding.text
     assert finding.passed is passed
 
 
