@@ -218,6 +218,15 @@ class CaseSource:
     changes: tuple[str, ...] = ()
     files: InputFiles = field(default_factory=InputFiles)
 
+    @property
+    def input_paths(self) -> list[Path]:
+        """Every file that is read: the case, the files that it names, and those that are read with them."""
+        from meshes.formats.companions import companion_files
+
+        named = [Path(path) for path in self.files.contents]
+        companions = [companion for path in named for companion in companion_files(path)]
+        return [*([self.folder / self.name] if self.name else []), *named, *companions]
+
     def changed(self, changes: Sequence[str] = ()) -> LoadedCase:
         """Make the case with further changes, and check it.
 
