@@ -342,6 +342,7 @@ def solve_housing(
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
         warnings=warnings
+        + _health_warnings(checks)
         + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
@@ -467,6 +468,21 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
         if bearing.seat in centers
     }
     return places or {name: (name, 0.0) for name in centers}
+
+
+def _health_warnings(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Warn of every check of the housing's model that misses its bound."""
+    return [
+        warning(
+            "health",
+            f"{line['name']} is {line['value']:.3g}, beyond its bound of {line['bound']:.3g}: {line['why']}",
+            check=line["name"],
+            value=line["value"],
+            bound=line["bound"],
+        )
+        for line in checks["health"]["lines"]
+        if not line["ok"] and line["bound"] is not None
+    ]
 
 
 def housing_checks(described: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:

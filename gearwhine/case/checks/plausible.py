@@ -213,7 +213,8 @@ def _of_machine(case: Case) -> Iterator[PlacedFinding]:
         if kind == "bearing" and finding.attribute == "rolling":
             placed = _placed(location, finding, ("stiffness", "rolling"))
             # A rotor of a file may have no journals; one of the case is drawn as it is.
-            yield replace(placed, warns=case.rotor_named(case.bearing[location[1]].rotor).file is not None)
+            of_file = case.rotor_named(case.bearing[numbers[kind][name]].rotor).file is not None
+            yield replace(placed, warns=placed.warns or of_file)
         elif kind == "shaft" and finding.attribute.startswith("discs") and case.rotor[numbers[kind][name]].file:
             yield _placed(location, finding, ())
         else:
