@@ -78,7 +78,8 @@ def draw_in_process(
     with one_process(), tempfile.TemporaryDirectory() as task_folder:
         arrays: dict[str, Any] = {f"motion_{i}": shape.motion for i, shape in enumerate(shapes)}
         arrays |= {f"values_{i}": shape.values for i, shape in enumerate(shapes) if shape.values is not None}
-        np.savez(Path(task_folder) / "arrays.npz", rest=housing.rest, triangles=housing.triangles, **arrays)
+        arrays |= {"rest": housing.rest, "triangles": housing.triangles, "up": housing.up}
+        np.savez(Path(task_folder) / "arrays.npz", **arrays)
         (Path(task_folder) / "task.json").write_text(json.dumps(task), encoding="utf-8")
         process = _kept.get()
         assert process is not None
@@ -204,12 +205,13 @@ def _draw(desk: Path) -> list[str]:
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:
-        rest, triangles = arrays["rest"], arrays["triangles"]
+        rest, triangles, up = arrays["rest"], arrays["triangles"], arrays["up"]
         shapes = [
             DrawnShape(motion=arrays[f"motion_{i}"], values=arrays.get(f"values_{i}"), **words)
             for i, words in enumerate(task["shapes"])
         ]
-    housing, folder, view = DrawnHousing(rest, triangles, np.arange(len(rest))), Path(task["folder"]), task["view"]
+    housing = DrawnHousing(rest, triangles, np.arange(len(rest)), up)
+    folder, view = Path(task["folder"]), task["view"]
 
     def progress(message: str) -> None:
         _tell({"progress": message})

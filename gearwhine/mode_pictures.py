@@ -37,6 +37,24 @@ _SHOWN_PART = 0.98  # quantile of a density that ends its scale, since densities
 _DECADES = 1.0 / np.log(10.0)  # decades of a relative change
 _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
+View = Literal[
+    "auto",
+    "iso",
+    "front",
+    "back",
+    "left",
+    "right",
+    "top",
+    "iso-left",
+    "iso-back",
+    "iso-back-left",
+    "iso-below",
+    "iso-left-below",
+    "iso-back-below",
+    "iso-opposite",
+]
+"""Directions of view, see :mod:`housing.pictures.views`."""
+
 _DOMINANT = 8
 _OPPOSITE = {"iso": "iso-opposite"}  # opposite view, for pictures of both sides
 _MOVING_LINES, _MOVING_MODES = 6, 60  # largest numbers of operating shapes and modes that move in a report
@@ -129,11 +147,11 @@ def draw_modes(
     if mode_format == "glb":
         from housing.pictures.gltf import write_mode_models
 
-        return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place)]
+        return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place, housing.up)]
     from gearwhine.drawing_process import draw_in_process
     from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
 
-    surface = drawn_housing(housing.mesh)
+    surface = drawn_housing(housing.mesh, housing.up)
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
     sheet = "modes.png" if len(numbers) > 1 and mode_format == "png" else None
     return draw_in_process(surface, shapes, place, mode_format, view, progress, sheet=sheet)
@@ -160,7 +178,7 @@ def draw_lines(
 
     lines = read_spectrum_lines(folder, frequencies, housing)
     draw_operating_shapes(housing, lines, view, mode_format, place, progress)
-    return lines_document(lines, housing, drawn_housing(housing.mesh))
+    return lines_document(lines, housing, drawn_housing(housing.mesh, housing.up))
 
 
 def draw_operating_shapes(
@@ -176,7 +194,7 @@ def draw_operating_shapes(
     from gearwhine.solve.operating_shapes import operating_shape_of_line
     from housing.pictures.drawn_shapes import drawn_housing
 
-    surface = drawn_housing(housing.mesh)
+    surface = drawn_housing(housing.mesh, housing.up)
     shapes = [operating_shape_of_line(line, housing.modes, surface) for line in lines]
     return draw_in_process(surface, shapes, place, mode_format, view, progress)
 
@@ -254,7 +272,7 @@ def draw_deflection(
     from gearwhine.drawing_process import draw_in_process
     from housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
 
-    surface = drawn_housing(housing.mesh)
+    surface = drawn_housing(housing.mesh, housing.up)
     motion = housing.modes.displacement(coordinates, surface.nodes)
     largest = _MICRO * float(np.linalg.norm(motion, axis=1).max())
     if largest == 0.0:
@@ -296,7 +314,7 @@ def draw_sensitivity(
     assert solved.sensitivity is not None
     if solved.sensitivity.density is None or solved.point.housing is None:
         return []
-    surface = drawn_housing(housing.mesh)
+    surface = drawn_housing(housing.mesh, housing.up)
     motion = housing.modes.displacement(solved.point.housing, surface.nodes)
     names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in solved.point.pairs]
     shapes = []
@@ -372,7 +390,9 @@ def _level_shape(
     return [DrawnShape(name, title, note, turned.real, "Change [dB/(mm·dm²)]", largest, values)]
 
 
-def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) -> list[dict[str, Any]]:
+def draw_sound_pictures(
+    solved: "SolvedSound", place: Path, progress: Progress, up: Sequence[float] = (0.0, 1.0, 0.0)
+) -> list[dict[str, Any]]:
     """Draw where the housing radiates; return warnings.
 
     They are ``sound-faces-all.png`` over all lines and ``sound-faces-123.4Hz.png`` at each of the loudest, each on
@@ -391,7 +411,7 @@ def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) 
     shapes = _intensity_shapes(solved)
     try:
         if shapes:
-            surface = _radiating_surface(solved)
+            surface = _radiating_surface(solved, up)
             # Flat faces radiate to one side; another surface is closed, and the first view shows half of it.
             beside = None if solved.radiation.method == "rayleigh" else _OPPOSITE["iso"]
             draw_in_process(surface, shapes, place, "png", "iso", progress, beside=beside)
@@ -400,7 +420,7 @@ def draw_sound_pictures(solved: "SolvedSound", place: Path, progress: Progress) 
     return []
 
 
-def _radiating_surface(solved: "SolvedSound") -> "DrawnHousing":
+def _radiating_surface(solved: "SolvedSound", up: Sequence[float] = (0.0, 1.0, 0.0)) -> "DrawnHousing":
     """Return the triangles of all radiating surfaces."""
     from housing.pictures.drawn_shapes import DrawnHousing
 
@@ -408,7 +428,7 @@ def _radiating_surface(solved: "SolvedSound") -> "DrawnHousing":
     starts = np.cumsum([0, *(len(surface.points) for surface in surfaces)])
     triangles = [surface.triangles + start for surface, start in zip(surfaces, starts, strict=False)]
     points = np.concatenate([surface.points for surface in surfaces])
-    return DrawnHousing(points, np.concatenate(triangles), np.arange(len(points)))
+    return DrawnHousing(points, np.concatenate(triangles), np.arange(len(points)), np.array(up))
 
 
 def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
@@ -473,7 +493,7 @@ def draw_measured(
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
     from gearwhine.solve.comparison import mapped_shapes, read_measured
     from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
-    from housing.pictures.scene import viewing_direction
+    from housing.pictures.views import viewing_direction
 
     measured = read_measured(case)
     if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
@@ -494,7 +514,10 @@ def draw_measured(
             )
         )
     title = f"Measured and model shapes: {case.title}"
-    figure = draw_measured_shapes(title, geometry.positions, wireframe(geometry), shape_pairs, viewing_direction(view))
+    up = np.array(housing.up)
+    figure = draw_measured_shapes(
+        title, geometry.positions, wireframe(geometry), shape_pairs, viewing_direction(view, up), up
+    )
     return [save(figure, place / "measured-and-model.png")]
 
 

@@ -10,7 +10,8 @@
   :func:`add_residual_modes` makes the static compliance at the seats exact.
 - :func:`receptance`, :func:`effective_mass`, :func:`modal_damping` and :func:`health_report` evaluate a mode set;
   :func:`read_modes` and :func:`write_modes` keep it on file.
-- :func:`compare_by_shapes` and :func:`compare_by_dominance` pair model modes with measured ones.
+- :func:`compare_by_shapes`, :func:`compare_by_dominance` and :func:`compare_by_frequency` pair model modes with
+  measured ones.
 
 Sub-packages and modules, each of which imports only those before it: ``housing.material``, ``housing.fem`` (assembly,
 factorisation), ``housing.model`` (supports, seats, fixtures), ``housing.modes`` (eigensolver, certificate, residual
@@ -20,6 +21,7 @@ sound), ``housing.measured`` (surveys and their files), ``housing.correlation`` 
 """
 
 from housing.correlation.comparison import compare_by_dominance as compare_by_dominance
+from housing.correlation.comparison import compare_by_frequency as compare_by_frequency
 from housing.correlation.comparison import compare_by_shapes as compare_by_shapes
 from housing.errors import HousingError as HousingError
 from housing.errors import IncompleteModesError as IncompleteModesError

@@ -1,6 +1,7 @@
 """Tetrahedral meshing of a gmsh model of solids: element size, order, middle nodes, node numbering.
 
-The gmsh session imports gmsh when it is needed, silent and deterministic, and finalises it after errors too.
+The gmsh session imports gmsh when it is needed, silent and deterministic, and finalises it after errors too. gmsh has
+one state for the whole process: sessions of several threads follow each other.
 """
 
 import signal
@@ -54,13 +55,32 @@ def load_gmsh() -> Any:
     return gmsh
 
 
+_SESSION = threading.RLock()  # gmsh's state belongs to the process, and a session to the thread that holds this
+
+
 @contextmanager
 def gmsh_session(name: str) -> Iterator[Any]:
     """Open a gmsh model that is finalised at the end; gmsh's own failures become :class:`GeometryError`.
 
-    The session runs on one thread so that the same geometry gives the same mesh, bit for bit.
+    The session runs on one thread so that the same geometry gives the same mesh, bit for bit. It waits for the session
+    of another thread to end.
+
+    Raises
+    ------
+    MesherUnavailableError
+        Where gmsh cannot be loaded, or other code of this process has it initialised: its models would be lost.
     """
+    with _SESSION:
+        yield from _session(name)
+
+
+def _session(name: str) -> Iterator[Any]:
     gmsh = load_gmsh()
+    if gmsh.isInitialized():
+        raise MesherUnavailableError(
+            "gmsh is initialised already by other code of this process, whose models the mesher would discard: "
+            "call gmsh.finalize() first"
+        )
     # interruptible=False leaves the signal handlers alone, so it works off the main thread and Ctrl-C stays ours.
     with _signals_kept():
         gmsh.initialize(readConfigFiles=False, interruptible=False)

@@ -127,6 +127,21 @@ class GearTrain:
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
 
+    @property
+    def shares_torque(self) -> tuple[bool, ...]:
+        """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split."""
+        return tuple(self._is_in_loop(number) for number in range(len(self.pairs)))
+
+    def _is_in_loop(self, number: int) -> bool:
+        """Whether other pairs lead from the driver of a pair to its driven shaft."""
+        reached, start = {self.pairs[number].driver}, 0
+        others = [{pair.driver, pair.driven} for other, pair in enumerate(self.pairs) if other != number]
+        while len(reached) > start:
+            start = len(reached)
+            for shafts in others:
+                reached |= shafts if shafts & reached else set()
+        return self.pairs[number].driven in reached
+
     def turning_ratios(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
         """Speed ratios of a train in which every shaft turns.
 

@@ -284,6 +284,17 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
     return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
+def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> float:
+    """Polar inertia of a gear's body beside that of its shaft [kg m²]: of its disc, or of the discs in its place."""
+    own = gear_disc(gear, rotor).polar_inertia
+    return own if own > 0.0 else _inertia_of_discs(gear, rotor)
+
+
+def _inertia_of_discs(gear: ShaftGear, rotor: Rotor) -> float:
+    """Polar inertia of the rotor's discs at a gear's station [kg m²]."""
+    return sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+
+
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
     """Polar inertia of a gear's body with the discs at its station [kg m²], for the damping ratio of its mesh.
 
@@ -298,8 +309,7 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     gears : sequence of ShaftGear
         All gears on the rotor.
     """
-    inertia = gear.body_inertia[1]
-    inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+    inertia = gear.body_inertia[1] + _inertia_of_discs(gear, rotor)
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia
     return inertia if inertia > 0.0 else gear.gear.polar_inertia

@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, require
+from gearwhine.case import Case, CaseError, require
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.quantity import add_warnings, warning
+from gearwhine.output.quantity import add_warnings, joined, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import (
     COMPARISON,
@@ -25,10 +25,13 @@ from gearwhine.solve.comparison import (
     ResponseCorrelation,
     compare_responses_document,
     compare_with_survey,
+    comparison_warnings,
     plan_housing,
+    require_comparable,
     write_plan,
 )
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from housing import HousingError
 from housing.correlation.comparison import Comparison
 from meshes import Mesh
 
@@ -139,6 +142,7 @@ def compare(
         Where the case has nothing measured, or its modes are not known as high as the measured ones.
     """
     require(case, "housing", "measured", command="compare")
+    require_comparable(case)
     solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
     comparison, survey = compare_with_survey(case, solved, progress)
     document = comparison_document(comparison, solved)
@@ -148,6 +152,7 @@ def compare(
         progress("comparing responses")
         likeness = compare_responses_document(case, solved, survey)
         document |= {} if likeness is None else {"responses": responses_document(likeness)}
+    add_warnings(document, comparison_warnings(comparison))
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> None:
@@ -164,7 +169,7 @@ def compare(
         "compare",
         case,
         comparison,
-        document | origin_document(solved),
+        joined(document, origin_document(solved)),
         _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
         _figures=figures,
         _files=files,
@@ -257,7 +262,7 @@ def render(
     case: Case,
     modes: str | None = None,
     *,
-    view: str = "iso",
+    view: str = "auto",
     mode_format: ModeFormat = "png",
     lines: Sequence[float] = (),
     measured: bool = False,
@@ -273,7 +278,8 @@ def render(
     case : Case
     modes : str, optional
         ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
-    view : {"iso", "front", "back", "left", "right", "top", "iso-opposite"}
+    view : str
+        One of :data:`housing.pictures.views.VIEWS`; "auto" is for each shape the corner that shows most of its motion.
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
     lines : sequence of float
@@ -292,10 +298,16 @@ def render(
     """
     modes = modes or (None if lines or measured else "dominant")
     check_request(case, modes, mode_format, lines, measured=measured)
+    if measured:
+        require_comparable(case)
     solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
     comparison, survey = None, None
-    if case.measured is not None and (measured or solved.strengths is not None):
-        comparison, survey = compare_with_survey(case, solved, progress)
+    if case.measured is not None:
+        try:
+            comparison, survey = compare_with_survey(case, solved, progress)
+        except (CaseError, HousingError):
+            if measured:
+                raise  # else the modes are drawn without their measured partners
     document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> None:

@@ -652,6 +652,14 @@ class MatrixDamping(_Matrix):
         return _read_matrix(value, _DAMPINGS, least_direct=0.0)
 
 
+class StiffnessDamping(Table):
+    """A damping in proportion to the bearing's stiffness, in all its directions."""
+
+    over_stiffness: Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e-2)]
+    """Damping over stiffness. Rolling bearings have 2.5e-6 to 2.5e-5 s (Krämer 1993); at a frequency f the loss factor
+    is 2π f times it."""
+
+
 class RollingStiffness(Table):
     """A stiffness that follows from the geometry of a rolling-element bearing under its load."""
 
@@ -672,7 +680,8 @@ def _stiffness_form(value: Any) -> str:
 
 
 def _damping_form(value: Any) -> str:
-    return "~matrix" if _stiffness_form(value) == "~matrix" else "~radial"
+    keys = value if isinstance(value, dict) else getattr(value, "model_fields_set", ())
+    return next((form for key, form in (("matrix", "~matrix"), ("over_stiffness", "~time")) if key in keys), "~radial")
 
 
 class Bearing(Table):
@@ -702,11 +711,17 @@ class Bearing(Table):
         Discriminator(_stiffness_form),
     ]
     """Stiffness against the shaft's motion relative to its seat, in one of four forms."""
-    damping: Annotated[
-        Annotated[RadialDamping, Tag("~radial")] | Annotated[MatrixDamping, Tag("~matrix")],
-        Discriminator(_damping_form),
-    ] = RadialDamping()
-    """Damping, in one of two forms."""
+    damping: (
+        Annotated[
+            Annotated[RadialDamping, Tag("~radial")]
+            | Annotated[MatrixDamping, Tag("~matrix")]
+            | Annotated[StiffnessDamping, Tag("~time")],
+            Discriminator(_damping_form),
+        ]
+        | None
+    ) = None
+    """Damping, in one of three forms. Default: of a rolling bearing by its elements `{ over_stiffness = "8 us" }`, the
+    middle of Krämer's range; of others none."""
     load: BearingLoad | None = None
     """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
     equilibrium, in a case with an operation where gear pairs, a force, gravity or an `axial_offset` on its rotor load
@@ -737,6 +752,16 @@ class Bearing(Table):
             if any(rows[2]) or any(row[2] for row in rows):
                 raise wrong("zeros in the row and column of z: a floating bearing takes no axial force", "damping")
         return self
+
+    @property
+    def damping_time(self) -> float:
+        """Damping over stiffness [s]; 0 where the damping is given by itself, and of typed stiffness without any."""
+        from rotors.rolling_bearings import ROLLING_DAMPING_TIME
+
+        if isinstance(self.damping, StiffnessDamping):
+            return self.damping.over_stiffness
+        by_elements = isinstance(self.stiffness, RollingStiffness)
+        return ROLLING_DAMPING_TIME if self.damping is None and by_elements else 0.0
 
     @property
     def lacks_load(self) -> bool:

@@ -74,7 +74,7 @@ class Align(Table):
 
 
 class Pairing(Table):
-    """`[measured.pairing]`: conditions for a pair of a measured shape and a model's.
+    """`[measured.pairing]`: pairing by shapes, with conditions for a pair of a measured shape and a model's.
 
     See `housing.correlation.pairing.PairingRule`.
     """
@@ -93,12 +93,22 @@ def _table_or_flag(value: Any) -> str:
     return "~table" if isinstance(value, (dict, Table)) else "~flag"
 
 
+def _table_or_word(value: Any) -> str:
+    return "~table" if isinstance(value, (dict, Table)) else "~word"
+
+
 FlagOrAlign = Annotated[
     Annotated[StrictBool, Tag("~flag")] | Annotated[Align, Tag("~table")], Discriminator(_table_or_flag)
 ]
 """Whether to align, or by what."""
 
-_OF_A_FILE = ("unit", "shape_frame", "align", "tolerance", "pairing")
+WordOrPairing = Annotated[
+    Annotated[Literal["order", "nearest", "dominance", "shapes"], Tag("~word")] | Annotated[Pairing, Tag("~table")],
+    Discriminator(_table_or_word),
+]
+"""How modes are paired, or the conditions of a pair of shapes."""
+
+_OF_A_FILE = ("unit", "shape_frame", "align", "tolerance")
 """Keys that say how a file is read and laid on the model."""
 
 
@@ -123,8 +133,11 @@ class Measured(Table):
     """true: bring the survey on to the model's surface; or landmarks; false: it stands in the model's frame."""
     tolerance: PositiveLength | None = None
     """Distance from the surface beyond which points are named in a warning. Default: 2 % of the housing's diagonal."""
-    pairing: Pairing = Pairing()
-    """Conditions of a pair of a measured shape and one of the model."""
+    pairing: WordOrPairing | None = None
+    """How measured modes are paired with the model's: "shapes", by the assignment of greatest MAC; "nearest", in order
+    of frequency with the least sum of squared logarithmic errors, some modes of the model left out; "order", the first
+    with the first; "dominance", in order of frequency with the modes that are strongest between bearing seats and skin.
+    A table has the conditions of "shapes". Default: "shapes" where shapes are measured, else "nearest"."""
 
     _content: _Content | None = PrivateAttr(default=None)
 
@@ -137,10 +150,19 @@ class Measured(Table):
                 # A resolved case states its defaults.
                 if getattr(self, key) != type(self).model_fields[key].default:
                     raise wrong("no such key without a file, whose survey it is about", key)
-            return self._ascending()
+            return self._ascending()._with_a_pairing()
         if self.damping_ratios is not None:
             raise wrong("no damping ratios beside a file, which holds its own", "damping_ratios")
-        return self._read(files_of(info))
+        return self._read(files_of(info))._with_a_pairing()
+
+    def _with_a_pairing(self) -> Measured:
+        # The defaults as a table are what older resolved cases state of frequencies alone.
+        by_shapes = self.pairing == "shapes" or (isinstance(self.pairing, Pairing) and self.pairing != Pairing())
+        if by_shapes and not self.has_shapes:
+            raise wrong(
+                "'nearest', 'order' or 'dominance': no shapes are measured, by which modes are paired", "pairing"
+            )
+        return self
 
     def _ascending(self) -> Measured:
         frequencies = self.frequencies or ()
@@ -173,6 +195,19 @@ class Measured(Table):
     def survey(self) -> SurveyData | None:
         """Content of the file, in SI; None where the modes are listed in the case."""
         return None if self._content is None else self._content.survey
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether shapes are measured, or responses from which they are found."""
+        survey = self.survey
+        return survey is not None and (survey.modes is None or survey.modes.shapes is not None)
+
+    @property
+    def paired_by(self) -> Literal["order", "nearest", "dominance", "shapes"]:
+        """How measured modes are paired with the model's."""
+        if isinstance(self.pairing, str):
+            return self.pairing
+        return "shapes" if self.has_shapes else "nearest"
 
 
 class _AmountRule:

@@ -140,19 +140,23 @@ class Case(Table):
 
     @property
     def needs_operating_point(self) -> bool:
-        """Whether the load of a bearing or the misalignment of a gear pair is left to the machine's operating point."""
+        """Whether there is no machine without its operating point: bearings or flanks are left to it explicitly.
+
+        A misalignment that is left out does not count: where no equilibrium is found, it is taken as 0.
+        """
         unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
         return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
 
     def finds_misalignment(self, pair: GearPair) -> bool:
         """Whether the misalignment of a gear pair follows from the machine's operating point.
 
-        By default it does if a torque loads the flanks and the load of a bearing follows from that point, too; else it
-        is 0.
+        By default it does if a torque loads the flanks of gears with a face on shafts in bearings; else it is 0.
         """
         if pair.misalignment is None:
             loaded = self.operation is not None and self.operation.torque != 0.0
-            return loaded and any(self.finds_load(bearing) for bearing in self.bearing)
+            gears = self.gear_named(pair.driver), self.gear_named(pair.driven)
+            have_faces = all(gear.rotor is not None and gear.face_width is not None for gear in gears)
+            return loaded and have_faces and bool(self.bearing)
         return pair.misalignment == "found"
 
     @property
@@ -199,7 +203,7 @@ class Draft:
         Nested tables and lists of the case file.
     broken : frozenset of str
         Top-level tables that are readable in parts only; a missing entry in them proves nothing.
-    box, operation, transient, sweep, analysis, acoustics
+    box, operation, transient, sweep, analysis, acoustics, measured
         Tables; None where one is missing or cannot be read.
     """
 
@@ -221,6 +225,7 @@ class Draft:
     sweep: Sweep | None
     analysis: RotorAnalysis | None
     acoustics: Acoustics | None
+    measured: Measured | None
 
     @cached_property
     def readable_pairs(self) -> list[tuple[int, Gear, Gear]]:
@@ -259,6 +264,7 @@ _DRAFT_TABLES: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "sweep": (Sweep, ("sweep",)),
     "analysis": (RotorAnalysis, ("rotor_analysis",)),
     "acoustics": (Acoustics, ("acoustics",)),
+    "measured": (Measured, ("measured",)),
 }
 _DRAFT_LISTS: dict[str, tuple[type[Table], tuple[str, ...]]] = {
     "seats": (Seat, ("housing", "seat")),

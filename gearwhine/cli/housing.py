@@ -150,8 +150,24 @@ def render(
         bool, Parameter(name=["--measured"], negative=(), help="Draw measured shapes beside the model's.")
     ] = False,
     view: Annotated[
-        Literal["iso", "front", "back", "left", "right", "top", "iso-opposite"], Parameter(help="Direction of view.")
-    ] = "iso",
+        Literal[
+            "auto",
+            "iso",
+            "front",
+            "back",
+            "left",
+            "right",
+            "top",
+            "iso-left",
+            "iso-back",
+            "iso-back-left",
+            "iso-below",
+            "iso-left-below",
+            "iso-back-below",
+            "iso-opposite",
+        ],
+        Parameter(help="Direction of view; 'auto': for each shape the corner from which most of its motion is seen."),
+    ] = "auto",
     format: Annotated[  # noqa: A002 - the name of the option
         Literal["png", "glb", "gif", "mp4"],
         Parameter(help="Picture, animated glTF model, or film (MP4 needs ffmpeg)."),

@@ -111,7 +111,10 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     plane.scatter(at[0], at[1], s=sizes, color=BLUE, edgecolors="white", linewidths=0.5, zorder=5, label="pairs")
     handles.append(_dot("pairs", BLUE))
     _mark_unpaired(plane, comparison, measured, model[model <= highest])
-    if comparison.shapes is not None and (comparison.shapes.unpaired_measured or comparison.shapes.unpaired_model):
+    lone = comparison.unpaired_measured or ()
+    if lone or (
+        comparison.shapes is not None and (comparison.shapes.unpaired_measured or comparison.shapes.unpaired_model)
+    ):
         handles.append(Line2D([], [], color=RED, lw=1.2, label="without a partner"))
     if comparison.shapes is None and np.count_nonzero(model <= highest) > len(comparison.pairs):
         handles.append(Line2D([], [], color=GREY, lw=1.2, label="other model modes"))
@@ -128,14 +131,15 @@ def _measured(comparison: Comparison) -> FloatArray:
     """Every measured frequency, paired or not [Hz]."""
     if comparison.shapes is not None:
         return comparison.shapes.measured_frequencies / HERTZ
-    return np.array([pair.measured for pair in comparison.pairs]) / HERTZ
+    alone = [mode.frequency for mode in comparison.unpaired_measured or ()]
+    return np.array(sorted([*(pair.measured for pair in comparison.pairs), *alone])) / HERTZ
 
 
 def _note(comparison: Comparison) -> str:
     if not comparison.pairs:
-        return f"paired by {comparison.pairing}: none"
+        return f"paired by {comparison.rule}: none"
     largest, rms = comparison.max_error_percent, comparison.rms_error_percent
-    return f"paired by {comparison.pairing}: largest error {largest:.2f} %, rms {rms:.2f} %"
+    return f"paired by {comparison.rule}: largest error {largest:.2f} %, rms {rms:.2f} %"
 
 
 def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
@@ -166,7 +170,8 @@ def _mark_unpaired(axes: Axes, comparison: Comparison, measured: FloatArray, mod
         if number not in paired:
             color = RED if number in expected else GREY
             axes.axhline(frequency, 0.0, _TICK, color=color, lw=1.2, zorder=3, label="_unpaired model")
-    for number in () if shapes is None else shapes.unpaired_measured:
+    lone = [mode.number for mode in comparison.unpaired_measured or ()]
+    for number in lone if shapes is None else shapes.unpaired_measured:
         axes.axvline(measured[number - 1], 0.0, 1.5 * _TICK, color=RED, lw=1.2, zorder=3, label="_unpaired measured")
 
 
@@ -416,7 +421,12 @@ class ShapePair:
 
 
 def draw_measured_shapes(
-    title: str, positions: FloatArray, edges: IntArray, pairs: Sequence[ShapePair], towards_eye: FloatArray
+    title: str,
+    positions: FloatArray,
+    edges: IntArray,
+    pairs: Sequence[ShapePair],
+    towards_eye: FloatArray,
+    upwards: FloatArray | None = None,
 ) -> Figure:
     """Draw pairs of shapes, two pairs in a row, the measured one left.
 
@@ -429,9 +439,12 @@ def draw_measured_shapes(
         Points that the wires join.
     pairs : sequence of ShapePair
     towards_eye : ndarray, shape (3,)
-        Unit vector from the survey to the camera; y points up.
+        Unit vector from the survey to the camera.
+    upwards : ndarray, shape (3,), optional
+        Unit vector that points upwards; by default y.
     """
-    flat, depth = _projected(positions, towards_eye)
+    upwards = np.array([0.0, 1.0, 0.0]) if upwards is None else upwards
+    flat, depth = _projected(positions, towards_eye, upwards)
     reach = _REACH * float(np.linalg.norm(np.ptp(positions, axis=0)))
     low, high = flat.min(axis=0) - reach, flat.max(axis=0) + reach
     width = (SHEET_WIDTH - 2.0 * _MARGIN - (_IN_A_ROW - 1) * _GAP) / (2 * _IN_A_ROW)
@@ -459,14 +472,14 @@ def draw_measured_shapes(
             axes.set_ylim(low[1], high[1])
             axes.set_aspect("equal")
             axes.text(0.02, 1.0, name, transform=axes.transAxes, fontsize=NOTE - 0.5, color=GREY, va="bottom")
-            moved, _ = _projected(positions + shape * (reach / largest), towards_eye)
+            moved, _ = _projected(positions + shape * (reach / largest), towards_eye, upwards)
             _wires(axes, flat, moved, np.linalg.norm(shape, axis=1) / largest, edges, near)
     return figure
 
 
-def _projected(positions: FloatArray, towards_eye: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _projected(positions: FloatArray, towards_eye: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return places on the picture, shape (n, 2), and nearness to the eye, shape (n,)."""
-    right = np.cross([0.0, 1.0, 0.0], towards_eye)
+    right = np.cross(up, towards_eye)
     right /= np.linalg.norm(right)
     upward = np.cross(towards_eye, right)
     return positions @ np.stack([right, upward], axis=1), positions @ towards_eye

@@ -163,14 +163,34 @@ SHAPES = (
 )
 """Quantities of measured shapes beside the model's: missing, double, close and similar modes; quality of the survey."""
 
+
+def _or_absent(value: Any) -> Any:
+    return ABSENT if value is None else value
+
+
 COMPARISON = (
     Rows("pairs", lambda comparison: comparison.pairs, PAIR, "pair"),
     Quantity("rms_error_percent", lambda comparison: comparison.rms_error_percent),
     Quantity("max_error_percent", lambda comparison: comparison.max_error_percent),
     Quantity("pairing", lambda comparison: comparison.pairing),
+    Quantity("pairing_rule", lambda comparison: comparison.rule),
     Quantity("band_hz", lambda comparison: [edge / HERTZ for edge in comparison.band]),
-    Quantity("gap", lambda comparison: comparison.gap),
-    Quantity("measures_agree", lambda comparison: comparison.measures_agree),
+    Quantity("gap", lambda comparison: _or_absent(comparison.gap)),
+    Quantity("measures_agree", lambda comparison: _or_absent(comparison.measures_agree)),
+    Quantity("chance_error_percent", lambda comparison: _or_absent(comparison.chance_error_percent)),
+    Rows(
+        "unpaired_measured",
+        lambda comparison: _or_absent(comparison.unpaired_measured),
+        (
+            Quantity("measured_mode", lambda mode: mode.number),
+            Quantity("measured_hz", lambda mode: mode.frequency / HERTZ),
+        ),
+    ),
+    Rows(
+        "unpaired_model",
+        lambda comparison: _or_absent(comparison.unpaired_model),
+        (Quantity("mode", lambda mode: mode.number), Quantity("model_hz", lambda mode: mode.frequency / HERTZ)),
+    ),
     Part("", lambda comparison: comparison.shapes, SHAPES),
 )
 """Quantities of the pairs of measured and model modes."""
@@ -216,14 +236,24 @@ RESPONSES = (
 """Quantities of measured responses beside the model's."""
 
 
+_BY_MESH = "discretisation_error"
+_MESH_ERROR = Column("mesh error [%]", _BY_MESH, ".2g", 100.0)
+
+
 def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
     """Return the comparison as the command's JSON."""
     shapes = comparison.shapes
     last = comparison.pairs[-1].measured if shapes is None else float(shapes.measured_frequencies[-1])
+    last = max([last, *(mode.frequency for mode in comparison.unpaired_measured or ())])
     # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
     highest = min(float(np.ceil(last / HERTZ / 1000.0) * 1000.0), solved.trusted_limit_hz)
     count = int(np.count_nonzero(solved.modes.frequencies_hz < highest))
-    return document_of(COMPARISON, comparison) | {"model_modes": {"below_hz": highest, "count": count}}
+    document = document_of(COMPARISON, comparison)
+    errors = solved.modes.discretisation_errors
+    if errors is not None:
+        # Beside each difference: how much of it the mesh may make.
+        document["pairs"] = [pair | {_BY_MESH: float(errors[pair["mode"] - 1])} for pair in document["pairs"]]
+    return document | {"model_modes": {"below_hz": highest, "count": count}}
 
 
 def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
@@ -236,13 +266,18 @@ def responses_document(likeness: "ResponseCorrelation | str") -> dict[str, Any]:
     return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
 
 
+def rule_of(document: Document) -> str:
+    """Return the rule of the pairs in words; results of earlier versions have it as `pairing`."""
+    return str(document.get("pairing_rule", document["pairing"]))
+
+
 _POOR = 0.3  # MAC between different modes above which the survey confuses them
 _REAL = 0.9  # modal phase collinearity below which a shape is called complex
 
 
 def report(document: Document) -> Section:
     """Chapter of the report: the pairs, and how clear the pairing is."""
-    sentences = [f"Paired by {document['pairing']}."]
+    sentences = [f"Paired by {rule_of(document)}."]
     if document.get("rms_error_percent") is not None:
         sentences.append(
             f"Errors: {document['rms_error_percent']:.2f} % root mean square, "
@@ -251,13 +286,15 @@ def report(document: Document) -> Section:
     if document.get("gap") is not None:
         agree = "agree" if document.get("measures_agree") else "do not agree"
         sentences.append(f"Gap of dominance {document['gap']:.3f}; the three measures {agree}.")
+    if "auto_mac_off_diagonal" not in document:
+        sentences += _by_frequency(document)
     tables = table_of(LINKED_PAIR, document.get("pairs", ()))
     return Section("Measured and modelled", (*sentences, *tables), pictures=_PICTURES)
 
 
 LINKED_PAIR = tuple(
     replace(column, link=lambda pair: shape_places(pair["mode"])) if column.of == "mode" else column
-    for column in columns_of(PAIR)
+    for column in (*columns_of(PAIR), _MESH_ERROR)
 )
 """Columns of a measured mode and its partner, with a link to the partner's shape."""
 _PICTURES = (
@@ -279,6 +316,7 @@ _PAIRS = (
     Column("measured [Hz]", "measured_hz", ".0f"),
     Column("model [Hz]", "model_hz", ".1f"),
     Column("error", "error_percent", shown=lambda pair: f"{pair['error_percent']:+.2f} %"),
+    _MESH_ERROR,
     Column("MAC", "mac", ".3f"),
     Column("confidence", "confidence", ".2f"),
     Column("strength [1/kg]", "strength", ".2e"),
@@ -287,24 +325,49 @@ _PAIRS = (
 
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the pairs, how clear the pairing is, and how the measured survey lies on the model."""
-    evidence = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_dominance(document)
+    evidence = _by_shapes(document) if "auto_mac_off_diagonal" in document else _by_frequencies_alone(document)
     survey = _survey(document["survey"]) if "survey" in document else ()
     return (Section("", (*table_of(_PAIRS, document["pairs"]), *evidence, *survey)),)
 
 
-def _by_dominance(document: Document) -> Iterator[str]:
-    count, gap = document["model_modes"], document["gap"]
-    agree = "agree" if document["measures_agree"] else "do not all agree"
-    distance = "no other mode in the band"
-    if gap is not None and math.isfinite(gap):
-        distance = f"ln {gap:.3f} (below 0.1 the choice is a coin toss)"
+def _by_frequencies_alone(document: Document) -> Iterator[str]:
+    count = document["model_modes"]
     yield (
-        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
+        f"Paired by {rule_of(document)}: largest error {document['max_error_percent']:.2f} %, "
         f"rms {document['rms_error_percent']:.2f} %; "
         f"{counted(count['count'], 'model mode')} below {count['below_hz']:.0f} Hz."
     )
-    yield f"Gap between the last chosen mode and the next: {distance}; the three measures of dominance {agree}."
-    yield "Such a match is weak evidence where the model was calibrated to these frequencies: see the case's notes."
+    if "gap" in document:
+        yield _gap(document)
+        yield "Such a match is weak evidence where the model was calibrated to these frequencies: see the case's notes."
+    yield from _by_frequency(document)
+
+
+def _gap(document: Document) -> str:
+    gap, agree = document["gap"], "agree" if document["measures_agree"] else "do not all agree"
+    distance = "no other mode in the band"
+    if gap is not None and math.isfinite(gap):
+        distance = f"ln {gap:.3f} (below 0.1 the choice is a coin toss)"
+    return f"Gap between the last chosen mode and the next: {distance}; the three measures of dominance {agree}."
+
+
+def _by_frequency(document: Document) -> Iterator[str]:
+    """Yield lines on modes without a partner, and on how weak the evidence of frequencies alone is."""
+    if document.get("unpaired_measured"):
+        names = ", ".join(
+            f"{mode['measured_mode']} ({mode['measured_hz']:.0f} Hz)" for mode in document["unpaired_measured"]
+        )
+        yield f"Measured modes for which the model has none: {names}."
+    if document.get("unpaired_model"):
+        names = ", ".join(f"{mode['mode']} ({mode['model_hz']:.0f} Hz)" for mode in document["unpaired_model"])
+        yield f"Model modes between the measured ones that are left out of the pairs: {names}."
+    if document.get("chance_error_percent") is not None:
+        yield (
+            f"Weak evidence: a frequency at random in the band is {document['chance_error_percent']:.2g} % (rms) from "
+            "the nearest mode of the model."
+        )
+    elif document["pairing"] == "order":
+        yield "Weak evidence where either side lacks a mode: all pairs above it are then shifted by one."
 
 
 def _by_shapes(document: Document) -> Iterator[str]:
@@ -313,12 +376,15 @@ def _by_shapes(document: Document) -> Iterator[str]:
     model_modes = counted(count["count"], "model mode")
     if document["pairs"]:
         yield (
-            f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, "
+            f"Paired by {rule_of(document)}: largest error {document['max_error_percent']:.2f} %, "
             f"rms {document['rms_error_percent']:.2f} %; {model_modes} below {count['below_hz']:.0f} Hz."
         )
-        yield "Confidence: what the best assignment loses without the pair, as a part of its score; no probability."
+        if "gap" in document:
+            yield _gap(document)
+        if any(pair.get("confidence") is not None for pair in document["pairs"]):
+            yield "Confidence: what the best assignment loses without the pair, as a part of its score; no probability."
     else:
-        yield f"Paired by {document['pairing']}: no measured mode is like one of {model_modes}."
+        yield f"Paired by {rule_of(document)}: no measured mode is like one of {model_modes}."
     for mode in document["unpaired_measured"]:
         yield (
             f"Measured mode {mode['measured_mode']} ({mode['measured_hz']:.0f} Hz) has no partner: most like mode "
@@ -457,6 +523,8 @@ def _pair_rows(comparison: "Comparison") -> list[list[object]]:
     """Return the rows of the source's Table II with the evidence for each pair; unpaired modes have rows too."""
     of = {quantity.key: quantity.of for quantity in PAIR}
     rows: list[list[object]] = [[_cell(of[key](pair)) for key in _PAIR_COLUMNS] for pair in comparison.pairs]
+    for mode in comparison.unpaired_measured or ():
+        rows.append([mode.number, _cell(mode.frequency / HERTZ), *[""] * 6])
     shapes = comparison.shapes
     for number in () if shapes is None else shapes.unpaired_measured:
         assert shapes is not None

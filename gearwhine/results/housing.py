@@ -23,6 +23,7 @@ class _Mode(NamedTuple):
     number: int
     frequency: float
     damping_ratio: float
+    discretisation_error: float | None
     strength: float | None
     effective_mass: Any
     survey_shape: "npt.NDArray[np.float64]"
@@ -32,9 +33,20 @@ def _modes(solved: "SolvedHousing") -> list[_Mode]:
     frequencies, ratios = solved.modes.frequencies_hz, solved.total_damping_ratios
     numbers = range(1, len(frequencies) + 1)
     strengths = [None] * len(numbers) if solved.strengths is None else solved.strengths.acceleration
+    errors = solved.modes.discretisation_errors
     masses = solved.checks["effective_mass"]["fractions"]
     return [
-        _Mode(*row) for row in zip(numbers, frequencies, ratios, strengths, masses, solved.survey_shapes, strict=True)
+        _Mode(*row)
+        for row in zip(
+            numbers,
+            frequencies,
+            ratios,
+            [None] * len(numbers) if errors is None else errors,
+            strengths,
+            masses,
+            solved.survey_shapes,
+            strict=True,
+        )
     ]
 
 
@@ -65,6 +77,16 @@ MODE = (
         long_name="housing modal damping ratio",
         heading="damping ratio",
         shown=".4f",
+    ),
+    Quantity(
+        "discretisation_error",
+        lambda mode: mode.discretisation_error,
+        "housing_discretisation_error",
+        unit="1",
+        long_name="estimate of the natural frequency's relative error by the mesh",
+        heading="mesh error [%]",
+        shown=".2g",
+        scale=100.0,
     ),
     Quantity(
         "strength",
@@ -217,8 +239,9 @@ def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
 
 def write_shapes(path: Path, housing: "SolvedHousing") -> None:
     """Write the mesh with every mode shape as a point array, for ParaView and its like."""
-    import meshio
+    from meshes.formats.meshio_formats import load_meshio
 
+    meshio = load_meshio()
     shapes = {
         f"mode {number:02d}, {frequency:.1f} Hz": shape
         for number, (frequency, shape) in enumerate(
@@ -323,6 +346,7 @@ _MODES = (
     Column("mode", "number", "d"),
     Column("frequency [Hz]", "frequency_hz", ".2f"),
     Column("damping", "damping_ratio", ".4g"),
+    Column("mesh error [%]", "discretisation_error", ".2g", 100.0),
     Column("strength [1/kg]", "strength", ".3e"),
 )
 _CHECKS = (

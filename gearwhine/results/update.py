@@ -103,9 +103,9 @@ PAIR = (
 )
 """Quantities of a measured mode and its partner before and after the fit."""
 
-CHOICE = (  # of the dominant modes, which shapes leave open
-    Quantity("gap", lambda misfit: misfit.gap if misfit.mac is None else None),
-    Quantity("measures_agree", lambda misfit: misfit.measures_agree if misfit.mac is None else None),
+CHOICE = (  # of the dominant modes, where these are paired
+    Quantity("gap", lambda misfit: misfit.gap if misfit.by_dominance else ABSENT),
+    Quantity("measures_agree", lambda misfit: misfit.measures_agree if misfit.by_dominance else ABSENT),
 )
 MISFIT = (
     Quantity("misfit", lambda misfit: misfit.value),
@@ -192,8 +192,8 @@ NULL_FIT = (
     Quantity("frequencies_hz", lambda fit: fit.frequencies / HERTZ),
     Quantity("rms_error_percent", lambda fit: fit.rms_percent),
     Quantity("max_error_percent", lambda fit: fit.max_percent),
-    Quantity("gap", lambda fit: fit.gap),
-    Quantity("measures_agree", lambda fit: fit.measures_agree),
+    Quantity("gap", lambda fit: ABSENT if fit.gap is None else fit.gap),
+    Quantity("measures_agree", lambda fit: ABSENT if fit.measures_agree is None else fit.measures_agree),
     Quantity("model_modes", lambda fit: fit.count),
     Quantity("all_met", lambda fit: fit.is_met),
 )
@@ -206,21 +206,31 @@ NULL = (
     Quantity("within_5_percent", lambda test: test.within(5.0)),
     Quantity("within_2_percent", lambda test: test.within(2.0)),
     Quantity("within_1_percent", lambda test: test.within(1.0)),
-    Quantity("within_2_percent_and_clear", lambda test: test.within(2.0, clear=True)),
+    Quantity(
+        "within_2_percent_and_clear",
+        lambda test: ABSENT if test.measured.gap is None else test.within(2.0, clear=True),
+    ),
     Quantity("median_rms_error_percent", lambda test: test.median_rms_percent),
     Part("measured_likewise", lambda test: test.measured, NULL_FIT),
     Rows("fits", lambda test: test.fits, NULL_FIT),
 )
 """Quantities of random sets of frequencies: the parts of them that the search fits well."""
 
+_RULES = {
+    "dominance": "dominance in order of frequency",
+    "nearest": "nearest frequencies in order",
+    "order": "order of frequency, the first with the first",
+}
+
 UPDATE = (
     Rows("parameters", lambda solved: solved.found, PARAMETER, "parameter"),
     Rows("pairs", lambda solved: solved.pairs, PAIR, "pair"),
     Quantity("rms_error_percent", lambda solved: solved.misfit_after.rms_percent),
     Quantity("max_error_percent", lambda solved: solved.misfit_after.max_percent),
+    Quantity("pairing", lambda solved: "shapes" if solved.target.shapes is not None else solved.target.pairing),
     Quantity(
-        "pairing",
-        lambda solved: "dominance in order of frequency" if solved.target.shapes is None else "MAC, best assignment",
+        "pairing_rule",
+        lambda solved: "MAC, best assignment" if solved.target.shapes is not None else _RULES[solved.target.pairing],
     ),
     Part("", lambda solved: solved.misfit_after, CHOICE),
     Quantity("wrong_pairs", lambda solved: sum(pair.mode is None for pair in solved.pairs)),
@@ -352,7 +362,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         if document["null"]["as_good_in_rms"] > _FEW:
             yield "So the errors alone say little of this housing: it is a plausible one, calibrated."
     else:
-        random = "How often random frequencies are fitted as well: --null 20. " if document["gap"] is not None else ""
+        by_shapes = document["pairs"][0]["mac"] is not None
+        random = "" if by_shapes else "How often random frequencies are fitted as well: --null 20. "
         yield random + "Modes held back: --held-back."
     for entry in document.get("warnings", ()):
         yield f"Mind: {entry['message']}."
@@ -361,8 +372,9 @@ def _content(document: Document) -> Iterator[str | Table]:
 def _fit(document: Document) -> Iterator[str]:
     counts = document.get("model_modes")
     count = "" if counts is None else f"; {counted(counts['count'], 'model mode')} below {counts['below_hz']:.0f} Hz"
+    rule = document.get("pairing_rule", document["pairing"])
     yield (
-        f"Paired by {document['pairing']}: largest error {document['max_error_percent']:.2f} %, rms "
+        f"Paired by {rule}: largest error {document['max_error_percent']:.2f} %, rms "
         f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; "
         f"{_choice(document)}."
     )
@@ -375,12 +387,14 @@ def _fit(document: Document) -> Iterator[str]:
 
 def _choice(document: Document) -> str:
     """Return lines on how certain the pairing of model and measured modes is."""
-    if document["gap"] is None:
-        values = [pair["mac"] for pair in document["pairs"]]
+    values = [pair["mac"] for pair in document["pairs"] if pair["mac"] is not None]
+    if values:
         alone = f", {document['wrong_pairs']} without a partner" if document["wrong_pairs"] else ""
         return f"MAC from {min(values):.2f} to {max(values):.2f}{alone}"
+    if "gap" not in document:
+        return "no shapes and no dominance tell which modes are which"
     agree = "agree" if document["measures_agree"] else "do not all agree"
-    if not math.isfinite(document["gap"]):
+    if document["gap"] is None or not math.isfinite(document["gap"]):
         return "no mode of the band is left out of the pairs"
     return f"gap {document['gap']:.2f}, the three measures of dominance {agree}"
 

@@ -7,18 +7,29 @@ test program.
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
+from gearwhine.case.measured import Measured
+from gearwhine.case.measured import Pairing as PairingTable
 from gearwhine.from_case.fixtures import build_supports
+from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
 from housing.correlation import frac, synthesised_responses
-from housing.correlation.comparison import Comparison, compare_by_dominance, compare_by_shapes
+from housing.correlation.comparison import (
+    Comparison,
+    Pairing,
+    compare_by_dominance,
+    compare_by_frequency,
+    compare_by_shapes,
+    with_shapes,
+)
 from housing.correlation.pairing import PairingRule
 from housing.measured import (
     Alignment,
@@ -44,6 +55,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _ABOVE = 1.05  # limit of the model's modes over the highest measured frequency, as for dominance
+_CLEARER = 0.5  # error as a part of that of random frequencies, above which the nearest modes are no evidence
 
 # Candidate places for each sensor, and the least number of all. With denser candidates the method chooses neighbours,
 # which measure the same twice.
@@ -74,6 +86,42 @@ def read_measured(case: Case, progress: Progress = silent) -> MeasuredModes:
         return identify_modes(measured.survey.responses).modes
     except HousingError as error:
         raise CaseError([Problem("measured.file", UNSAID, f"responses with modes in them; {error}")]) from error
+
+
+def require_comparable(case: Case) -> None:
+    """Refuse a housing whose modes will not be known as far as the measured ones are paired, before it is solved.
+
+    Raises
+    ------
+    CaseError
+        Where `frequency_limit` or `modes` are too low; nothing where the measured modes are not known yet.
+    """
+    measured, housing = case.measured, case.housing
+    if measured is None or housing is None or (highest := _highest_measured_hz(measured)) is None:
+        return
+    count, expected = highest
+    if measured.paired_by == "order":
+        if housing.modes is not None and housing.modes < count:
+            text = f"at least {count}, as many as are measured: the first of the model is paired with the first of them"
+            raise CaseError([Problem("housing.modes", housing.modes, text)])
+    elif housing.frequency_limit is not None and housing.frequency_limit < _ABOVE * expected:
+        raise CaseError([_low_limit(housing.frequency_limit, _ABOVE * expected)])
+
+
+def _highest_measured_hz(measured: Measured) -> tuple[int, float] | None:
+    """Return the number of measured modes and the highest frequency [Hz]; None where they are yet to be identified."""
+    if measured.frequencies is not None:
+        return len(measured.frequencies), measured.frequencies[-1]
+    modes = None if measured.survey is None else measured.survey.modes
+    return None if modes is None else (len(modes.frequencies), float(modes.frequencies[-1]) / _TWO_PI)
+
+
+def _low_limit(limit: float, highest: float) -> Problem:
+    expected = (
+        f"at least {highest:.5g} Hz: measured modes are paired with the model's up to there, and these are known only "
+        "below the limit"
+    )
+    return Problem("housing.frequency_limit", f"{limit:.5g} Hz", expected)
 
 
 def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSurvey:
@@ -113,7 +161,7 @@ def compare_housing(case: Case, solved: SolvedHousing, progress: Progress = sile
 def compare_with_survey(
     case: Case, solved: SolvedHousing, progress: Progress = silent
 ) -> tuple[Comparison, MappedSurvey | None]:
-    """Pair the model's modes with the case's measured ones, by shape where there are shapes, else by dominance.
+    """Pair the model's modes with the case's measured ones, as `[measured] pairing` says.
 
     Returns
     -------
@@ -128,12 +176,35 @@ def compare_with_survey(
         Where the model has too few modes in the band.
     """
     measured = read_measured(case, progress)
-    if measured.geometry is None:
-        return pair_modes(solved, measured), None
-    survey = map_measured(case, solved.mesh, measured.geometry)
     assert case.measured is not None
-    rule = PairingRule(**case.measured.pairing.model_dump())
-    return pair_modes(solved, measured, mapped_shapes(solved, survey), rule), survey
+    pairing = case.measured.paired_by
+    if measured.geometry is None:
+        return pair_modes(solved, measured, pairing=pairing), None
+    survey = map_measured(case, solved.mesh, measured.geometry)
+    table = case.measured.pairing
+    rule = PairingRule(**table.model_dump()) if isinstance(table, PairingTable) else None
+    return pair_modes(solved, measured, mapped_shapes(solved, survey), rule, pairing=pairing), survey
+
+
+def comparison_warnings(comparison: Comparison) -> list[dict[str, Any]]:
+    """Warn of measured modes without a partner in the model, and of pairs that are weak evidence."""
+    warnings = []
+    if comparison.unpaired_measured:
+        numbers = ", ".join(
+            f"{mode.number} ({mode.frequency / _TWO_PI:.5g} Hz)" for mode in comparison.unpaired_measured
+        )
+        message = f"the model has fewer modes than were measured; without a partner: {numbers}"
+        warnings.append(warning("unpaired modes", message, modes=len(comparison.unpaired_measured)))
+    if comparison.pairing == "nearest" and comparison.chance_error_percent is not None:
+        chance, rms = comparison.chance_error_percent, comparison.rms_error_percent
+        message = (
+            f"paired by nearest frequencies, which is weak evidence: a frequency at random in the band is "
+            f"{chance:.2g} % from a mode of the model (rms), the measured ones are {rms:.2g} %"
+        )
+        if rms > _CLEARER * chance:
+            message += "; such errors do not tell this model from another: measure shapes"
+        warnings.append(warning("weak pairing", message, rms_error_percent=rms, chance_error_percent=chance))
+    return warnings
 
 
 @dataclass(frozen=True)
@@ -234,8 +305,10 @@ def pair_modes(
     measured: MeasuredModes,
     shapes: FloatArray | None = None,
     rule: PairingRule | None = None,
+    *,
+    pairing: Pairing | None = None,
 ) -> Comparison:
-    """Pair the model's modes with measured ones: by shape and frequency where there are shapes, else by dominance.
+    """Pair the model's modes with measured ones.
 
     Parameters
     ----------
@@ -245,19 +318,29 @@ def pair_modes(
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
     rule : PairingRule, optional
         Rule of the pairing by shape.
+    pairing : {"order", "nearest", "dominance", "shapes"}, optional
+        By default "shapes" where there are some, else "nearest".
 
     Raises
     ------
     CaseError
-        Where the model's modes are not known as high as the measured ones, or there are no shapes and the housing has
-        no seats to be driven at.
+        Where the model's modes are not known as high as the measured ones, or the housing lacks the seats between
+        which and the skin modes are dominant.
     housing.HousingError
         Where the model has too few modes in the band, or its shapes do not fit the measured ones.
     """
-    if measured.shapes is None or shapes is None:
-        return _compare_by_dominance(solved, measured.frequencies)
-    _require_modes_up_to(solved, _ABOVE * float(measured.frequencies[-1]), "partners are looked for")
-    return compare_by_shapes(solved.modes.frequencies, shapes, measured, rule=rule, strengths=solved.strengths)
+    pairing = pairing or ("nearest" if measured.shapes is None or shapes is None else "shapes")
+    model, highest = solved.modes.frequencies, _ABOVE * float(measured.frequencies[-1])
+    if pairing != "order" or np.count_nonzero(model > 0.0) < len(measured.frequencies):
+        _require_modes_up_to(solved, highest)
+    if pairing == "shapes":
+        assert shapes is not None
+        return compare_by_shapes(model, shapes, measured, rule=rule, strengths=solved.strengths)
+    if pairing == "dominance":
+        comparison = _compare_by_dominance(solved, measured.frequencies)
+    else:
+        comparison = compare_by_frequency(measured.frequencies, model, pairing, strengths=solved.strengths)
+    return comparison if shapes is None else with_shapes(comparison, model, shapes, measured)
 
 
 def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
@@ -265,18 +348,13 @@ def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Com
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
         )
-    comparison = compare_by_dominance(frequencies, solved.strengths)
-    _require_modes_up_to(solved, comparison.band[1], "dominant modes are looked for")
-    return comparison
+    return compare_by_dominance(frequencies, solved.strengths)
 
 
-def _require_modes_up_to(solved: SolvedHousing, highest: float, why: str) -> None:
+def _require_modes_up_to(solved: SolvedHousing, highest: float) -> None:
     limit = solved.modes.certificate.limit
     if limit < highest:
-        expected = (
-            f"at least {highest / _TWO_PI:.5g} Hz: {why} up to there, and the model's are known only below the limit"
-        )
-        raise CaseError([Problem("housing.frequency_limit", f"{limit / _TWO_PI:.5g} Hz", expected)])
+        raise CaseError([_low_limit(limit / _TWO_PI, highest / _TWO_PI)])
 
 
 @dataclass(frozen=True)

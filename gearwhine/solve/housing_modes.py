@@ -7,6 +7,7 @@ files, and the versions of the code and the source of what solves them.
 A new key of the housing therefore counts until it is listed as one that changes no mode.
 """
 
+import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -24,9 +25,9 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.mesh_health import (
+    discretisation_warnings,
     noted_on_failure,
     require_meshable,
-    resolution_warnings,
     surface_point_warnings,
 )
 from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
@@ -135,6 +136,21 @@ def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord
     return (record if record.key == content_key(inputs) else None), None
 
 
+def _upwards(case: Case) -> tuple[float, ...]:
+    """Return the unit vector that points upwards: against gravity, else the file's z of a part turned about it, else y.
+
+    A file whose shafts lie along its x or y has its z upwards, as programs for design have it; `shafts_along = "y"`
+    makes that the machine's x.
+    """
+    gravity = None if case.operation is None else case.operation.gravity
+    if gravity is not None and any(gravity):
+        size = math.hypot(*gravity)
+        return tuple(-part / size for part in gravity)
+    housing = case.housing
+    form = None if housing is None else housing.cad or housing.mesh
+    return (1.0, 0.0, 0.0) if form is not None and form.shafts_along == "y" else (0.0, 1.0, 0.0)
+
+
 @dataclass(frozen=True)
 class SolvedHousing:
     """Solved housing: mesh, modes, damping, seats, sensors, dominance and checks.
@@ -174,6 +190,8 @@ class SolvedHousing:
         Whether that file also holds these sensors, so that it need not be written again.
     warnings : list of dict
         Warnings, as in the documents.
+    up : tuple of float
+        Unit vector that points upwards in pictures.
     """
 
     mesh: Mesh
@@ -194,6 +212,7 @@ class SolvedHousing:
     source: Path | None = None
     source_holds: bool = False
     warnings: list[dict[str, Any]] = field(default_factory=list)
+    up: tuple[float, ...] = (0.0, 1.0, 0.0)
 
     @property
     def trusted_limit_hz(self) -> float:
@@ -301,7 +320,7 @@ def solve_housing(
         if cached is None:
             modes, mass, damping_matrix, checks, seconds = _solve_modes(case, described, loaded, progress)
             seconds = {"mesh": meshed, **seconds}
-            warnings += resolution_warnings(case, mesh, modes.certificate.limit / _TWO_PI)
+            warnings += discretisation_warnings(case, mesh, modes)
         else:
             modes, mass, checks = cached.modes, cached.mass, cached.notes["checks"]
             damping_matrix = cached.extras[_DAMPING].values if _DAMPING in cached.extras else None
@@ -341,12 +360,28 @@ def solve_housing(
         record=record,
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
+        up=_upwards(case),
         warnings=warnings
         + _health_warnings(checks)
         + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
     )
+
+
+def kept_housing(case: Case, folder: Path | None, progress: Progress = silent) -> SolvedHousing | None:
+    """Return the housing of a case from the modes that a results folder keeps; None where it keeps none of it.
+
+    Raises
+    ------
+    CaseError, housing.HousingError
+        As :func:`solve_housing`.
+    """
+    if folder is None or case.housing is None or not (folder / MODE_CACHE_FILE).exists():
+        return None
+    mesh = build_mesh(case) if case.housing.mesh is not None else None
+    record, _ = read_mode_cache(folder, mode_cache_inputs(case, mesh))
+    return None if record is None else solve_housing(case, progress, folder=folder)
 
 
 def _damping_array(matrix: FloatArray) -> LabelledArray:
@@ -377,12 +412,17 @@ def _solve_modes(
     except HousingError as error:
         raise CaseError([Problem(f"housing.{key}", UNSAID, f"what this model has; {error}")]) from error
     damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
+    progress("estimating the error by the mesh")
+    begin = time.perf_counter()
+    modes = described.with_discretisation_errors(free, matrices, modes)
+    estimated = time.perf_counter() - begin
     progress("checking the housing against its geometry")
     begin = time.perf_counter()
     health = described.health(free, matrices, modes)
     health.require()
     checks = housing_checks(described, health, effective_mass(matrices, mesh.points, modes))
-    seconds = {"assembly": assembled, **modes.seconds, "checks": time.perf_counter() - begin}
+    checked = time.perf_counter() - begin
+    seconds = {"assembly": assembled, **modes.seconds, "error_estimate": estimated, "checks": checked}
     return modes, matrices.total_mass, damping, checks, seconds
 
 

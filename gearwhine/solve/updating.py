@@ -104,34 +104,31 @@ class Measurement:
 def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
     """Measured targets of a case's update.
 
-    Shapes pair the modes where there are any, else the dominance between seats and skin does. Complex ones are turned
-    on to the real axis.
+    `[measured] pairing` says how modes are paired. Complex shapes are turned on to the real axis.
 
     Raises
     ------
     CaseError
-        Where the survey does not lie on the housing, shapes share too few degrees of freedom, or neither shapes nor
-        bearing seats tell which modes are which.
+        Where the survey does not lie on the housing, or shapes share too few degrees of freedom.
     """
     table = case.update
     assert table is not None
     assert case.housing is not None
     measured = read_measured(case, progress)
-    mode_count = table.model_modes
+    assert case.measured is not None
+    mode_count, pairing = table.model_modes, case.measured.paired_by
+    by_dominance = pairing == "dominance"
     target = Target(
         frequencies=measured.frequencies,
         noise=np.full(len(measured.frequencies), table.frequency_noise),
         band=dominance_band(measured.frequencies),
-        gap=table.gap,
-        margin=_MARGIN * table.gap if table.gap else -np.inf,
+        gap=table.gap if by_dominance else 0.0,
+        margin=_MARGIN * table.gap if table.gap and by_dominance else -np.inf,
         count=None if mode_count is None else ModeCount(_TWO_PI * mode_count.below, mode_count.least, mode_count.most),
     )
-    if measured.shapes is not None:
+    if pairing == "shapes":
         return _with_shapes(case, target, measured)
-    if not case.housing.seat:
-        expected = "bearing seats: without measured shapes modes are paired by their strength between seats and skin"
-        raise CaseError([Problem("housing.seat", (), expected)])
-    return Measurement(target)
+    return Measurement(replace(target, pairing=pairing))
 
 
 def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measurement:
@@ -200,7 +197,8 @@ class NullTest:
     def within(self, percent: float, *, clear: bool = False) -> float:
         """Part of the random sets fitted within an error, if asked for with a clear choice of modes."""
         return self._part(
-            fit.max_percent <= percent and (not clear or (fit.gap >= _CLEAR and fit.measures_agree))
+            fit.max_percent <= percent
+            and (not clear or (fit.gap is not None and fit.gap >= _CLEAR and bool(fit.measures_agree)))
             for fit in self.fits
         )
 
@@ -451,7 +449,9 @@ class SolvedUpdate:
         """The measured modes with their partners before and after."""
         before, after = self.misfit_before, self.misfit_after
         deviations = self.posterior.frequency_deviations()
-        strengths = self.after.state.dominance.acceleration
+        # Nothing drives a housing without seats.
+        state = self.after.state
+        strengths = state.dominance.acceleration if state.seats.shape[1] else None
         return tuple(
             UpdatedPair(
                 measured=float(measured),
@@ -460,7 +460,7 @@ class SolvedUpdate:
                 mode=None if mode == UNPAIRED else self.after.state.number(int(mode)),
                 before_mac=None if before.mac is None else float(before.mac[place]),
                 mac=None if after.mac is None else float(after.mac[place]),
-                strength=None if mode == UNPAIRED else float(strengths[mode]),
+                strength=None if mode == UNPAIRED or strengths is None else float(strengths[mode]),
                 uncertainty=None if mode == UNPAIRED else float(deviations[mode]),
             )
             for place, (measured, mode) in enumerate(zip(self.target.frequencies, after.pairs, strict=True))
@@ -635,6 +635,8 @@ def updated_case(case: Case, solved: SolvedUpdate) -> str:
 def _clear(misfit: Misfit) -> str:
     if misfit.mac is not None:
         return f"least MAC {misfit.mac.min():.2f}"
+    if misfit.choice_shortfall is None:
+        return "paired by frequency alone"
     return f"gap of dominance {misfit.gap:.2f}"
 
 

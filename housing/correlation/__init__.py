@@ -11,7 +11,8 @@ Shapes are rows, degrees of freedom columns; NaN where not measured; complex whe
   shape, and the real shape nearest to it.
 - :func:`span_mac`, :func:`principal_angles` -- close modes as spaces.
 - :func:`pair_modes` by a :class:`PairingRule` -- pairs of measured and model modes.
-- :func:`compare_by_shapes`, :func:`compare_by_dominance` -- a :class:`Comparison` of model and measured modes.
+- :func:`compare_by_shapes`, :func:`compare_by_dominance`, :func:`compare_by_frequency` -- a :class:`Comparison` of
+  model and measured modes.
 - :func:`frac`, :func:`fdac`, :func:`response_vector_assurance`, :func:`amplitude_correlation`,
   :func:`synthesised_responses` -- likeness of frequency responses.
 """
@@ -21,6 +22,7 @@ from housing.correlation.comparison import LookAlikes as LookAlikes
 from housing.correlation.comparison import ModePair as ModePair
 from housing.correlation.comparison import ShapeCorrelation as ShapeCorrelation
 from housing.correlation.comparison import compare_by_dominance as compare_by_dominance
+from housing.correlation.comparison import compare_by_frequency as compare_by_frequency
 from housing.correlation.comparison import compare_by_shapes as compare_by_shapes
 from housing.correlation.comparison import dominance_band as dominance_band
 from housing.correlation.frequency_responses import amplitude_correlation as amplitude_correlation

@@ -1,20 +1,23 @@
 """Comparison of model and measured modes: pairs, frequency errors, shape correlation, and confidence in the pairs.
 
-Two comparisons:
+Three comparisons:
 
 - by shapes (:func:`compare_by_shapes`): measured and model shapes are paired by :mod:`housing.correlation.pairing` and
   judged by all criteria of shape correlation: the MAC of every pair, unpaired modes, modes that are alike, close modes,
   orthogonality, quality of the survey;
 - by dominance (:func:`compare_by_dominance`): measured frequencies without shapes are paired with the model's dominant
-  modes (:mod:`housing.modes.dominance`).
+  modes (:mod:`housing.modes.dominance`);
+- by frequency (:func:`compare_by_frequency`): measured frequencies are paired in their order, the first with the first
+  or the nearest ones.
 
 When 25 model modes fill 3 kHz, any measured frequency has one within a few per cent, so the nearest one proves
-nothing. Where the measurement gives frequencies alone, the n dominant modes of the model, in order of frequency,
-are therefore paired with the n measured ones.
+little; :attr:`Comparison.chance_error_percent` says how little. Where the dominant modes are the measured ones, the
+n dominant modes of the model, in order of frequency, are the stronger evidence.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -31,13 +34,16 @@ from housing.correlation.modal_assurance_criterion import (
     two_sets,
 )
 from housing.correlation.orthogonality import cross_orthogonality, outside_span
-from housing.correlation.pairing import PairingRule, ShapePair, pair_modes
+from housing.correlation.pairing import PairingRule, ShapePair, nearest_in_order, pair_modes
 from housing.correlation.subspaces import nearest_in_span, principal_angles
 from housing.errors import HousingError
 from housing.measured import MeasuredModes
 from housing.modes.dominance import Dominance
 
 FloatArray = npt.NDArray[np.float64]
+
+Pairing = Literal["order", "nearest", "dominance", "shapes"]
+"""How measured modes are paired with the model's."""
 
 
 @dataclass(frozen=True)
@@ -181,6 +187,22 @@ class ModePair:
 
 
 @dataclass(frozen=True)
+class UnpairedMode:
+    """Mode without a partner.
+
+    Attributes
+    ----------
+    number : int
+        Number of the mode, from 1.
+    frequency : float
+        Circular frequency [rad/s].
+    """
+
+    number: int
+    frequency: float
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Pairs of measured and model modes, and the confidence of the pairing.
 
@@ -188,8 +210,9 @@ class Comparison:
     ----------
     pairs : tuple of ModePair
         Ascending in the measured frequency.
-    pairing : str
-        The rule by which they were paired.
+    pairing : {"order", "nearest", "dominance", "shapes"}
+    rule : str
+        The rule by which they were paired, in words.
     band : tuple of float
         Band of possible partners [rad/s].
     gap : float or None
@@ -199,14 +222,25 @@ class Comparison:
         In a pairing by dominance, whether acceleration, velocity and mean absolute strength all choose these modes.
     shapes : ShapeCorrelation or None
         Correlation of the shapes, where there are any.
+    unpaired_measured, unpaired_model : tuple of UnpairedMode, or None
+        In a pairing by frequency, the measured modes without a partner, and those of the model between the first and
+        the last measured frequency.
+    chance_error_percent : float or None
+        In the pairing "nearest", the root-mean-square distance from the nearest mode of the model at which a
+        frequency lies that is drawn at random in the band, uniform in the logarithm. Errors that are not clearly
+        smaller are no evidence for the model.
     """
 
     pairs: tuple[ModePair, ...]
-    pairing: str
+    pairing: Pairing
+    rule: str
     band: tuple[float, float]
     gap: float | None = None
     measures_agree: bool | None = None
     shapes: ShapeCorrelation | None = None
+    unpaired_measured: tuple[UnpairedMode, ...] | None = None
+    unpaired_model: tuple[UnpairedMode, ...] | None = None
+    chance_error_percent: float | None = None
 
     @property
     def rms_error_percent(self) -> float:
@@ -270,11 +304,87 @@ def compare_by_dominance(
     )
     return Comparison(
         pairs=pairs,
-        pairing="dominance in order of frequency",
+        pairing="dominance",
+        rule="dominance in order of frequency",
         band=(low, high),
         gap=strengths.gap(len(measured), (low, high)),
         measures_agree=strengths.measures_agree(len(measured), (low, high)),
     )
+
+
+def compare_by_frequency(
+    measured: FloatArray,
+    frequencies: FloatArray,
+    pairing: Literal["order", "nearest"] = "nearest",
+    *,
+    strengths: Dominance | None = None,
+) -> Comparison:
+    """Pair measured modes with the model's elastic ones in order of frequency.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (n,)
+        Measured circular frequencies, ascending [rad/s].
+    frequencies : ndarray, shape (n_modes,)
+        Circular frequencies of the model, ascending [rad/s]; rigid motion, at zero, is paired with nothing.
+    pairing : {"order", "nearest"}
+        The first with the first and so on, or by :func:`housing.correlation.pairing.nearest_in_order`: modes of the
+        model are left out where that makes the squared errors less.
+    strengths : Dominance, optional
+        Strengths of the model's modes, to stand beside each pair.
+
+    Raises
+    ------
+    HousingError
+        Where nothing was measured, the measured frequencies do not ascend, or the model has no elastic mode.
+    """
+    if len(measured) == 0 or measured[0] <= 0.0 or np.any(np.diff(measured) < 0.0):
+        raise HousingError(f"measured frequencies {measured} rad/s must be positive and ascending")
+    elastic = np.flatnonzero(frequencies > 0.0)
+    if elastic.size == 0:
+        raise HousingError(f"{len(measured)} measured modes, but the model has no elastic one; raise its limit")
+    if pairing == "order":
+        order = np.arange(min(len(elastic), len(measured)))
+        chosen = np.column_stack((order, order))
+    else:
+        chosen = nearest_in_order(frequencies[elastic], measured)
+    pairs = tuple(
+        ModePair(
+            measured=float(measured[j]),
+            model=float(frequencies[elastic[i]]),
+            measured_mode=int(j) + 1,
+            mode=int(elastic[i]) + 1,
+            strength=None if strengths is None else float(strengths.acceleration[elastic[i]]),
+        )
+        for i, j in chosen
+    )
+    band = dominance_band(measured)
+    between = elastic[(frequencies[elastic] >= measured[0]) & (frequencies[elastic] <= measured[-1])]
+    missed, lone = set(range(len(measured))) - set(chosen[:, 1].tolist()), np.setdiff1d(between, elastic[chosen[:, 0]])
+    return Comparison(
+        pairs=pairs,
+        pairing=pairing,
+        rule=_BY_FREQUENCY[pairing],
+        band=band,
+        unpaired_measured=tuple(UnpairedMode(j + 1, float(measured[j])) for j in sorted(missed)),
+        unpaired_model=tuple(UnpairedMode(int(i) + 1, float(frequencies[i])) for i in lone),
+        chance_error_percent=_chance_error(frequencies[elastic], band) if pairing == "nearest" else None,
+    )
+
+
+_BY_FREQUENCY = {"order": "order of frequency, the first with the first", "nearest": "nearest frequencies in order"}
+
+
+def _chance_error(model: FloatArray, band: tuple[float, float]) -> float:
+    """Distance of a random frequency in a band from the nearest model frequency, root mean square [%].
+
+    With x = ln ω uniform in the band, the mean of (x - x_k)² over each mode's own cell, up to midway to its neighbours.
+    """
+    places = np.log(model)
+    low, high = np.log(band)
+    edges = np.concatenate(([low], np.clip(0.5 * (places[1:] + places[:-1]), low, high), [high]))
+    cubes = (edges[1:] - places) ** 3 - (edges[:-1] - places) ** 3
+    return float(100.0 * np.sqrt(cubes.sum() / 3.0 / (high - low)))
 
 
 _ONE_FREQUENCY = 0.02  # part of a frequency by which two estimates of one mode may scatter
@@ -316,10 +426,40 @@ def compare_by_shapes(
     band = (float(reach[0] * measured.frequencies[0]), float(reach[1] * measured.frequencies[-1]))
     return Comparison(
         pairs=tuple(_named(pair, frequencies, measured.frequencies, strengths) for pair in pairs),
-        pairing=f"MAC and frequency, best assignment, MAC at least {rule.least_mac:g}",
+        pairing="shapes",
+        rule=f"MAC and frequency, best assignment, MAC at least {rule.least_mac:g}",
         band=band,
         shapes=_evidence(frequencies, phi, measured.frequencies, psi, pairs, rule, band),
     )
+
+
+def with_shapes(
+    comparison: Comparison, frequencies: FloatArray, shapes: npt.ArrayLike, measured: MeasuredModes
+) -> Comparison:
+    """Return a comparison whose pairs were made without shapes, with the correlation of the shapes beside it.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    frequencies, shapes, measured
+        See :func:`compare_by_shapes`.
+
+    Raises
+    ------
+    HousingError
+        Where nothing was measured but frequencies, or sets do not fit together.
+    """
+    if measured.shapes is None:
+        raise HousingError("measured modes without shapes have no MAC")
+    phi, psi = two_sets(shapes, measured.shapes, ("the model's", "the measured"))
+    table = modal_assurance_criterion(phi, psi)
+    pairs = tuple(replace(pair, mac=float(table[pair.mode - 1, pair.measured_mode - 1])) for pair in comparison.pairs)
+    alone = [
+        ShapePair(pair.mode - 1, pair.measured_mode - 1, float(pair.mac or 0.0), np.nan, (), (), mixed=False)
+        for pair in pairs
+    ]
+    evidence = _evidence(frequencies, phi, measured.frequencies, psi, alone, PairingRule(), comparison.band)
+    return replace(comparison, pairs=pairs, shapes=evidence, unpaired_measured=None, unpaired_model=None)
 
 
 def _named(pair: ShapePair, model: FloatArray, measured: FloatArray, strengths: Dominance | None) -> ModePair:

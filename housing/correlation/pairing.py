@@ -13,6 +13,9 @@ Close modes, of the model or of the test, mix. Each is then scored by the part o
 other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
 group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
 the order of frequency is kept.
+
+Frequencies without shapes are paired in their order: the first with the first, or by the monotone assignment of least
+squares (:func:`nearest_in_order`).
 """
 
 from dataclasses import dataclass
@@ -46,6 +49,47 @@ def best_assignment(scores: FloatArray) -> list[tuple[int, int]]:
 
     rows, columns = linear_sum_assignment(scores, maximize=True)
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if scores[i, j] > 0.0]
+
+
+def nearest_in_order(model: FloatArray, measured: FloatArray) -> IntArray:
+    """Pair frequencies in ascending order with the least sum of squared logarithmic errors.
+
+    All of the shorter list are paired, and some of the longer one are left out. With the shorter list s and the longer
+    one l, D_j(i) is the least sum of pairs of s_0 … s_j with members of l up to l_i:
+
+        D_j(i) = min over k ≤ i of D_{j-1}(k - 1) + (ln s_j - ln l_k)²,
+
+    the recurrence of dynamic time warping without repetitions (Sakoe and Chiba 1978).
+
+    Parameters
+    ----------
+    model, measured : ndarray, shapes (a,) and (b,)
+        Positive frequencies, ascending, in one unit.
+
+    Returns
+    -------
+    ndarray of int, shape (min(a, b), 2)
+        Indices of the model's and of the measured mode of each pair, ascending.
+    """
+    swapped = len(measured) > len(model)
+    short, long = (model, measured) if swapped else (measured, model)
+    costs = (np.log(short)[:, None] - np.log(long)) ** 2
+    before = np.zeros(len(long) + 1)  # D_{j-1}(k - 1), with D of no pairs at k = 0
+    taken = np.empty(costs.shape, dtype=np.int64)
+    for j, row in enumerate(costs):
+        ending = before[:-1] + row
+        least = np.minimum.accumulate(ending)
+        # The last k at which the minimum was lowered is the one that it is taken at.
+        lowered = np.concatenate(([True], ending[1:] < least[:-1]))
+        taken[j] = np.maximum.accumulate(np.where(lowered, np.arange(len(long)), 0))
+        before = np.concatenate(([np.inf], least))
+    chosen = np.empty(len(short), dtype=np.int64)
+    last = len(long) - 1
+    for j in range(len(short) - 1, -1, -1):
+        chosen[j] = taken[j, last]
+        last = chosen[j] - 1
+    order = np.arange(len(short))
+    return np.column_stack((order, chosen) if swapped else (chosen, order))
 
 
 def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:

@@ -5,7 +5,7 @@ drawn as a wireframe: lines between its points, and their motion from the measur
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -107,11 +107,14 @@ class DrawnHousing:
         Places in ``rest``.
     nodes : ndarray of int, shape (n_points,)
         Node numbers of the points in the mesh.
+    up : ndarray, shape (3,)
+        Unit vector that points upwards in pictures; by default y.
     """
 
     rest: FloatArray
     triangles: IntArray
     nodes: IntArray
+    up: FloatArray = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
 
     @property
     def diagonal(self) -> float:
@@ -185,10 +188,10 @@ def widest_angle(motion: FloatArray | ComplexArray) -> float:
     return 0.5 * float(np.angle((motion**2).sum()))
 
 
-def drawn_housing(mesh: Mesh) -> DrawnHousing:
-    """Return the surface of a mesh on which shapes are drawn."""
+def drawn_housing(mesh: Mesh, up: Sequence[float] = (0.0, 1.0, 0.0)) -> DrawnHousing:
+    """Return the surface of a mesh on which shapes are drawn, with the unit vector that points upwards."""
     skin = outer_skin(mesh)
-    return DrawnHousing(mesh.points[skin.nodes], skin.triangles, skin.nodes)
+    return DrawnHousing(mesh.points[skin.nodes], skin.triangles, skin.nodes, np.array(up))
 
 
 def drawn_modes(

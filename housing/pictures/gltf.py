@@ -39,7 +39,9 @@ _PERIOD = 2.0  # period of the animation [s], whatever that of the mode
 _FRAMES = 48  # linear pieces of a sine, visually smooth
 
 
-def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path) -> list[Path]:
+def write_mode_models(
+    mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder: Path, up: Sequence[float] = (0.0, 1.0, 0.0)
+) -> list[Path]:
     """Write one model for each mode: ``mode-03-1007Hz.glb`` and so on; each appears whole or not at all.
 
     Parameters
@@ -63,7 +65,7 @@ def write_mode_models(mesh: Mesh, modes: ModeSet, numbers: Sequence[int], folder
     """
     check_numbers(modes, numbers)
     folder.mkdir(parents=True, exist_ok=True)
-    surface = drawn_housing(mesh)
+    surface = drawn_housing(mesh, up)
     files = []
     for number, shape in zip(numbers, drawn_modes(surface, modes, numbers), strict=True):
         frequency = float(modes.frequencies_hz[number - 1])
@@ -111,7 +113,7 @@ def _decimated(surface: DrawnHousing, shape: DrawnShape, most: int) -> tuple[Dra
     triangles = np.asarray(thinned.faces, dtype=np.int64).reshape(-1, 4)[:, 1:]
     values = None if shape.values is None else shape.values[places]
     return (
-        DrawnHousing(surface.rest[places], triangles, surface.nodes[places]),
+        DrawnHousing(surface.rest[places], triangles, surface.nodes[places], surface.up),
         replace(shape, motion=shape.motion[places], values=values),
     )
 
@@ -153,7 +155,7 @@ def _model(surface: DrawnHousing, shape: DrawnShape, extras: Mapping[str, Any], 
         "asset": {"version": "2.0", "generator": "gearwhine"},
         "scene": 0,
         "scenes": [{"name": shape.title, "nodes": [0]}],
-        "nodes": [{"name": "housing", "mesh": 0}],
+        "nodes": [{"name": "housing", "mesh": 0, "rotation": _upright(surface.up)}],
         "meshes": [{"name": shape.title, "primitives": [primitive], "weights": start, "extras": {**named, **extras}}],
         "materials": [
             {"name": "amplitude", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.7}},
@@ -170,6 +172,16 @@ def _model(surface: DrawnHousing, shape: DrawnShape, extras: Mapping[str, Any], 
         "buffers": [{"byteLength": len(buffer.content)}],
     }
     return _container(document, bytes(buffer.content))
+
+
+def _upright(up: FloatArray) -> list[float]:
+    """Return the quaternion (x, y, z, w) of the least rotation that takes a unit vector to y, which is up in glTF."""
+    x, y, z = (float(part) for part in up)
+    if y < -1.0 + 1e-9:
+        return [0.0, 0.0, 1.0, 0.0]
+    # The half angle's axis is u × y, its cosine is in 1 + u·y.
+    quaternion = np.array([-z, 0.0, x, 1.0 + y])
+    return [float(part) for part in quaternion / np.linalg.norm(quaternion)]
 
 
 class _Buffer:

@@ -16,7 +16,8 @@ import numpy.typing as npt
 from housing.errors import EncoderUnavailableError
 from housing.modes.natural_modes import ModeSet
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
-from housing.pictures.scene import STRIP, Scene, check_view, colour_strip
+from housing.pictures.scene import STRIP, Scene, colour_strip
+from housing.pictures.views import AUTO, check_view
 from housing.storage.atomic_file import atomic_file
 from meshes import Mesh
 
@@ -37,7 +38,7 @@ def render_modes(
     folder: Path,
     *,
     notes: Mapping[int, str] | None = None,
-    view: str = "iso",
+    view: str = AUTO,
     size: tuple[int, int] = (1000, 780),
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[Path]:
@@ -54,7 +55,7 @@ def render_modes(
     notes : mapping of int to str, optional
         A second line under a mode's title.
     view : str
-        One of :data:`housing.pictures.scene.VIEWS`.
+        One of :data:`housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height of a picture [pixels].
     progress : callable
@@ -85,7 +86,7 @@ def render_gallery(
     path: Path,
     *,
     notes: Mapping[int, str] | None = None,
-    view: str = "iso",
+    view: str = AUTO,
     tile: tuple[int, int] = (520, 420),
 ) -> Path:
     """Draw several modes on one sheet, up to four in a row, over a colour bar; see :func:`render_modes`."""
@@ -99,7 +100,7 @@ def render_shapes(
     shapes: Sequence[DrawnShape],
     folder: Path,
     *,
-    view: str = "iso",
+    view: str = AUTO,
     beside: str | None = None,
     size: tuple[int, int] = (1000, 780),
     progress: Callable[[str], None] = lambda message: None,
@@ -136,7 +137,7 @@ def render_sheet(
     shapes: Sequence[DrawnShape],
     path: Path,
     *,
-    view: str = "iso",
+    view: str = AUTO,
     tile: tuple[int, int] = (520, 420),
 ) -> Path:
     """Draw shapes on one sheet, up to four in a row, over a colour bar; each is coloured by part of its largest."""
@@ -194,7 +195,7 @@ def animate_shapes(
     folder: Path,
     film: FilmFormat,
     *,
-    view: str = "iso",
+    view: str = AUTO,
     size: tuple[int, int] = (640, 500),
     progress: Callable[[str], None] = lambda message: None,
 ) -> list[Path]:
@@ -209,7 +210,7 @@ def animate_shapes(
         Folder of the films; made where it is missing.
     film : {"gif", "mp4"}
     view : str
-        One of :data:`housing.pictures.images.VIEWS`.
+        One of :data:`housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height [pixels], both even.
     progress : callable

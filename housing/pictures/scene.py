@@ -13,8 +13,9 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError, RendererUnavailableError
+from housing.errors import RendererUnavailableError
 from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
+from housing.pictures.views import AUTO, IN_WORDS, check_view, view_of_most_motion, viewing_direction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -64,18 +65,6 @@ Image = npt.NDArray[np.uint8]
 
 _SHADE = 0.35, 0.75  # ambient and diffuse light
 _SIGNED_SHADE = 0.75, 0.3
-_VIEWS = {
-    "iso": (1.0, 0.75, 1.25),
-    "front": (0.0, 0.0, 1.0),
-    "back": (0.0, 0.0, -1.0),
-    "left": (-1.0, 0.0, 0.0),
-    "right": (1.0, 0.0, 0.0),
-    "top": (0.0, 1.0, 0.001),
-    "iso-opposite": (-1.0, -0.75, -1.25),
-}
-VIEWS = tuple(_VIEWS)
-"""Directions of view."""
-
 STRIP = 34
 """Height of the colour bar's strip under a sheet [pixels]."""
 
@@ -98,7 +87,7 @@ class Scene:
     ----------
     housing : DrawnHousing
     view : str
-        One of :data:`VIEWS`.
+        One of :data:`housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height [pixels].
     tile : bool
@@ -118,7 +107,7 @@ class Scene:
     ) -> None:
         check_view(view)
         pyvista = load_pyvista()
-        self._housing = housing
+        self._housing, self._view = housing, view
         faces = np.hstack([np.full((len(housing.triangles), 1), 3), housing.triangles])
         rest = pyvista.PolyData(housing.rest, faces)
         # A flat face has its rim.
@@ -153,8 +142,13 @@ class Scene:
         self._plotter.close()
 
     def show(self, shape: DrawnShape) -> None:
-        """Put a shape's captions and colours in place."""
-        self._title.input, self._note.input = shape.title, shape.note
+        """Put a shape's captions, colours and, where it is to show most motion, view in place."""
+        note = shape.note
+        if self._view == AUTO:
+            view = view_of_most_motion(self._housing, shape)
+            note = "; ".join(filter(None, (note, IN_WORDS.get(view))))
+            self._aim(view)
+        self._title.input, self._note.input = shape.title, note
         values = shape.largest * shape.amplitude if shape.values is None else shape.values
         self._solid["shown"] = values[self._origin]
         self._actor.mapper.lookup_table.apply_cmap(_COLOURS if shape.values is None else _SIGNED_COLOURS, 256)
@@ -236,7 +230,7 @@ class Scene:
         Parameters
         ----------
         view : str
-            One of :data:`VIEWS`.
+            One of :data:`housing.pictures.views.VIEWS`.
         beside : bool
             Whether the picture stands beside one that has the captions; it names its view in their place.
         bar : bool
@@ -249,7 +243,7 @@ class Scene:
         self._aim(view)
 
     def _aim(self, view: str) -> None:
-        self._plotter.view_vector(_VIEWS[view], viewup=(0.0, 1.0, 0.0))
+        self._plotter.view_vector(viewing_direction(view, self._housing.up), viewup=self._housing.up)
         self._plotter.enable_parallel_projection()
         self._plotter.reset_camera(bounds=_frame(self._bounds))
         camera = self._plotter.camera
@@ -276,25 +270,6 @@ def _font_file() -> str:
     import matplotlib as mpl
 
     return str(Path(mpl.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))
-
-
-def check_view(view: str) -> None:
-    """Refuse a view that is not there.
-
-    Raises
-    ------
-    HousingError
-        For any name but those of :data:`VIEWS`.
-    """
-    if view not in _VIEWS:
-        raise HousingError(f"no view {view!r}; there are {', '.join(VIEWS)}")
-
-
-def viewing_direction(view: str) -> FloatArray:
-    """Return the viewing direction: the unit vector from the housing towards the eye."""
-    check_view(view)
-    towards = np.array(_VIEWS[view])
-    return np.asarray(towards / np.linalg.norm(towards))
 
 
 def colour_strip(width: int) -> Image:

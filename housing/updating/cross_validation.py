@@ -71,8 +71,9 @@ class NullFit:
         Circular frequencies [rad/s], ascending.
     rms_percent, max_percent : float
         Errors of the dominant modes.
-    gap : float
-    measures_agree : bool
+    gap : float or None
+    measures_agree : bool or None
+        None where dominance does not choose the modes.
     count : int
         See :class:`Misfit`.
     is_met : bool
@@ -82,8 +83,8 @@ class NullFit:
     frequencies: FloatArray
     rms_percent: float
     max_percent: float
-    gap: float
-    measures_agree: bool
+    gap: float | None
+    measures_agree: bool | None
     count: int
     is_met: bool
 
@@ -203,8 +204,8 @@ def null_fits(
                 frequencies=sets[number].frequencies,
                 rms_percent=misfit.rms_percent,
                 max_percent=misfit.max_percent,
-                gap=misfit.gap,
-                measures_agree=misfit.measures_agree,
+                gap=misfit.gap if misfit.by_dominance else None,
+                measures_agree=misfit.measures_agree if misfit.by_dominance else None,
                 count=misfit.count,
                 is_met=is_met(sets[number], misfit),
             )

@@ -8,18 +8,20 @@ normal one (Mottershead and Friswell 1993; Beck and Katafygiotis 1998).
 Penalties exclude faults that a good sum would hide: an unclear choice of dominant modes, measures of dominance that
 disagree, and a number of modes other than the known one.
 
-Where shapes were measured, modes are paired by the assignment of greatest MAC, else in order of frequency: during a
-search with the modes of least cost (:mod:`housing.updating.mode_choice`), which at a good end are the dominant ones;
-with the dominant ones themselves where a model is judged.
+Where shapes were measured, modes are paired by the assignment of greatest MAC. Frequencies alone are paired in their
+order (:attr:`Target.pairing`): the first with the first; with the nearest ones; or with the dominant ones, during a
+search with the modes of least cost (:mod:`housing.updating.mode_choice`), which at a good end are the dominant ones.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from housing.correlation import modal_assurance_criterion
+from housing.correlation.pairing import nearest_in_order
 from housing.errors import HousingError
 from housing.updating.mode_choice import ChoiceShortfall, choice_shortfall, choose_modes
 from housing.updating.surrogate import ModalState, Neighbour
@@ -69,6 +71,8 @@ class Target:
     margin : float
         Least gap by the other two measures of dominance; not asked for by default.
     count : ModeCount, optional
+    pairing : {"dominance", "nearest", "order"}
+        How frequencies are paired where no shapes were measured.
     firmness : float
         Factor on the penalties, before they are squared. Soft penalties let a search pass obstacles; firm ones leave no
         violation at its end.
@@ -88,6 +92,7 @@ class Target:
     margin: float = -np.inf
     count: ModeCount | None = None
     firmness: float = 1.0
+    pairing: Literal["dominance", "nearest", "order"] = "dominance"
 
     def __post_init__(self) -> None:
         """Check frequencies, noise and number of shapes."""
@@ -120,7 +125,7 @@ class Misfit:
         ln(model / measured); NaN where unpaired.
     gap : float
         ln(strength of the weakest paired / strongest of the others in the band): negative where the modes paired are
-        not the dominant ones, infinite where shapes decide.
+        not the dominant ones, infinite where dominance does not decide.
     margin : float
         Least gap by the other two measures of dominance.
     count : int
@@ -128,7 +133,7 @@ class Misfit:
     mac : ndarray, shape (n,), or None
         MAC of each pair, where shapes were measured.
     choice_shortfall : ChoiceShortfall, or None
-        Shortfalls of the choice of modes from a clear one, where shapes do not decide.
+        Shortfalls of the choice of modes from a clear one, where dominance decides.
     """
 
     value: float
@@ -141,6 +146,11 @@ class Misfit:
     choice_shortfall: ChoiceShortfall | None = None
 
     @property
+    def by_dominance(self) -> bool:
+        """Whether dominance chose the modes, so that its gap means something."""
+        return self.choice_shortfall is not None or bool(np.isfinite(self.gap))
+
+    @property
     def measures_agree(self) -> bool:
         """Whether all three measures of dominance choose the modes that were paired."""
         return min(self.gap, self.margin) > 0.0
@@ -149,7 +159,7 @@ class Misfit:
     def in_words(self) -> str:
         """Describe the errors, the clearness of the mode choice and the number of modes, as far as they apply."""
         parts = [f"max {self.max_percent:.2f} %"]
-        if self.mac is None:
+        if self.choice_shortfall is not None:
             clear = np.isfinite([self.gap, self.margin]).all()
             rivals = f"gap {self.gap:.2f}, margin {self.margin:.2f}" if clear else "no other mode in the band"
             parts.append(rivals)
@@ -184,7 +194,10 @@ def measure(target: Target, state: ModalState, coordinates: FloatArray, *, stric
     n = len(target.frequencies)
     penalty = float(coordinates @ coordinates)
     mac, gap, margin, clear = None, float("inf"), float("inf"), None
-    if target.shapes is None:
+    if target.shapes is None and target.pairing != "dominance":
+        pairs = pair_by_frequency(target, state)
+        penalty += _TOO_FEW_MODES * np.count_nonzero(pairs == UNPAIRED)
+    elif target.shapes is None:
         strengths = state.dominance
         pairs = strengths.strongest(n, target.band)
         if len(pairs) < n:
@@ -247,6 +260,19 @@ def misplaced_modes(bounds: ModeCount, state: ModalState) -> tuple[IntArray, Flo
     shortfall[most:] = np.minimum(beyond[most:] - _COUNT_CLEAR, 0.0)
     modes = np.flatnonzero(shortfall)
     return modes, shortfall[modes] / _COUNT_SCALE
+
+
+def pair_by_frequency(target: Target, state: ModalState) -> IntArray:
+    """Pair modes in order of frequency, the first with the first or the nearest ones, as the target asks for."""
+    n = len(target.frequencies)
+    pairs = np.full(n, UNPAIRED)
+    if target.pairing == "order":
+        count = min(n, len(state.frequencies))
+        pairs[:count] = np.arange(count)
+    else:
+        model, measured = nearest_in_order(state.frequencies, target.frequencies).T
+        pairs[measured] = model
+    return pairs
 
 
 def pair_by_shape(target: Target, state: ModalState) -> tuple[IntArray, FloatArray]:

@@ -18,6 +18,8 @@ from rotors.model.segment import Coupling, Segment
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
+_LARGEST_STRAIN = 0.1
+
 MassModel = Literal["distributed", "lumped"]
 
 
@@ -144,6 +146,27 @@ class Rotor:
         slack = STATION_TOLERANCE * self.length
         inside = math.isfinite(at) and -slack <= at <= self.length + slack
         require(inside, f"{label} position", at, f"a place on the shaft, 0 to {self.length:g} m")
+
+    @cached_property
+    def highest_speed(self) -> float:
+        """Speed at which the shaft's own rotation would strain its surface by a tenth [rad/s]; inf without inertia.
+
+        The hoop strain of a thin ring is ρ ω² r² / E (Timoshenko, Strength of Materials II): steel would move at
+        1.6 km/s, five times the speed at which any steel bursts, and linear elasticity ends before.
+        """
+        shafts = [part for part in self.segments if isinstance(part, Segment) and part.material.density > 0.0]
+        speeds = [
+            math.sqrt(_LARGEST_STRAIN * part.material.youngs_modulus / part.material.density)
+            * (2.0 / max(part.section(end).outer_diameter for end in (0.0, 1.0)))
+            for part in shafts
+        ]
+        return min(speeds, default=math.inf)
+
+    def require_speed(self, label: str, speed: float) -> None:
+        """Raise `RotorError` unless ``speed`` [rad/s] is finite and one that a shaft can turn at."""
+        require_finite(label, speed)
+        possible = abs(speed) <= self.highest_speed
+        require(possible, label, speed, f"at most {self.highest_speed:.3g} rad/s, where rotor {self.name!r} is torn")
 
     @cached_property
     def joints(self) -> FloatArray:

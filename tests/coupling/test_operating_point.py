@@ -100,9 +100,11 @@ def test_machines_without_an_operating_point_are_refused() -> None:
         CouplingError, match=r"nothing holds the axial motion of shaft '(in|out)', and the loads drive it"
     ):
         spur().operating_point((0.0, 0.0, -9.81))
-    unaligned = [replace(pair, misalignment=None) for pair in spur().gear_pairs]
+    unloaded = spur(torque=0.0)
+    (pair,) = unloaded.gear_pairs
+    assert unloaded.at_operating_point().gear_pairs == (pair,)
     with pytest.raises(CouplingError, match="'pinion' -> 'wheel': no flanks carry a load without a torque, so no mis"):
-        spur(torque=0.0, gear_pairs=unaligned).at_operating_point()
+        unloaded.operating_point().flank_gaps([pair.label])
     machine = spur()
     missing = replace(machine, bearings=machine.bearings[1:])
     with pytest.raises(

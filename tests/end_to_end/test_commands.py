@@ -190,7 +190,8 @@ def test_compare(gearwhine) -> None:
         assert pair["error_percent"] == pytest.approx(100 * (pair["model_hz"] / pair["measured_hz"] - 1))
     errors = [abs(pair["error_percent"]) for pair in document["pairs"]]
     assert document["max_error_percent"] == pytest.approx(max(errors))
-    assert {"gap", "measures_agree", "pairing", "rms_error_percent"} <= set(document)
+    assert {"gap", "measures_agree", "rms_error_percent"} <= set(document)
+    assert document["pairing"] == "dominance"
 
 
 def test_mesh_in_another_format(gearwhine, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from gearwhine.output.terminal import shown_by
 from gearwhine.results.comparison import comparison_document, sections
 from gearwhine.solve.comparison import compare_housing, pair_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from housing.correlation.comparison import Pairing
 from housing.measured import MeasuredGeometry, MeasuredModes
 
 CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
@@ -53,7 +54,8 @@ def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[Measured
     assert [mode["measured_mode"] for mode in document["unpaired_measured"]] == [2]
     (twice,) = document["duplicates"]
     assert twice["modes"] == [2, 3]
-    assert document["gap"] is None
+    assert not {"gap", "measures_agree", "chance_error_percent"} & set(document)  # of other pairings
+    assert document["pairing"] == "shapes"
     assert document["pairs"][0]["strength"] == pytest.approx(float(solved.strengths.acceleration[0]))
     assert document["phase_collinearity"] == pytest.approx([1.0] * count)
     assert np.array(document["mac"]).shape == (len(solved.modes.frequencies), count)
@@ -76,12 +78,31 @@ def test_a_model_known_less_high_than_the_test_is_refused(
 ) -> None:
     measured, shapes = twin
     high = replace(measured, frequencies=1.2 * measured.frequencies)
-    with pytest.raises(CaseError, match="partners are looked for up to there"):
+    with pytest.raises(CaseError, match="are paired with the model's up to there"):
         pair_modes(solved, high, shapes)
 
 
-def test_measured_frequencies_alone_are_paired_by_dominance(solved: SolvedHousing) -> None:
+def test_measured_frequencies_alone_are_paired_as_the_case_says(solved: SolvedHousing) -> None:
     given = MeasuredModes(2.0 * np.pi * np.array(CASE.measured.frequencies))
-    comparison = pair_modes(solved, given)
+    comparison = pair_modes(solved, given, pairing="dominance")
     assert comparison.shapes is None
-    assert comparison.pairs == compare_housing(CASE, solved).pairs
+    assert comparison.gap is not None
+    assert comparison.pairs == compare_housing(CASE, solved).pairs  # the case asks for dominance
+    assert pair_modes(solved, given).pairing == "nearest"
+
+
+@pytest.mark.parametrize("pairing", ["order", "nearest", "dominance"])
+def test_pairs_of_frequencies_have_the_mac_of_measured_shapes(
+    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], pairing: Pairing
+) -> None:
+    by_shape, other = (pair_modes(solved, *twin, pairing=name) for name in ("shapes", pairing))
+    document = json.loads(json_text(finite(comparison_document(other, solved))))
+    assert document["pairing"] == pairing
+    assert document["mac"] == comparison_document(by_shape, solved)["mac"]
+    for pair in document["pairs"]:
+        assert pair["mac"] == pytest.approx(document["mac"][pair["mode"] - 1][pair["measured_mode"] - 1])
+    if pairing == "order":  # mode 2 was found twice and mode 3 not at all
+        assert [pair["mode"] for pair in document["pairs"]] == list(range(1, len(document["pairs"]) + 1))
+        assert document["pairs"][0]["mac"] == pytest.approx(1.0)
+        assert document["pairs"][3]["mac"] == pytest.approx(1.0)
+        assert document["pairs"][2]["mac"] < 0.9

@@ -22,7 +22,8 @@ def test_dominant_modes_are_paired_in_order_and_not_with_their_nearest() -> None
     assert [pair.error_percent for pair in comparison.pairs] == pytest.approx(errors)
     assert comparison.max_error_percent == pytest.approx(abs(errors[0]))
     assert comparison.rms_error_percent == pytest.approx(np.sqrt(np.mean(np.square(errors))))
-    assert comparison.pairing == "dominance in order of frequency"
+    assert comparison.pairing == "dominance"
+    assert comparison.rule == "dominance in order of frequency"
     assert comparison.measures_agree
 
 

@@ -15,7 +15,8 @@ from housing.errors import RendererUnavailableError
 from housing.fem.matrices import Matrices
 from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
 from housing.pictures.images import render_gallery, render_modes, render_shapes
-from housing.pictures.scene import STRIP, VIEWS, find_renderer
+from housing.pictures.scene import STRIP, find_renderer
+from housing.pictures.views import VIEWS
 from meshes import Mesh
 from meshes.elements import facet_nodes
 
@@ -157,7 +158,7 @@ def test_pictures_of_modes_that_are_not_there_are_refused(box: Mesh, modes: Mode
             render_modes(box, modes, numbers, tmp_path)
         with pytest.raises(HousingError, match="give numbers from 1 to 8"):
             render_gallery(box, modes, numbers, tmp_path / "sheet.png")
-    with pytest.raises(HousingError, match="no view 'below'; there are iso, front"):
+    with pytest.raises(HousingError, match="no view 'below'; there are auto, iso"):
         render_modes(box, modes, [7], tmp_path, view="below")
     assert "iso" in VIEWS
     assert not list(tmp_path.iterdir())

@@ -58,7 +58,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -519,6 +519,22 @@ class ToothContact:
         return np.asarray(
             states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
         )
+
+
+@lru_cache(maxsize=16)  # keyed by identity of the contact, whose table for the kernels is kept with the result
+def without_body_twist(contact: ToothContact, twist: float) -> ToothContact:
+    """Contact law of a pair whose bodies twist beside it: without that part of the shared compliance, `twist` [m/N].
+
+    The law of the pairs without what they share stays the same.
+    """
+    if twist == 0.0:
+        return contact
+    return replace(
+        contact,
+        stiffness=without_shared_compliance(ToothPairCurves(contact.stiffness, contact.deviation), twist).stiffness,
+        variants=tuple(without_shared_compliance(curves, twist) for curves in contact.variants),
+        shared_compliance=contact.shared_compliance - twist,
+    )
 
 
 def contact_flattening(model: StiffnessModel, geometry: GearPairGeometry) -> Flattening:

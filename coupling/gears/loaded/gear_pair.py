@@ -1,7 +1,8 @@
 """Gear pair: its specification, and its mesh under the mean torque: contact law, mesh damping, transmission error.
 
-The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k and the equivalent mass m of the
-two gears rotating against each other: ``2 ζ sqrt(k m)``.
+The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k between the rims and the
+equivalent mass m of the two gears rotating against each other: ``2 ζ sqrt(k m)``. The twist of the gears' bodies, which
+lies between the rims and the shafts, has no part in k.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, tooth_contact
+from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, without_body_twist
 from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
@@ -26,6 +27,7 @@ from coupling.gears.stiffness.models import (
     StiffnessModel,
     require_known_model,
     stiffness_under_load,
+    twist_by_gear,
 )
 from housing.own_copies import keep_tuples
 from numerics.findings import Finding, Number, Numbers, Text, attribute_findings, refuse
@@ -88,7 +90,7 @@ class GearPair:
     stiffness : StiffnessModel or str
         Model of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
     damping_ratio : float
-        Fraction of critical damping of the two gears rotating against each other.
+        Fraction of critical damping of the two rims rotating against each other.
     damping : float, optional
         Damping coefficient of the mesh [N s/m], in place of the ratio.
     backlash : float, optional
@@ -98,7 +100,8 @@ class GearPair:
         Coefficient of friction between the teeth.
     misalignment : float, optional
         Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
-        point, see :meth:`coupling.Machine.at_operating_point`.
+        point, see :meth:`coupling.Machine.at_operating_point`. Flanks of a pair apart from a machine, or in one
+        without such a point, are aligned then.
     face_gap : tuple of float
         Gap of the flanks over the face that comes with the misalignment [m], at the stations of
         :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
@@ -113,7 +116,7 @@ class GearPair:
     damping: float | None = None
     backlash: float | None = None
     friction: float = 0.0
-    misalignment: float | None = 0.0
+    misalignment: float | None = None
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
 
@@ -179,23 +182,14 @@ class GearPair:
         geometry : GearPairGeometry
         sense : int
             Sense of rotation of the driver about z: 1 or -1.
-
-        Raises
-        ------
-        GearError
-            Where the misalignment has still to be found at the operating point of a machine.
         """
-        if self.misalignment is None:
-            raise GearError(
-                f"{geometry.label}: its misalignment is left to the machine's operating point; expected an angle, or "
-                "`Machine.at_operating_point`"
-            )
+        misalignment = self.misalignment or 0.0
         bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
         straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        even = self.misalignment == 0.0 and not any(self.face_gap)
+        even = misalignment == 0.0 and not any(self.face_gap)
         if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
-        return face_slices(geometry, sense=sense, misalignment=self.misalignment, face_gap=self.face_gap)
+        return face_slices(geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap)
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
         """Refuse faults for which the mesh has no solution, before it is solved.
@@ -330,6 +324,15 @@ class LoadedGearPair:
     mesh_frequency: float | None
 
     @property
+    def tilting_faces(self) -> FaceSlices:
+        """Slices of the face by which the flanks resist tilting: those of the contact, or of flanks that carry evenly.
+
+        A given spring lies evenly over the face.
+        """
+        even = face_slices(self.geometry)
+        return self.contact.faces or slices_of_teeth(even, self.model, self.geometry)
+
+    @property
     def torque(self) -> float:
         """Torque on the driver that the mesh carries [N m]."""
         return self.static.force * self.geometry.driver.base_radius
@@ -389,9 +392,14 @@ def load_gear_pair(
     static = loaded_transmission_error(carrying, force)
     hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
-    # mesh periods, which are not alike with pitch deviations or damaged teeth.
-    loaded = (hunting or static).mean_mesh_stiffness
-    mean_mesh_stiffness = loaded if force > 0.0 else contact.unloaded_mean_mesh_stiffness
+    # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims, so
+    # the twist of the bodies behind them has no part in it.
+    twist = sum(twist_by_gear(model, geometry))
+    mean_mesh_stiffness = (
+        (hunting or static).mean_stiffness_without(twist)
+        if force > 0.0
+        else without_body_twist(contact, twist).unloaded_mean_mesh_stiffness
+    )
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)

@@ -72,6 +72,15 @@ def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> floa
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
 
 
+def twist_by_gear(model: StiffnessModel | str, geometry: GearPairGeometry) -> tuple[float, float]:
+    """Parts of `shared_compliance` that are the twist of the driver's and of the driven gear's body [m/N].
+
+    It depends on no load, so a model may be given by its name.
+    """
+    named = stiffness_model(model) if isinstance(model, str) else model
+    return named.twist_by_gear(geometry) if isinstance(named, CompliantTeeth) else (0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class SquareStiffness:
     """Each pair has the same stiffness while it touches; of helical teeth in proportion to the part that touches.

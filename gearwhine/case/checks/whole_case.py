@@ -13,6 +13,7 @@ from gearwhine.case.bearings import Bearing, MatrixStiffness, RollingStiffness
 from gearwhine.case.checks.acoustics import check_acoustics
 from gearwhine.case.checks.housing import check_box, check_housing_form
 from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
+from gearwhine.case.checks.measured import check_measured
 from gearwhine.case.checks.plausible import case_warnings, library_findings
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft, case_document
@@ -220,6 +221,7 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_gears(draft)
     yield from check_running(draft)
     yield from check_acoustics(draft)
+    yield from check_measured(draft)
     yield from check_provenance(draft)
 
 

@@ -507,7 +507,7 @@ def draw_transient(
     marks = meshes if solved.turning is None else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
-        kind = "dominant" if comparison is None or comparison.shapes is None else "measured"
+        kind = "dominant" if comparison is None or comparison.pairing == "dominance" else "measured"
         legend = "housing modes" if comparison is None else f"{kind} housing modes"
         heading = f"{case.title}, {speed}"
         spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
