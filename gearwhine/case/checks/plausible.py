@@ -12,7 +12,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, StopStiffness
+from gearwhine.case.bearings import (
+    Bearing,
+    MatrixDamping,
+    RadialDamping,
+    RadialStiffness,
+    RollingStiffness,
+    StopStiffness,
+)
 from gearwhine.case.checks.keys_of_attributes import key_in_gear
 from gearwhine.case.errors import UNSAID, Finding, Location, key_of, label_of, look_up, show_value
 from gearwhine.case.gears import Gear, GearPair, shaft_of
@@ -382,7 +389,9 @@ def _of_stiffness(index: int, bearing: Bearing) -> Iterator[PlacedFinding]:
         coefficients = [getattr(stiffness, key)]
         values = [value for one in coefficients for value in (one if isinstance(one, tuple) else (one,))]
         location: Location = ("bearing", index, "stiffness", key)
-        damps = not isinstance(damping, RadialDamping) or getattr(damping, key) != 0.0
+        damps = isinstance(damping, MatrixDamping) or (
+            isinstance(damping, RadialDamping) and getattr(damping, key) != 0.0
+        )
         if not any(values) and not damps:
             expected = "a stiffness, or a damping beside it: this bearing does nothing in this direction"
             yield PlacedFinding(location, expected, True, True)
