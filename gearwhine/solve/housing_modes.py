@@ -430,6 +430,7 @@ def _solve_on_one_mesh(
         source_holds=cached is not None and cached.sensors == record.sensors,
         up=_upwards(case),
         warnings=warnings
+        + _health_warnings(checks)
         + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
@@ -575,6 +576,21 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
         if bearing.seat in centers
     }
     return places or {name: (name, 0.0) for name in centers}
+
+
+def _health_warnings(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Warn of every check of the housing's model that misses its bound."""
+    return [
+        warning(
+            "health",
+            f"{line['name']} is {line['value']:.3g}, beyond its bound of {line['bound']:.3g}: {line['why']}",
+            check=line["name"],
+            value=line["value"],
+            bound=line["bound"],
+        )
+        for line in checks["health"]["lines"]
+        if not line["ok"] and line["bound"] is not None
+    ]
 
 
 def housing_checks(described: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:

@@ -387,6 +387,15 @@ def set_down(surface: RadiatingSurface, floor: HardPlane, edge: float) -> Radiat
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
+_TRIANGLES_ALONG = 3.0
+"""Triangles along the shortest side of a housing that a wrap has at least, so that it has its shape."""
+
+
+def coarsest_edge(mesh: Mesh) -> float:
+    """Return the longest edge with which triangles wrap a housing [m]."""
+    return float(np.ptp(mesh.bounds, axis=0).min()) / _TRIANGLES_ALONG
+
+
 def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None = None) -> RadiatingSurface:
     """Wrap a housing in triangles, and set it down on a floor where its vertices are within 2 % of an edge of it.
 
@@ -394,7 +403,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     ----------
     mesh : Mesh
     edge : float
-        Edge of the triangles [m].
+        Edge of the triangles [m]; a longer one than `coarsest_edge` is taken as that.
     close_holes : float
         Diameter of the largest hole that is capped [m].
     floor : HardPlane, optional
@@ -404,6 +413,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     TriangleSizeError, HousingError
         As :func:`housing.acoustics.wrapping.wrap`.
     """
+    edge = min(edge, coarsest_edge(mesh))
     surface = wrap(mesh, edge, close_holes)
     return surface if floor is None else set_down(surface, floor, edge)
 
