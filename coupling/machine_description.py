@@ -784,11 +784,20 @@ class Machine:
             width = loaded.geometry.face_width
             missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
             gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
-        friction, faces = loaded.pair.friction, loaded.tilting_faces
         bodies = {body.gear: body for part in components for body in part.bodies}
         behind = _behind_rims(loaded.pair, loaded.geometry, bodies)
         contact = law_between_rims(loaded.contact, behind)
-        return GearMesh(*gears, loaded.geometry, contact, loaded.backlash, friction, behind_rims=behind, faces=faces)
+        driver, driven = gears
+        return GearMesh(
+            driver,
+            driven,
+            loaded.geometry,
+            contact,
+            loaded.backlash,
+            loaded.pair.friction,
+            behind_rims=behind,
+            faces=loaded.tilting_faces,
+        )
 
 
 def _behind_rims(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:
