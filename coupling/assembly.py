@@ -8,7 +8,7 @@ of action, dashpots of couplings (:mod:`coupling.machine.connectors`). The equat
 :mod:`coupling.statics`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -19,6 +19,7 @@ from coupling.errors import CouplingError
 from coupling.gears import ToothContact
 from coupling.gears.contact.sliding_friction import sliding_friction
 from coupling.gears.geometry.pair import mesh_frequency
+from coupling.gears.loaded.face_load import FaceTangent
 from coupling.machine.base_motion import base_loads, gravity_load
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import (
@@ -29,16 +30,16 @@ from coupling.machine.components import (
     pedestal_component,
 )
 from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
-from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates
+from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
-from coupling.machine.load_shuttling import shuttling_loads
 from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
+from coupling.machine.mesh_face import MeshFace, mesh_face
 from coupling.machine.mounted_parts import GearMesh, MountedBearing
 from coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
-from coupling.statics.mean_mesh import mean_meshes
+from coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
 from coupling.statics.static_equilibrium import with_loaded_flanks
 from rotors import Bearing
 
@@ -47,6 +48,9 @@ FloatArray = npt.NDArray[np.float64]
 # Clearance between tip and root, in normal modules. Teeth compressed by more would touch there, and no
 # steel bends so far.
 _GREATEST_COMPRESSION = 0.25
+
+_ROUNDS = 12  # largest number of rounds in which mean forces and faces of meshes that share a torque settle
+_SETTLED = 1e-6  # change of the mean forces in the last round, over the largest
 
 _PER_GAP = 16  # number of chords that replace a bearing's cubic between two speeds of its table
 
@@ -63,7 +67,7 @@ class CoupledMachine:
     meshes : tuple of GearMesh
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
-        couplings, slopes of torques; contacts in the order drive flanks of ``meshes``, back flanks.
+        couplings, slopes of torques, tilting of meshes; contacts in the order drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
@@ -89,6 +93,18 @@ class CoupledMachine:
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    @property
+    def train_inertia(self) -> float:
+        """Polar inertia of the leading rotor's train, reduced to that rotor: Σ J (Ω / Ω_lead)² [kg m²]."""
+        speeds, lead = self.speeds, self.leading_rotor
+        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in self.meshes]
+        train = next(train for train in trains([rotor.name for rotor in self.rotors], pairs) if lead in train)
+        return sum(
+            float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
+            for rotor in self.rotors
+            if rotor.name in train
+        )
 
     @property
     def loaded_contacts(self) -> tuple[int, ...]:
@@ -117,6 +133,12 @@ class CoupledMachine:
         backs = _back_contacts(self.meshes)
         return (number, False) if number < len(self.meshes) else (backs.index(number), True)
 
+    def face(self, number: int, contact: ToothContact) -> MeshFace:
+        """Face of the flanks of a contact of the system, by its number, with another tooth contact in its place."""
+        place, back = self.flanks(number)
+        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
+        return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
+
     def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
         """Moments of load shuttling of flanks with another tooth contact, as a constant load and harmonics.
 
@@ -128,11 +150,8 @@ class CoupledMachine:
         force : float
             Mean mesh force, above 0 [N].
         """
-        place, back = self.flanks(number)
-        mesh = self.meshes[place]
-        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
-        coordinates = MachineCoordinates(self.system.components, self.speeds)
-        return _shuttling(coordinates, mesh, sense, replace(self.system.contacts[number], contact=contact), force)
+        standing = self.system.contacts[number]
+        return self.face(number, contact).shuttling(force, standing.phase, standing.mesh_frequency)
 
     def at_speed(self, speed: float) -> "CoupledMachine":
         """Return the machine with its leading rotor at a signed speed [rad/s] and the others in proportion.
@@ -270,7 +289,7 @@ def assemble_machine(
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    system = with_balanced_friction(_with_shuttling(system, coordinates, flanks))
+    system = with_balanced_friction(_with_faces(system, coordinates, flanks))
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -397,34 +416,75 @@ def _coordinate_loads(
     return total
 
 
-def _with_shuttling(
+def _with_faces(
     system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
 ) -> CoupledSystem:
-    """Return the system with the moments of load shuttling; ``flanks`` are mesh and sense of each of its contacts."""
-    if all(contact.contact.faces is None for contact in system.contacts):
+    """Return the system with flanks that resist tilting and with load shuttling, see `coupling.machine.mesh_face`.
+
+    ``flanks`` are mesh and sense of each contact of the system. Mean forces, the flanks' tangents under them and the
+    mean motion depend on each other only where meshes share a torque.
+    """
+    every = {
+        number: _face(coordinates, mesh, sense, contact.contact)
+        for number, (contact, (mesh, sense)) in enumerate(zip(system.contacts, flanks, strict=True))
+        if contact.loaded
+    }
+    faces = {number: face for number, face in every.items() if face.yields}
+    if not faces:
         return system
-    constant, harmonics = system.load.copy(), list(system.harmonic_loads)
-    for contact, mean, (mesh, sense) in zip(system.contacts, mean_meshes(system), flanks, strict=True):
-        if mean is None or mean.force <= 0.0:
-            continue
-        shifted, moving = _shuttling(coordinates, mesh, sense, contact, mean.force)
-        constant += shifted
-        harmonics += moving
-    return replace(system, load=constant, harmonic_loads=tuple(harmonics))
+    means, motion = mean_equilibrium(system)
+    for _ in range(_ROUNDS):
+        states = {}
+        for number, face in faces.items():
+            mean = means[number] or MeanMesh(0.0, face.contact.unloaded_mean_mesh_stiffness, 0.0, 0.0)
+            tangent = face.tangent(mean.force, _standing_phase(system.contacts[number]))
+            states[number] = (face, tangent, mean, float(face.tilting[0] @ motion))
+        means, motion = mean_equilibrium(_on_faces(system, states, slope_is_found=False))
+        forces = {number: mean.force for number, (_, _, mean, _) in states.items()}
+        changes = [abs(mean.force - forces[n]) for n, mean in enumerate(means) if mean is not None and n in faces]
+        if max(changes, default=0.0) <= _SETTLED * max(forces.values()):
+            break
+    states = {
+        number: (face, tangent, mean, float(face.tilting[0] @ motion))
+        for number, (face, tangent, mean, _) in states.items()
+    }
+    harmonics = list(system.harmonic_loads)
+    for number, (face, _, mean, _) in states.items():
+        if mean.force > 0.0:
+            contact = system.contacts[number]
+            harmonics += face.shuttling(mean.force, contact.phase, contact.mesh_frequency)[1]
+    return replace(_on_faces(system, states, slope_is_found=True), harmonic_loads=tuple(harmonics))
 
 
-def _shuttling(
-    coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ContactConnector, force: float
-) -> tuple[FloatArray, list[HarmonicLoad]]:
-    """Moments of a contact's load about the middle of the face, see `shuttling_loads`."""
-    line = mesh.line_of_action(sense)
-    tilting = np.zeros(coordinates.size)
-    for mounted, at, flank in zip((mesh.driver, mesh.driven), mesh.stations, (line.driver, line.driven), strict=True):
-        rows = coordinates.rotor(mounted.rotor).motions(at)
-        tilting += coordinates.rows(mounted.rotor, flank.tilting(rows))
-    return shuttling_loads(
-        contact.contact, mesh.geometry, force, line.axial, tilting, contact.phase, contact.mesh_frequency
-    )
+_FaceState = tuple[MeshFace, FaceTangent, MeanMesh, float]
+"""Face of a contact, its tangent under the mean load, its mean mesh, and the mean slope over its face [rad]."""
+
+
+def _on_faces(system: CoupledSystem, states: Mapping[int, _FaceState], *, slope_is_found: bool) -> CoupledSystem:
+    """Return the system with contacts at the stiffness centres of their faces, and with flanks that resist tilting."""
+    contacts, linear, load = list(system.contacts), list(system.linear), system.load.copy()
+    for number, (face, tangent, mean, slope) in states.items():
+        contact = system.contacts[number]
+        contacts[number] = face.centred(contact, tangent, slope)
+        if mean.stiffness == 0.0:
+            continue  # the mean load opens these flanks
+        resisting = face.connector(
+            number, contact, tangent, mean.force, mean.stiffness, slope if slope_is_found else None
+        )
+        assert resisting.offset is not None
+        linear.append(resisting)
+        load -= resisting.directions @ resisting.offset
+    return replace(system, contacts=tuple(contacts), linear=tuple(linear), load=load)
+
+
+def _face(coordinates: MachineCoordinates, mesh: GearMesh, sense: int, contact: ToothContact) -> MeshFace:
+    """Face of the flanks that the driver closes by a rotation of a sense, with a contact law."""
+    return mesh_face(coordinates, mesh, sense, contact, _flank(coordinates, mesh, sense)[0])
+
+
+def _standing_phase(contact: ContactConnector) -> float | None:
+    """Mesh phase at which teeth stand; None where they turn."""
+    return contact.phase if contact.mesh_frequency == 0.0 else None
 
 
 def _require_thrust_carried(
@@ -471,7 +531,7 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
         return None
     return sliding_flanks(
         coordinates,
-        [(gear.rotor, at) for gear, at in zip((mesh.driver, mesh.driven), mesh.stations, strict=True)],
+        list(zip((mesh.driver, mesh.driven), mesh.stations, strict=True)),
         mesh.geometry,
         sliding_friction(mesh.geometry, contact, mesh.friction),
         mesh.line_of_action(sense),
@@ -493,7 +553,7 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
         motions = rotor.motions(at)
-        compression = flank.turning(rotor.rotation(at)) + flank.across(motions) + flank.axial(motions)
+        compression = flank.turning(rotor.rim_rotation(mounted.name, at)) + flank.across(motions) + flank.axial(motions)
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

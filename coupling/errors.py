@@ -1,7 +1,9 @@
 """Errors of the coupled machine and its analyses."""
 
+from numerics.findings import RefusedPartError
 
-class CouplingError(ValueError):
+
+class CouplingError(RefusedPartError):
     """The components, connectors or loads do not fit each other; the message says what was expected."""
 
 

@@ -7,7 +7,9 @@ The machine's analyses are its methods: :meth:`Machine.modes`, :meth:`Machine.ca
 :meth:`Machine.mesh_error_response`, :meth:`Machine.simulate` and :meth:`Machine.steady`.
 """
 
-from collections.abc import Callable, Sequence
+import math
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,16 +18,21 @@ import numpy.typing as npt
 
 from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import Gear, GearPairGeometry
+from coupling.gears import Gear, GearError, GearPairGeometry
+from coupling.gears.contact.contact_law import without_body_twist
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
-from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
+from coupling.gears.stiffness.models import twist_by_gear
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from coupling.machine.axial_location import AxialLocation, axial_support
 from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
+from coupling.machine.driving_frequencies import least_sampling_rate
+from coupling.machine.face_compliance import face_compliance
+from coupling.machine.gear_bodies import GearBody, gear_body, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -44,6 +51,7 @@ from coupling.machine.parts import (
     Shaft,
     ShaftGear,
     carrying_length,
+    gear_inertia_on_shaft,
     inertia_with_discs,
     require_names,
     require_seats,
@@ -51,18 +59,27 @@ from coupling.machine.parts import (
     rotor_with_gears,
 )
 from coupling.machine.shaft_dashpots import ShaftDashpots
+from coupling.machine.solids import force_findings, machine_findings, unbalance_findings
 from coupling.machine.thrust import ThrustPair, require_thrust_carried
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.shooting import periodic_response
 from coupling.statics.operating_point import OperatingPoint
 from coupling.statics.operating_point_search import solve_operating_point
-from coupling.statics.static_model import StaticGear, StaticPair, StaticShaftPart, static_bearing, static_pair
+from coupling.statics.static_model import (
+    StaticGear,
+    StaticPair,
+    StaticRim,
+    StaticShaftPart,
+    static_bearing,
+    static_pair,
+)
 from coupling.time.histories import histories, transient_outputs
 from coupling.time.settings import TransientSettings
 from coupling.time.transient import Motion, simulate
 from housing import HousingModes
 from housing.own_copies import keep_tuples
-from rotors import Coupling, Rotor, modal_rotor
+from numerics.findings import Finding, Instance, Number, attribute_findings, refuse
+from rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
@@ -131,12 +148,34 @@ class Machine:
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces")
+        refuse(_type_findings(self), CouplingError)
         require_names(self)
         require_stations(self)
         require_seats(self, self.housing_component)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         self._require_power_flow()
         self._require_thrust_carried()
+        refuse(self.findings, CouplingError)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is impossible or unlikely of the machine: places of its parts, meshes, loads and speeds."""
+        return tuple(self._findings())
+
+    def _findings(self) -> Iterator[Finding]:
+        meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
+        yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
+        for shaft in self.shafts:
+            tips = [mounted.gear.tip_radius for mounted in self._gears_on(shaft.name)]
+            yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
+        for place, force in enumerate(self.forces):
+            yield from force_findings(force, self.shaft(force.rotor).rotor, place)
+        for mounted in self.gears:
+            yield from mounted.gear.findings
+        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+            yield from pair.findings(geometry)
+            speed = self.speeds[self._gears_of(pair)[0].shaft]
+            yield from operation_findings(geometry, torque, speed)
 
     @cached_property
     def housing_component(self) -> HousingComponent | None:
@@ -208,10 +247,39 @@ class Machine:
             for shaft in self.shafts
         )
 
+    @cached_property
+    def gear_bodies(self) -> tuple[GearBody, ...]:
+        """Bodies of the gears whose rims turn against their hubs in motion, see :mod:`coupling.machine.gear_bodies`."""
+        twists: dict[str, list[tuple[float, float]]] = {}
+        for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
+            for name, gear, twist in zip(
+                (pair.driver, pair.driven),
+                (geometry.driver, geometry.driven),
+                twist_by_gear(pair.stiffness, geometry),
+                strict=True,
+            ):
+                twists.setdefault(name, []).append((gear.base_radius, twist))
+        bodies = []
+        for mounted in self.gears:
+            shaft = self.shaft(mounted.shaft)
+            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
+            if self._pair_count(mounted.name) > 1:
+                limit = np.inf
+            body = gear_body(
+                mounted.gear,
+                mounted.at,
+                gear_inertia_on_shaft(mounted, shaft.rotor),
+                stiffest(twists.get(mounted.name, [])),
+                limit,
+            )
+            bodies += [] if body is None else [body]
+        return tuple(bodies)
+
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft against each other."""
-        return tuple(text for location in self.axial_locations for text in location.warnings)
+        """Warnings of permitted but unlikely inputs: bearings that do not hold their shaft, and :attr:`findings`."""
+        of_location = (text for location in self.axial_locations for text in location.warnings)
+        return (*of_location, *map(str, self.findings))
 
     def shaft(self, name: str) -> Shaft:
         """Return the shaft of this name."""
@@ -222,9 +290,12 @@ class Machine:
         return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
     def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
-        """Contact law of every gear pair, and its static mesh under the mean torque."""
-        loaded = []
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+        """Contact law of every gear pair, and its static mesh under the mean torque.
+
+        Flanks whose misalignment is None take that of the operating point, see :attr:`assembled`.
+        """
+        loaded, pairs = [], self._aligned.gear_pairs
+        for pair, geometry, torque in zip(pairs, self.pair_geometries, self.pair_torques, strict=True):
             driver, driven = (
                 inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
                 for gear in self._gears_of(pair)
@@ -296,7 +367,7 @@ class Machine:
             self.housing_component,
             speeds=self.speeds,
             bearings=self.bearings,
-            meshes=[self._mesh(pair) for pair in pairs],
+            meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
@@ -323,6 +394,7 @@ class Machine:
             Where a rolling bearing is loaded beyond its theory.
         """
         pairs = []
+        rims = {body.gear: body for body in self.gear_bodies if self._pair_count(body.gear) > 1}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if not carrying:
@@ -331,7 +403,8 @@ class Machine:
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = turning_sense(self.speeds[driver.shaft])
             gears = self._static_gears((driver, driven), geometry)
-            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque))
+            twist = _twist_of_bodies(pair, geometry, rims)
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, twist))
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
@@ -341,9 +414,11 @@ class Machine:
                 self.constant_torques,
                 gravity,
                 self.forces,
+                [StaticRim(rim.gear, rim.stiffness) for rim in rims.values()] if pairs else (),
             )
         except EquilibriumNotFoundError as error:
-            raise EquilibriumNotFoundError("; ".join((str(error), *self.warnings))) from error
+            of_location = (text for location in self.axial_locations for text in location.warnings)
+            raise EquilibriumNotFoundError("; ".join((str(error), *of_location))) from error
 
     def preload_point(self) -> OperatingPoint:
         """Solve static equilibrium without torques, forces and weight, which gives the bearings' preloads.
@@ -359,8 +434,13 @@ class Machine:
     @property
     def needs_operating_point(self) -> bool:
         """Whether a bearing's stiffness or a pair's misalignment is still to follow from the loads."""
+        return self._needs_alignment or any(mounted.needs_load for mounted in self.bearings)
+
+    @property
+    def _needs_alignment(self) -> bool:
+        """Whether a torque on shafts in bearings loads flanks whose misalignment is None."""
         unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
-        return unaligned or any(mounted.needs_load for mounted in self.bearings)
+        return unaligned and bool(self.bearings) and any(torque.value != 0.0 for torque in self.constant_torques)
 
     def at_operating_point(
         self, point: OperatingPoint | None = None, *, gravity: Sequence[float] | None = None
@@ -384,6 +464,11 @@ class Machine:
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
+        about = self._with_flanks_of(point) if point.pairs else self
+        return replace(about, bearings=[bearing.linearised for bearing in point.bearings])
+
+    def _with_flanks_of(self, point: OperatingPoint) -> "Machine":
+        """Return the machine whose pairs have the gap over the face of an operating point, where they give none."""
         gaps = point.flank_gaps([pair.label for pair in self.gear_pairs if pair.misalignment is None])
         pairs = [
             replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
@@ -391,11 +476,27 @@ class Machine:
             else pair
             for pair in self.gear_pairs
         ]
-        return replace(self, bearings=[bearing.linearised for bearing in point.bearings], gear_pairs=pairs)
+        return replace(self, gear_pairs=pairs)
 
     @cached_property
     def _linearised(self) -> "Machine":
-        return self.at_operating_point() if self.needs_operating_point else self
+        if any(mounted.needs_load for mounted in self.bearings):
+            return self.at_operating_point()
+        return self._aligned
+
+    @cached_property
+    def _aligned(self) -> "Machine":
+        """The machine with the misalignment of its operating point; as it is where none is found, with a warning."""
+        if not self._needs_alignment:
+            return self
+        try:
+            return self._with_flanks_of(self.operating_point())
+        except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError) as error:
+            if any(mounted.needs_load for mounted in self.bearings):
+                raise
+            message = f"flanks are taken as aligned, as the machine has no operating point: {error}"
+            warnings.warn(message, stacklevel=2)
+            return self
 
     @cached_property
     def assembled(self) -> CoupledMachine:
@@ -440,6 +541,10 @@ class Machine:
         ModesError
             Where a mode fails its proof.
         """
+        for shaft in self.shafts:
+            ratio = abs(self.speeds[shaft.name] / self.speed) if self.speed != 0.0 else 0.0
+            for speed in np.ravel(speeds):
+                shaft.rotor.require_speed("speed", ratio * float(speed))
         return system_campbell(self.assembled, speeds, frequency_limit=frequency_limit, progress=progress)
 
     def mesh_error_response(self, frequencies: FloatArray, *, mesh: int = 0) -> FrequencyResponse:
@@ -494,7 +599,8 @@ class Machine:
         discard : int
             Number of revolutions before the record begins.
         points_per_revolution : int
-            Number of samples of the record in a revolution; the largest step is their interval.
+            Least number of samples of the record in a revolution, doubled until no excitation folds down to a lower
+            frequency; the largest step is the interval of so many.
         tolerance : float
             Tolerance of the local error of a step, see :class:`coupling.TransientSettings`.
         driving : Driving
@@ -511,10 +617,13 @@ class Machine:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
         coupled = self.assembled if driving is CONSTANT else self._linearised.assemble(driving=driving)
+        duration, record_from = revolutions * period, discard * period
+        least = least_sampling_rate(coupled.system, record_from, duration)[0] * period
+        samples = points_per_revolution * 2 ** max(math.ceil(math.log2(max(least / points_per_revolution, 1.0))), 0)
         settings = TransientSettings(
-            duration=revolutions * period,
-            record_from=discard * period,
-            sample_interval=period / points_per_revolution,
+            duration=duration,
+            record_from=record_from,
+            sample_interval=period / samples,
             largest_step=period / points_per_revolution,
             tolerance=tolerance,
         )
@@ -606,7 +715,15 @@ class Machine:
             moments_at=moments_at,
             thrusts_at=thrusts_at,
         )
-        return rotor_component(shaft.name, modal, start=shaft.start, damping_ratio=shaft.damping_ratio, axis=shaft.axis)
+        names = [gear.name for gear in gears]
+        return rotor_component(
+            shaft.name,
+            modal,
+            start=shaft.start,
+            damping_ratio=shaft.damping_ratio,
+            axis=shaft.axis,
+            bodies=[body for body in self.gear_bodies if body.gear in names],
+        )
 
     def _static_gears(
         self, gears: tuple[ShaftGear, ShaftGear], geometry: GearPairGeometry
@@ -647,17 +764,36 @@ class Machine:
             if gear.shaft == shaft
         ]
 
+    def _pair_count(self, gear: str) -> int:
+        """Count the pairs that a gear takes part in."""
+        return sum(gear in (pair.driver, pair.driven) for pair in self.gear_pairs)
+
     def _gears_of(self, pair: GearPair) -> tuple[ShaftGear, ShaftGear]:
         """Driver and driven gear of a pair."""
         gears = {gear.name: gear for gear in self.gears}
         return gears[pair.driver], gears[pair.driven]
 
-    def _mesh(self, loaded: LoadedGearPair) -> GearMesh:
-        driver, driven = (
-            MountedGear(gear.name, gear.shaft, gear.at, self.shaft(gear.shaft).axis)
-            for gear in self._gears_of(loaded.pair)
-        )
-        return GearMesh(driver, driven, loaded.geometry, loaded.contact, loaded.backlash, loaded.pair.friction)
+    def _mesh(self, loaded: LoadedGearPair, components: Sequence[RotorComponent]) -> GearMesh:
+        """Place a pair on its shafts; what the rims of the components turn is no part of its contact law."""
+        gears = []
+        for gear, middle in zip(self._gears_of(loaded.pair), loaded.geometry.common_middles, strict=True):
+            shaft = self.shaft(gear.shaft)
+            carried = carrying_length(gear, shaft.rotor)
+            modal = next(part.modal for part in components if part.name == shaft.name)
+            width = loaded.geometry.face_width
+            missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+        friction, faces = loaded.pair.friction, loaded.tilting_faces
+        bodies = {body.gear: body for part in components for body in part.bodies}
+        twist = _twist_of_bodies(loaded.pair, loaded.geometry, bodies)
+        contact = without_body_twist(loaded.contact, twist)
+        return GearMesh(*gears, loaded.geometry, contact, loaded.backlash, friction, body_twist=twist, faces=faces)
+
+
+def _twist_of_bodies(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:
+    """Twist of those bodies of a pair whose rims are coordinates, along the line of action [m/N]."""
+    gears = zip((pair.driver, pair.driven), (geometry.driver, geometry.driven), strict=True)
+    return sum(gear.base_radius**2 / bodies[name].stiffness for name, gear in gears if name in bodies)
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
@@ -670,3 +806,24 @@ def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:
             dashpots.append(ShaftDashpots(label, rotor.name, left, left + part.length, *values))
         left += part.length
     return dashpots
+
+
+def _type_findings(machine: Machine) -> Iterator[Finding]:
+    """Yield parts of a wrong kind, and numbers that are none."""
+    part = ("machine", "")
+    number = Number()
+    yield from attribute_findings(part, machine, speed=number, torque=number, torque_at=number)
+    kinds: dict[str, type] = {
+        "shafts": Shaft,
+        "bearings": MountedBearing,
+        "gears": ShaftGear,
+        "gear_pairs": GearPair,
+        "outputs": Output,
+        "forces": ShaftForce,
+    }
+    for attribute, kind in kinds.items():
+        for place, entry in enumerate(getattr(machine, attribute)):
+            if not isinstance(entry, kind):
+                yield Finding(part, f"{attribute}.{place}", entry, f"a {kind.__name__}")
+    housing = Instance((HousingModes, HousingComponent), "modes of a housing, or None", optional=True)
+    yield from attribute_findings(part, machine, housing=housing)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -94,15 +95,17 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
 
 @dataclass
 class _KeptHousing:
-    """The solved housing that studies share; None until one of them needs it."""
+    """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
 
     solved: SolvedHousing | None = None
+    lock: threading.RLock = field(default_factory=threading.RLock)
 
 
 class Study:
     """A checked case and its analyses.
 
-    The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study.
+    The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study. Threads
+    may share a study: who needs the housing while another thread solves it waits.
 
     Attributes
     ----------
@@ -163,13 +166,14 @@ class Study:
 
     def _solved_housing(self, *, with_sound: bool) -> SolvedHousing | None:
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        if self._kept.solved is None and self.case.housing is not None:
-            from gearwhine.solve.housing_modes import solve_housing
-            from gearwhine.solve.sound import check_before_modes
+        with self._kept.lock:
+            if self._kept.solved is None and self.case.housing is not None:
+                from gearwhine.solve.housing_modes import solve_housing
+                from gearwhine.solve.sound import check_before_modes
 
-            before = check_before_modes(self.case) if with_sound else None
-            self._kept.solved = solve_housing(self.case, self.progress, before=before)
-        return self._kept.solved
+                before = check_before_modes(self.case) if with_sound else None
+                self._kept.solved = solve_housing(self.case, self.progress, before=before)
+            return self._kept.solved
 
     @property
     def machine(self) -> Machine:
@@ -263,7 +267,7 @@ class Study:
         from gearwhine.analyses import machine
         from gearwhine.solve.gear_pairs import aims_at_sensor
 
-        housing = self.housing if aims_at_sensor(self.case) else None
+        housing = self.housing if aims_at_sensor(self.case) else self._kept.solved
         return machine.gears(self.case, housing=housing, progress=self.progress)
 
     def operating_point(

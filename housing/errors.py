@@ -1,7 +1,9 @@
 """Errors of the housing's model, its modes and its measured data."""
 
+from numerics.findings import RefusedPartError
 
-class HousingError(ValueError):
+
+class HousingError(RefusedPartError):
     """The housing's description does not fit its mesh; the message says what was expected."""
 
 

@@ -5,7 +5,7 @@ left out on the way to the eigensolver.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +15,14 @@ from scipy import sparse
 from housing.errors import HousingError
 from housing.fem.assembly import assemble
 from housing.fem.matrices import Matrices
-from housing.material import Material, enclosed_volume, mass_properties
+from housing.material import Material, element_constants, enclosed_volume, mass_properties
 from housing.model.bolted_joints import bolted_joint
 from housing.model.bushings import Bushing, Joint, Mount
 from housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
 from housing.model.patches import Patch, rigid_motions
 from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
 from housing.model.supports import Support
+from housing.modes.discretisation_error import discretisation_errors, fixture_nodes
 from housing.modes.effective_mass import damping_ratios, modal_damping
 from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from housing.modes.health import HealthReport, health_report
@@ -262,6 +263,7 @@ class Housing:
         free = self.free_matrices()
         whole = self.matrices(free)
         modes = certified_modes(whole, loaded, below_hz=below_hz, count=count, solver=solver, progress=progress)
+        modes = self.with_discretisation_errors(free, whole, modes)
         health = self.health(free, whole, modes)
         health.require()
         return HousingModes(
@@ -301,6 +303,25 @@ class Housing:
         """
         moved = whole.mass @ rigid_motions(self.mesh.points, np.zeros(3)).reshape(-1, 6)
         return modes.project_all(sparse.csr_array(moved.T))
+
+    def with_discretisation_errors(self, free: Matrices, whole: Matrices, modes: ModeSet) -> ModeSet:
+        """Return the modes with an estimate of each frequency's error by the mesh.
+
+        Parameters
+        ----------
+        free, whole : Matrices
+            Results of :meth:`free_matrices` and :meth:`matrices`.
+        modes : ModeSet
+            Modes of ``whole``.
+        """
+        errors = discretisation_errors(
+            self.mesh,
+            element_constants(self.mesh, self.material, self.materials),
+            modes.frequencies,
+            modes.shapes,
+            loaded=fixture_nodes(free, whole),
+        )
+        return replace(modes, discretisation_errors=errors)
 
     def health(self, free: Matrices, whole: Matrices, modes: ModeSet) -> HealthReport:
         """Check a solved housing from its geometry to its modes.

@@ -13,6 +13,8 @@ import numpy.typing as npt
 from housing.errors import HousingError
 from meshes import Mesh
 from meshes.shape_functions import element_moments, quadrature, shape_functions
+from numerics.findings import Finding, refuse
+from numerics.materials import material_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,11 +38,14 @@ class Material:
     density: float
 
     def __post_init__(self) -> None:
-        """Check Young's modulus, density and Poisson's ratio."""
-        if not (self.youngs_modulus > 0.0 and self.density > 0.0):
-            raise HousingError(f"E = {self.youngs_modulus} Pa and ρ = {self.density} kg/m³ must be positive")
-        if not 0.0 <= self.poisson_ratio < 0.5:
-            raise HousingError(f"Poisson's ratio {self.poisson_ratio} must be at least 0 and below 0.5")
+        """Refuse what no solid is."""
+        refuse(self.findings, HousingError)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is impossible or unlikely of the material."""
+        numbers = self.youngs_modulus, self.poisson_ratio, self.density
+        return tuple(material_findings(("material", ""), *numbers))
 
     @property
     def shear_modulus(self) -> float:

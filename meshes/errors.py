@@ -1,7 +1,9 @@
 """Errors of geometries and meshes."""
 
+from numerics.findings import RefusedPartError
 
-class GeometryError(ValueError):
+
+class GeometryError(RefusedPartError):
     """The geometry or the mesh file cannot be meshed or used as it stands; the message says what to change."""
 
 

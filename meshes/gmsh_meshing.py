@@ -1,6 +1,7 @@
 """Tetrahedral meshing of a gmsh model of solids: element size, order, middle nodes, node numbering.
 
-The gmsh session imports gmsh when it is needed, silent and deterministic, and finalises it after errors too.
+The gmsh session imports gmsh when it is needed, silent and deterministic, and finalises it after errors too. gmsh has
+one state for the whole process: sessions of several threads follow each other.
 """
 
 import signal
@@ -54,13 +55,32 @@ def load_gmsh() -> Any:
     return gmsh
 
 
+_SESSION = threading.RLock()  # gmsh's state belongs to the process, and a session to the thread that holds this
+
+
 @contextmanager
 def gmsh_session(name: str) -> Iterator[Any]:
     """Open a gmsh model that is finalised at the end; gmsh's own failures become :class:`GeometryError`.
 
-    The session runs on one thread so that the same geometry gives the same mesh, bit for bit.
+    The session runs on one thread so that the same geometry gives the same mesh, bit for bit. It waits for the session
+    of another thread to end.
+
+    Raises
+    ------
+    MesherUnavailableError
+        Where gmsh cannot be loaded, or other code of this process has it initialised: its models would be lost.
     """
+    with _SESSION:
+        yield from _session(name)
+
+
+def _session(name: str) -> Iterator[Any]:
     gmsh = load_gmsh()
+    if gmsh.isInitialized():
+        raise MesherUnavailableError(
+            "gmsh is initialised already by other code of this process, whose models the mesher would discard: "
+            "call gmsh.finalize() first"
+        )
     # interruptible=False leaves the signal handlers alone, so it works off the main thread and Ctrl-C stays ours.
     with _signals_kept():
         gmsh.initialize(readConfigFiles=False, interruptible=False)
@@ -103,6 +123,7 @@ _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
 _WORST_JACOBIAN = 0.05  # least Jacobian of an element over its mean, below which it counts as folded
 _HALVINGS = 3
+_COARSE = 1.5  # size of the elements of a first mesh over the thickness of the walls
 _REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
 
 MOST_ELEMENTS = 3e6
@@ -111,7 +132,7 @@ MOST_ELEMENTS = 3e6
 _STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
-def check_mesh_request(mesh_size: float, order: int) -> None:
+def check_mesh_request(mesh_size: float | None, order: int) -> None:
     """Check element size and order.
 
     Raises
@@ -119,7 +140,7 @@ def check_mesh_request(mesh_size: float, order: int) -> None:
     GeometryError
         For a size that is not positive, or an order other than 1 and 2.
     """
-    if not mesh_size > 0.0 or order not in (1, 2):
+    if (mesh_size is not None and not mesh_size > 0.0) or order not in (1, 2):
         raise GeometryError(f"mesh size {mesh_size} m must be positive and order {order} be 1 or 2")
 
 
@@ -160,6 +181,17 @@ def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
             f"elements of {length_text(mesh_size)} would be about {number:.1g} in number, more than any solver takes "
             f"({MOST_ELEMENTS:.0g}); expected at least {length_text(least)}"
         )
+
+
+def coarse_size(volume: float, area: float, extent: float) -> float:
+    """Size of elements for a first mesh of walls, by their mean thickness, twice the volume over the surface [m].
+
+    Parameters
+    ----------
+    volume, area, extent : float
+        Volume and surface of the solid, and its longest side [m³, m², m].
+    """
+    return min(_COARSE * 2.0 * volume / area, extent / 3.0)
 
 
 def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:

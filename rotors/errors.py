@@ -3,8 +3,10 @@
 import math
 import numbers
 
+from numerics.findings import RefusedPartError
 
-class RotorError(ValueError):
+
+class RotorError(RefusedPartError):
     """An invalid shaft, disc, bearing or request: the message names it, its value and the expected value."""
 
 

@@ -2,8 +2,10 @@
 
 import math
 
+from numerics.findings import RefusedPartError
 
-class GearError(ValueError):
+
+class GearError(RefusedPartError):
     """An input that no gear, gear pair or contact law can be built from."""
 
 

@@ -287,13 +287,16 @@ def system_campbell(
     """
     leading_speeds = np.asarray(speeds, dtype=np.float64)
     one_sense = (
-        leading_speeds.ndim == 1 and leading_speeds.size >= 2 and bool(np.all(np.diff(np.abs(leading_speeds)) > 0.0))
+        leading_speeds.ndim == 1
+        and leading_speeds.size >= 2
+        and bool(np.all(np.isfinite(leading_speeds)))
+        and bool(np.all(np.diff(np.abs(leading_speeds)) > 0.0))
     )
-    if not (one_sense and np.all(leading_speeds * leading_speeds[-1] >= 0.0)):
+    if not (one_sense and np.all(np.sign(leading_speeds) * np.sign(leading_speeds[-1]) >= 0.0)):
         raise CouplingError(
-            f"speeds {leading_speeds.tolist()} rad/s; expected two or more of one sense, ascending in size"
+            f"speeds {leading_speeds.tolist()} rad/s; expected two or more finite ones of one sense, ascending in size"
         )
-    if not frequency_limit > 0.0:
+    if not 0.0 < frequency_limit < np.inf:
         raise CouplingError(f"a frequency limit of {frequency_limit:g} rad/s; expected it above 0")
     chosen = excitation_lines(machine) if lines is None else tuple(lines)
     stand_in = np.where(leading_speeds == 0.0, _AT_REST * leading_speeds[-1], leading_speeds)

@@ -44,7 +44,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
-_SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
+SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
 
 
 def receptance(
@@ -137,7 +137,7 @@ def superposed(
     ModesError
         Where the eigenpairs fail their sum rule: at a nearly defective eigenvalue.
     """
-    if not pairs.sum_rule <= _SUM_RULE:
+    if not pairs.sum_rule <= SUM_RULE:
         raise ModesError(
             f"the coupled modes miss their sum rule by {pairs.sum_rule:.1e}: two of them are all but one, as at "
             "critical damping, and cannot be superposed; solve the system directly instead"
@@ -478,20 +478,20 @@ def _superposable(system: CoupledSystem) -> Eigenpairs | None:
         pairs = quadratic_eigenpairs(*linear_matrices(system, mean_contact(system)))
     except ModesError:
         return None
-    return pairs if pairs.sum_rule <= _SUM_RULE else None
+    return pairs if pairs.sum_rule <= SUM_RULE else None
 
 
 def _sensor_responses(
     machine: CoupledMachine, pairs: Eigenpairs | None, frequencies: FloatArray
 ) -> dict[str, ComplexArray]:
     """Motion along each sensor by each excitation, shape (f, e): by superposition where there are eigenpairs."""
-    excitations = _excitations(machine)
-    loads = np.broadcast_to(excitations, (len(frequencies), *excitations.shape))
+    loads_of_lines = excitations(machine)
+    loads = np.broadcast_to(loads_of_lines, (len(frequencies), *loads_of_lines.shape))
     moved = response(machine.system, loads, frequencies, pairs=pairs)
     return {name: moved @ row for name, row in machine.sensor_rows.items()}
 
 
-def _excitations(machine: CoupledMachine) -> FloatArray:
+def excitations(machine: CoupledMachine) -> FloatArray:
     """Return unit loads, shape (e, n): along each line of action; without gears, at each bearing."""
     loaded = [contact.direction for contact in machine.system.contacts if contact.loaded]
     if loaded:

@@ -50,6 +50,7 @@ from coupling.linear.housing_rates import HousingRates
 from coupling.linear.line_outputs import LineOutput, SensorAmplitude
 from coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response
 from coupling.machine.connectors import LinearConnector
+from coupling.machine.mesh_face import MeshFace
 from coupling.statics.operating_point import BearingLoad, OperatingPoint
 from coupling.statics.sensitivity import deflection_slope, rigid_slope
 from rotors.rolling_bearings import rolling_state
@@ -88,8 +89,8 @@ class _GapRates:
 
     Attributes
     ----------
-    stiffness : ndarray, shape (j,)
-        Derivative of k [N/m per m].
+    stiffness : ndarray, shape (j, 3, 3)
+        Derivative of the mesh's stiffness over mean approach, slope and tilt; of the first, k, [N/m per m].
     error : ndarray of complex, shape (j, harmonics)
         Derivative of e [m per m].
     shuttling : ndarray of complex, shape (j, harmonics, n)
@@ -291,7 +292,7 @@ class LineModel(MeshHarmonicModel):
         rate, force = abs(system.contacts[number].mesh_frequency), float(self.contact.force[number])
         compression = force / float(self.contact.stiffness[number])
         over = lagrange(face_stations(faces.face_width), faces.z)
-        stiffness = np.zeros(FACE_STATIONS)
+        stiffness = np.zeros((FACE_STATIONS, 3, 3))
         error = np.zeros((FACE_STATIONS, HARMONICS), dtype=np.complex128)
         shuttling = np.zeros((FACE_STATIONS, HARMONICS, system.size), dtype=np.complex128)
 
@@ -302,8 +303,9 @@ class LineModel(MeshHarmonicModel):
         for station in range(FACE_STATIONS):
             for way in (1.0, -1.0):
                 step = way * _STIFFNESS_STEP * compression
-                far = self._mesh(number, moved(station, step), _STIFFNESS_POINTS)
-                stiffness[station] += far.mean_mesh_stiffness / (2.0 * step)
+                far = moved(station, step)
+                mean = self._mesh(number, far, _STIFFNESS_POINTS).mean_mesh_stiffness
+                stiffness[station] += self.machine.face(number, far).law(force, mean, _STIFFNESS_POINTS) / (2.0 * step)
                 step = way * _GAP_STEP * compression
                 near = moved(station, step)
                 error[station] += self._error(number, self._mesh(number, near)) / (2.0 * step)
@@ -316,19 +318,31 @@ class LineModel(MeshHarmonicModel):
     def _by_gap(self, line: Line, number: int) -> FloatArray:
         """Differentiate the output by a contact's gap at the stations of the face, shape (j,)."""
         rates, mesh = self._gap_rates[number], self.machine.flanks(number)[0]
-        contact, stiffness = self.machine.system.contacts[number], float(self.contact.stiffness[number])
-        along, deflection = line.adjoint @ contact.direction, line.motion @ contact.direction
-        damping = np.zeros(FACE_STATIONS)
-        if self.pairs[mesh].pair.damping is None:
-            # c = 2 ζ sqrt(k m)
-            damping = 0.5 * float(self.contact.damping[number]) / stiffness * rates.stiffness
-        total = -(rates.stiffness + 1j * line.frequency * damping) * along * deflection
+        stiffness, w = float(self.contact.stiffness[number]), line.frequency
+        face, law = self._faces[number]
+        along, deflection = face.rows @ line.adjoint, face.rows @ line.motion
+        # The damping is c/k times the law: c = 2 ζ sqrt(k m), or given.
+        lost = 1j * w * float(self.contact.damping[number]) / stiffness
+        falls = 0.5 if self.pairs[mesh].pair.damping is None else 1.0
+        change = (1.0 + lost) * rates.stiffness - falls * lost / stiffness * rates.stiffness[:, :1, :1] * law
+        total = -(change @ deflection) @ along
         for cause, harmonic in line.causes:
             if cause == number:
-                driven = stiffness * rates.error[:, harmonic - 1]
-                driven += rates.stiffness * self._errors[number][harmonic - 1]
-                total = total + along * driven + rates.shuttling[:, harmonic - 1] @ line.adjoint
+                driven = np.outer(rates.error[:, harmonic - 1], law[0])
+                driven = driven + rates.stiffness[:, 0] * self._errors[number][harmonic - 1]
+                total = total + driven @ along + rates.shuttling[:, harmonic - 1] @ line.adjoint
         return np.asarray(total.real)
+
+    @cached_property
+    def _faces(self) -> dict[int, tuple[MeshFace, FloatArray]]:
+        """Face of every contact with `_gap_rates`, and its linear law, shape (3, 3)."""
+        assert self.contact.force is not None
+        faces = {}
+        for number in self._gap_rates:
+            face = self.machine.face(number, self.machine.system.contacts[number].contact)
+            law = face.law(float(self.contact.force[number]), float(self.contact.stiffness[number]))
+            faces[number] = (face, law)
+        return faces
 
     def _by_bearing_deflection(self, line: Line, bearing: str) -> FloatArray:
         """Differentiate the output by a bearing's static deflection, through its tangent, shape (5,)."""

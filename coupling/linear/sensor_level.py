@@ -4,11 +4,12 @@ About the mean load the motion at the n-th harmonic of a mesh is that of :mod:`c
 
     Z q = f_n,      f_n = k e_n d + m_n,
 
-e_n the transmission error and m_n the moments of load shuttling of its flanks. Other flanks have other e_n, m_n and k,
-and with k another Z: of one contact, the update of rank one Z + κ d dᵀ, κ = Δk + iω Δc, whose inverse is that of
-Sherman and Morrison,
+e_n the transmission error and m_n the moments of load shuttling of its flanks. Other flanks have other e_n, m_n and
+another law L over the mean approach of the face, its slope and the tilt, the rows Y of shape (3, n)
+(:mod:`coupling.machine.mesh_face`), and with L another Z: of one contact, the update of rank three Z + Yᵀ ΔL Y, whose
+inverse is that of Woodbury,
 
-    sᵀ q = p·f - κ (p·d) (u·f) / (1 + κ u·d),      Zᵀ p = s,      Zᵀ u = d,
+    sᵀ q = p·f - (p Yᵀ) ΔL (I + U Yᵀ ΔL)⁻¹ U f,      Zᵀ p = s,      Zᵀ Uᵀ = Yᵀ,
 
 s the sensor. So Z is factored once for each harmonic, and a candidate takes no solution of the machine. With a damping
 ratio c follows √k. The operating point stays: mean force, tangents of bearings and the gap over the face.
@@ -25,8 +26,10 @@ from scipy import linalg
 
 from coupling.errors import CouplingError
 from coupling.gears import LoadedMesh, ToothContact
+from coupling.gears.contact.contact_law import without_body_twist
 from coupling.linear.mesh_harmonics import MeshHarmonicModel
 
+FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
@@ -85,21 +88,38 @@ class SensorLevel:
             :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
-        stiffness, direction = mesh.mean_mesh_stiffness, model.machine.system.contacts[number].direction
+        # The machine has the twist of the gears' bodies beside its contacts.
+        twist = model.machine.meshes[self.mesh].body_twist
+        stiffness, contact = mesh.mean_stiffness_without(twist), without_body_twist(contact, twist)
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
         shuttling = model.shuttling_loads(number, contact, force)
         before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])
-        damping_change = damping * (math.sqrt(stiffness / before) - 1.0) if self.damping_follows else 0.0
+        after = damping * math.sqrt(stiffness / before) if self.damping_follows else damping
+        law, law_before = model.machine.face(number, contact).law(force, stiffness), self._law
         accelerations = {}
-        for n, (w, by_sensor, by_contact) in self._adjoints.items():
-            load = stiffness * error[n - 1] * direction
+        for n, (w, by_sensor, by_rows) in self._adjoints.items():
+            load = error[n - 1] * law[0] @ self._rows
             if n in shuttling:
                 load = load + shuttling[n]
-            change = stiffness - before + 1j * w * damping_change
-            moved = by_sensor @ load
-            moved -= change * (by_sensor @ direction) * (by_contact @ load) / (1.0 + change * (by_contact @ direction))
+            change = (1.0 + 1j * w * after / stiffness) * law - (1.0 + 1j * w * damping / before) * law_before
+            resisted = np.linalg.solve(np.eye(3) + (by_rows @ self._rows.T) @ change, by_rows @ load)
+            moved = by_sensor @ load - (by_sensor @ self._rows.T) @ change @ resisted
             accelerations[n] = complex(-(w**2) * moved)
         return accelerations
+
+    @cached_property
+    def _rows(self) -> FloatArray:
+        """Mean approach over the face of the mesh, its slope and the tilt by the coordinates, shape (3, n)."""
+        number = self._loaded[0]
+        return self.model.machine.face(number, self.model.machine.system.contacts[number].contact).rows
+
+    @cached_property
+    def _law(self) -> FloatArray:
+        """Linear law of the mesh in the model over `_rows`, (3, 3)."""
+        number, contact = self._loaded[0], self.model.contact
+        assert contact.force is not None
+        face = self.model.machine.face(number, self.model.machine.system.contacts[number].contact)
+        return face.law(float(contact.force[number]), float(contact.stiffness[number]))
 
     @cached_property
     def _loaded(self) -> tuple[int, ...]:
@@ -108,12 +128,12 @@ class SensorLevel:
 
     @cached_property
     def _adjoints(self) -> dict[int, tuple[float, ComplexArray, ComplexArray]]:
-        """Frequency ω [rad/s] and solutions p and u of shape (n,), by harmonic."""
+        """Frequency ω [rad/s] and solutions p, shape (n,), and U, shape (3, n), by harmonic."""
         machine, contact = self.model.machine, self.model.machine.system.contacts[self._loaded[0]]
-        loads = np.stack([machine.sensor_rows[self.sensor], contact.direction], axis=1)
+        loads = np.vstack([machine.sensor_rows[self.sensor], self._rows]).T
         adjoints = {}
         for n in self.weights:
             w = 2.0 * np.pi * n * abs(contact.mesh_frequency)
-            by_sensor, by_contact = linalg.solve(self.model.dynamic_stiffness(w).T, loads).T
-            adjoints[n] = (w, by_sensor, by_contact)
+            by_sensor, *by_rows = linalg.solve(self.model.dynamic_stiffness(w).T, loads).T
+            adjoints[n] = (w, by_sensor, np.array(by_rows))
         return adjoints

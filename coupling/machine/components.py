@@ -10,14 +10,16 @@ the mass being the identity. A *direction* is a row vector d such that d q is a 
 its ports; by virtual work a force F along it adds F d to f.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy import linalg
 
 from coupling.errors import CouplingError
+from coupling.machine.gear_bodies import GearBody
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
 from rotors.modes.lateral import LateralModes
@@ -99,6 +101,8 @@ class HousingComponent(Component):
 class RotorComponent(Component):
     """A rotor: lateral modes in the x and in the y plane, torsional modes, motion along its axis, in this order.
 
+    The torsional modes are those of the shaft with the twist of its gears' bodies, see :func:`rotor_component`.
+
     Attributes
     ----------
     modal : ModalRotor
@@ -107,14 +111,21 @@ class RotorComponent(Component):
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m, m)
         The plane's coordinates in terms of the planar modes, orthogonal: shift, tilt and bending of the free shaft.
+    torsion_basis : ndarray, shape (t + g, t + g)
+        The t torsional coordinates of ``modal`` and the rotations of the rims against their hubs, in terms of the
+        component's torsional coordinates.
     axis : tuple of float
         x and y of the shaft's line [m].
+    bodies : tuple of GearBody
+        The g gears whose rims turn against their hubs.
     """
 
     modal: ModalRotor
     start: float
     plane_basis: FloatArray
+    torsion_basis: FloatArray
     axis: tuple[float, float] = (0.0, 0.0)
+    bodies: tuple[GearBody, ...] = ()
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -132,16 +143,34 @@ class RotorComponent(Component):
     def _section(self, at: float) -> FloatArray:
         """Motions of a section and its rotation about z, shape (6, n)."""
         if at not in self._sections:
-            rows, m = self.modal.motions(at), self.modal.lateral.count
+            motions, m, t = self.modal.motions(at), self.modal.lateral.count, self.modal.torsional.count
+            rows = np.zeros((6, self.size))
             for plane in (slice(0, m), slice(m, 2 * m)):
-                rows[:, plane] = rows[:, plane] @ self.plane_basis
-            self._sections[at] = np.vstack([rows, self.modal.rotation(at)])
+                rows[:5, plane] = motions[:, plane] @ self.plane_basis
+            rows[:5, self._torsion.stop :] = motions[:, 2 * m + t :]
+            rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
+            self._sections[at] = rows
             self._sections[at].setflags(write=False)
         return self._sections[at]
+
+    @property
+    def _torsion(self) -> slice:
+        """The torsional coordinates."""
+        first = 2 * self.modal.lateral.count
+        return slice(first, first + len(self.torsion_basis))
 
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,), not to be written to."""
         return np.asarray(self._section(at)[5])
+
+    def rim_rotation(self, gear: str, at: float) -> FloatArray:
+        """Rotation about z of the teeth of a gear over a section at a distance from the left end [m], shape (n,)."""
+        rotation = self.rotation(at)
+        for number, body in enumerate(self.bodies):
+            if body.gear == gear:
+                rotation = rotation.copy()
+                rotation[self._torsion] += self.torsion_basis[self.modal.torsional.count + number]
+        return rotation
 
     @cached_property
     def turning(self) -> FloatArray:
@@ -285,6 +314,7 @@ def rotor_component(
     start: float,
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
+    bodies: Sequence[GearBody] = (),
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -295,6 +325,15 @@ def rotor_component(
     not on a motion of the shaft as a whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y
     rows, G_ij = ∫ φ'_i dI_p φ'_j, so that C + ΩG gives the terms G_v of Eqs. 1 and 2.
 
+    The rims of gears turn against their hubs by φ, as coordinates beside those of the shaft's torsional modes q. With
+    the modes' rotations τ at the hubs, their frequencies ω and the bodies' k, S and J_r
+    (:mod:`coupling.gears.stiffness.body_twist`), whose inertia J the modes of the shaft contain,
+
+        [I, τᵀ S; S τ, J_r] [q''; φ''] + [diag(ω²), 0; 0, k] [q; φ] = f.
+
+    The component's torsional coordinates are the natural modes of this, the rigid rotation of all first. The shaft's
+    damping ratio is theirs.
+
     An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
     shaft's tilt has negative stiffness: what holds the shaft is its bearings.
 
@@ -302,34 +341,61 @@ def rotor_component(
     ----------
     name : str
     modal : ModalRotor
-        m planar, t torsional and a axial modes, vectors included: the component has 2 m + t + a coordinates.
+        m planar, t torsional and a axial modes, vectors included. With g bodies of gears the component has
+        2 m + t + g + a coordinates.
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
         Damping ratio of the shaft's own material and fits, on every mode of the free shaft but its shift and tilt.
     axis : tuple of float
         x and y of the shaft's line [m], which matter where the base turns.
+    bodies : sequence of GearBody
+        Gears on the rotor whose rims turn against their hubs.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
-    m, n = lateral.count, modal.size
+    twisting, torsion_basis = _with_bodies(modal, bodies)
+    # Beyond the shaft's own coordinates the hubs vibrate against their rims: static, as the attachment modes are.
+    resolved = float(modal.torsional.frequencies.max(initial=0.0)) if bodies else np.inf
+    m, n = lateral.count, modal.size + len(bodies)
     plane_basis, plane_stiffness, bending = _free_plane(lateral)
-    stiffness = np.diag(np.concatenate([np.zeros(2 * m), modal.torsional.frequencies**2, along**2]))
+    stiffness = np.diag(np.concatenate([np.zeros(2 * m), twisting**2, along**2]))
     stiffness[:m, :m] = stiffness[m : 2 * m, m : 2 * m] = plane_stiffness
     # Zeros for motions as a whole: they strain no material, though an axial force may resist the tilt or drive it.
-    damped = np.concatenate([bending, bending, modal.torsional.frequencies, along])
+    damped = np.concatenate([bending, bending, twisting, along])
     gyroscopic = np.zeros((n, n))
     gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(plane_basis.T @ lateral.polar_inertia_matrix @ plane_basis)
     return RotorComponent(
         name=name,
-        kinds=("rotor",) * (2 * m) + ("torsion",) * modal.torsional.count + ("axial",) * len(along),
+        kinds=("rotor",) * (2 * m)
+        + tuple("torsion" if one <= resolved else "residual" for one in twisting.tolist())
+        + ("axial",) * len(along),
         stiffness=stiffness,
         damping=np.diag(2.0 * damping_ratio * damped),
         gyroscopic=gyroscopic,
         modal=modal,
         start=start,
         plane_basis=plane_basis,
+        torsion_basis=torsion_basis,
         axis=axis,
+        bodies=tuple(bodies),
     )
+
+
+def _with_bodies(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (t + g,) [rad/s] and modes (t + g, t + g) of the shaft's torsion with its gears' bodies."""
+    t, g = modal.torsional.count, len(bodies)
+    if not bodies:
+        return modal.torsional.frequencies, np.eye(t)
+    stiffness = np.diag([*modal.torsional.frequencies**2, *(body.stiffness for body in bodies)])
+    mass = np.diag([*np.ones(t), *(body.rim_inertia for body in bodies)])
+    coupling = modal.torsional.evaluate([body.at for body in bodies]) * [body.coupling_inertia for body in bodies]
+    mass[:t, t:], mass[t:, :t] = coupling, coupling.T
+    # The first coordinate is the rotation of all as one body: the other modes are orthogonal to it.
+    whole = mass[0, 1:]
+    values, vectors = linalg.eigh(stiffness[1:, 1:], mass[1:, 1:] - np.outer(whole, whole))
+    basis = np.zeros((t + g, t + g))
+    basis[0, 0], basis[0, 1:], basis[1:, 1:] = 1.0, -whole @ vectors, vectors
+    return np.concatenate([modal.torsional.frequencies[:1], np.sqrt(values)]), basis
 
 
 def _free_plane(lateral: LateralModes) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -43,6 +43,8 @@ class LinearConnector:
         Axis of each direction of a bearing: x, y, z and the rotations about x and y (0 to 4); empty otherwise.
     offset : ndarray, shape (d,), or None
         Force f₀ of a law that is linearised about a deflection [N]; the system's constant loads contain -D f₀.
+    of_contact : int or None
+        Number of the tooth contact whose flanks resist tilting by this connector (:mod:`coupling.machine.mesh_face`).
     """
 
     name: str
@@ -52,6 +54,7 @@ class LinearConnector:
     over_speed: "SpeedTable | None" = None
     axes: tuple[int, ...] = ()
     offset: FloatArray | None = None
+    of_contact: int | None = None
 
     def __post_init__(self) -> None:
         """Require stiffness and damping of shape (d, d) for d directions."""
@@ -171,7 +174,9 @@ class ContactConnector:
     errors : ndarray, shape (h, 3)
         a [m], w [rad/s] and c [rad] of each harmonic of the runout error.
     clearance : float
-        Backlash, for the back flanks; 0 for the drive flanks [m].
+        Compression dᵀ q at which even flanks touch [m]: the backlash, for the back flanks, 0 for the drive flanks. For
+        flanks that carry the mean load it includes what their mean tilt adds to the compression at the stiffness
+        centre, where d is taken (:mod:`coupling.machine.mesh_face`).
     loaded : bool
         Whether these flanks carry the mean load.
     compression_limit : float

@@ -1,4 +1,15 @@
-"""Driving frequencies: those of all excitations of a coupled system at its nominal speeds."""
+"""Driving frequencies: those of all excitations of a coupled system at its nominal speeds, and the sampling for them.
+
+A record shows an excitation above half its sampling rate as a false line below it. The sampling rate therefore follows
+the excitations: a number of samples in each cycle of a harmonic one and of a mesh, whose own harmonics fall off. A load
+that is linear between given times has, at a frequency ω, a line of at most
+
+    2 Σ |Δs| / (T ω²),    Δs the changes of its slope in the record of length T,
+
+which is small against its range beyond a frequency that follows from that.
+"""
+
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +23,9 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _ALIKE = 12  # digits of the frequencies of rows that are alike
+_SAMPLES_PER_CYCLE = 8.0  # of a harmonic excitation: its third harmonic is below half the sampling rate
+_SAMPLES_PER_MESH = 32.0  # of a mesh, whose force has many harmonics
+_FOLDED = 0.01  # largest line of a table over time above half the sampling rate, over the table's range
 
 
 def driving_frequencies(system: CoupledSystem) -> dict[str, float]:
@@ -44,6 +58,62 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
             frequencies = [characteristic_frequencies(row, connector.speed).outer_pass / _TWO_PI for row in rows]
             passes[connector.name] = tuple(sorted({round(frequency, _ALIKE) for frequency in frequencies}))
     return passes
+
+
+def least_sampling_rate(
+    system: CoupledSystem, begin: float = 0.0, end: float = 0.0, *, fastest: float = 1.0
+) -> tuple[float, float]:
+    """Return the sampling rate at which no excitation folds down to a lower frequency, and its frequency.
+
+    Parameters
+    ----------
+    system : CoupledSystem
+    begin, end : float
+        Recorded part of the loads that are given over time [s]; without it they do not count.
+    fastest : float
+        Highest speed over the nominal one, which meshes, runout and loads by order follow.
+
+    Returns
+    -------
+    rate, frequency : float
+        Sampling rate and highest frequency of that excitation [Hz]; zeros where nothing excites.
+    """
+    return max(_sampling_rates(system, begin, end, fastest), default=(0.0, 0.0))
+
+
+def _sampling_rates(system: CoupledSystem, begin: float, end: float, fastest: float) -> Iterator[tuple[float, float]]:
+    for frequency in harmonic_frequencies(system, fastest):
+        yield _SAMPLES_PER_CYCLE * frequency, frequency
+    for contact in system.contacts:
+        frequency = fastest * abs(contact.mesh_frequency)
+        yield _SAMPLES_PER_MESH * frequency, frequency
+    for passes in element_passes(system).values():
+        for frequency in passes:
+            yield _SAMPLES_PER_MESH * fastest * frequency, fastest * frequency
+    for load in system.timed_loads if end > begin else ():
+        inside = _inside(load.times, begin, end)
+        times = np.concatenate([[begin], load.times[inside], [end]])
+        values = np.interp(times, load.times, load.values)
+        bends = np.abs(np.diff(np.diff(values) / np.diff(times))).sum()
+        if bends > 0.0:
+            frequency = float(np.sqrt(2.0 * bends / ((end - begin) * _FOLDED * np.ptp(values)))) / _TWO_PI
+            yield 2.0 * frequency, frequency
+
+
+def harmonic_frequencies(system: CoupledSystem, fastest: float = 1.0) -> list[float]:
+    """Frequencies of harmonic loads and runout errors [Hz], of those that follow the speed at ``fastest`` times it."""
+    frequencies = [
+        abs(load.frequency) / _TWO_PI * (1.0 if load.follows == "time" else fastest)
+        for load in system.harmonic_loads
+        if np.any(load.amplitude != 0.0)
+    ]
+    frequencies += [
+        fastest * abs(frequency) / _TWO_PI
+        for contact in system.contacts
+        for amplitude, frequency, _ in contact.errors
+        if amplitude != 0.0
+    ]
+    return frequencies
 
 
 def varies_within(system: CoupledSystem, begin: float, end: float) -> bool:

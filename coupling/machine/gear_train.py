@@ -26,6 +26,7 @@ from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.coordinates import trains
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
 from coupling.machine.mounted_parts import GearMesh
+from numerics.findings import Number, Text, attribute_findings, refuse
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -96,6 +97,12 @@ class Output:
     torque: float | None = None
     at: float | None = None
 
+    def __post_init__(self) -> None:
+        """Check that torque and place are numbers."""
+        place = Number(at_least=0.0, optional=True, unit="m")
+        rules = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
+        refuse(attribute_findings(("output", str(self.shaft)), self, **rules), CouplingError)
+
 
 @dataclass(frozen=True)
 class GearTrain:
@@ -119,6 +126,21 @@ class GearTrain:
         """Shafts that drive no other: the power leaves there unless outputs are given."""
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
+
+    @property
+    def shares_torque(self) -> tuple[bool, ...]:
+        """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split."""
+        return tuple(self._is_in_loop(number) for number in range(len(self.pairs)))
+
+    def _is_in_loop(self, number: int) -> bool:
+        """Whether other pairs lead from the driver of a pair to its driven shaft."""
+        reached, start = {self.pairs[number].driver}, 0
+        others = [{pair.driver, pair.driven} for other, pair in enumerate(self.pairs) if other != number]
+        while len(reached) > start:
+            start = len(reached)
+            for shafts in others:
+                reached |= shafts if shafts & reached else set()
+        return self.pairs[number].driven in reached
 
     def turning_ratios(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
         """Speed ratios of a train in which every shaft turns.

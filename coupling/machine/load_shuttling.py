@@ -13,6 +13,11 @@ of the force over F, a force F (e, h) at that place has the moment of the same f
 
 about the driven gear's centre; the moment on the driver is opposite. Both arms are those of static equilibrium under
 the mean force, which stands for F in M: the dynamic part of the force would add a product of two small quantities.
+The flanks are held there: their gap over the face is that of the mean load at every phase. How far the shafts yield to
+the moments, and how the flanks answer that, is the machine's motion, in which the mesh resists tilting
+(:mod:`coupling.machine.mesh_face`); so nothing counts twice. The moments act on the slope of the approach over the
+face, which is the tilt of the shafts and their twist over the face, by z̄, and on their tilt by -h ξ̄. The mean moments
+are those of the mesh's law over its face.
 
 Teeth that are not alike, by pitch deviations or damage, have other arms in each mesh period. The harmonics of the mesh
 are those of the mean of all mesh periods of the hunting period; the sidebands of the arms about them are left out.
@@ -107,8 +112,10 @@ def shuttling_loads(
         Mean mesh force F, above 0 [N].
     axial : float
         Axial part h of the force over F, as the driven gear feels it.
-    tilting : ndarray, shape (n,)
-        Compression of the mesh by each coordinate, for each metre that the load is off the middle of the face.
+    tilting : ndarray, shape (n,) or (2, n)
+        Compression of the mesh by each coordinate, for each metre that the load is off the middle of the face, and off
+        the pitch point times -h: slope of the approach over the face and tilt of the shafts
+        (:mod:`coupling.machine.mesh_face`). One row stands for both.
     phase : float
         Mesh phase at t = 0 [mesh periods].
     mesh_frequency : float
@@ -119,7 +126,8 @@ def shuttling_loads(
     constant : ndarray, shape (n,)
     harmonics : list of HarmonicLoad
     """
-    nothing = np.zeros_like(tilting)
+    rows = np.broadcast_to(tilting, (2, tilting.shape[-1]))
+    nothing = np.zeros(tilting.shape[-1])
     if contact.faces is None or not np.any(tilting):
         return nothing, []
     try:
@@ -130,19 +138,20 @@ def shuttling_loads(
         )
     except GearError:
         return nothing, []
-    arm = arms @ [1.0, -axial]
-    if np.abs(arm).max() <= _NO_ARM * contact.faces.face_width:
+    arms = arms * [1.0, -axial]
+    if np.abs(arms).max() <= _NO_ARM * contact.faces.face_width:
         return nothing, []
-    spectrum = np.fft.rfft(arm) / len(arm)
+    spectrum = np.fft.rfft(arms, axis=0) / len(arms)
     orders = np.arange(1, min(_HARMONICS, len(spectrum) - 1) + 1)
     amplitudes = 2.0 * spectrum[orders]
     if mesh_frequency < 0.0:
         amplitudes = amplitudes.conj()
-    amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(mesh_frequency) * orders * phase)
-    heard = np.abs(amplitudes) > max(_SMALL * np.abs(amplitudes).max(initial=0.0), _NO_ARM * contact.faces.face_width)
+    amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(mesh_frequency) * orders * phase)[:, None]
+    size = np.abs(amplitudes).sum(axis=1)
+    heard = size > max(_SMALL * size.max(initial=0.0), _NO_ARM * contact.faces.face_width)
     # The load on the coordinates is minus the force times the compression's gradient.
     harmonics = [
-        HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude * tilting, follows="turning")
+        HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude @ rows, follows="turning")
         for order, amplitude in zip(orders[heard].tolist(), amplitudes[heard], strict=True)
     ]
-    return -force * spectrum[0].real * tilting, harmonics
+    return -force * spectrum[0].real @ rows, harmonics

@@ -6,13 +6,18 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry, ToothContact
+from coupling.errors import CouplingError
+from coupling.gears import Gear, GearPairGeometry, ToothContact
+from coupling.gears.contact.face_slices import FaceSlices
 from coupling.gears.geometry.pair import pair_label
 from coupling.machine.bearing_laws import BearingLaw, RollingLaw
+from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
+from numerics.findings import Instance, Text, attribute_findings, refuse
 from rotors import Bearing
-from rotors.rolling_bearings import RollingBearing
+from rotors.errors import require_finite
+from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,6 +40,9 @@ class MountedBearing:
     rolling : RollingBearing or None
     offset : ndarray, shape (5,), or None
         Force of the linear law at zero deflection [N, N m]: force at the operating point less K times the deflection.
+    damping_time : float
+        Damping over stiffness of a bearing whose stiffness follows from its load [s], beside the damping that the
+        bearing has.
     """
 
     bearing: Bearing
@@ -43,14 +51,30 @@ class MountedBearing:
     law: BearingLaw | None = None
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
+    damping_time: float = 0.0
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
+        refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
+        rules = {
+            "rotor": Text(),
+            "seat": Text(optional=True),
+            "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
+        }
+        refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
+        require_finite(f"damping time of bearing {self.bearing.name!r}", self.damping_time, minimum=0.0)
 
     @classmethod
     def from_elements(
-        cls, name: str, at: float, rotor: str, seat: str | None, rolling: RollingBearing, *, damping: float = 0.0
+        cls,
+        name: str,
+        at: float,
+        rotor: str,
+        seat: str | None,
+        rolling: RollingBearing,
+        *,
+        damping: float | None = None,
     ) -> "MountedBearing":
         """Mount a rolling bearing whose stiffness follows from its load at the machine's operating point.
 
@@ -64,19 +88,21 @@ class MountedBearing:
             None for the ground.
         rolling : RollingBearing
             Such as that of :func:`rotors.rolling_bearings.catalogue_bearing`.
-        damping : float
-            Along x and y [N s/m].
+        damping : float, optional
+            Along x and y [N s/m]. By default `rotors.rolling_bearings.ROLLING_DAMPING_TIME` times the stiffness.
 
         Raises
         ------
         rotors.RotorError
             For a place or a damping that no bearing has.
         """
+        across = 0.0 if damping is None else damping
         return cls(
-            Bearing(name, at, np.zeros((5, 5)), np.diag([damping, damping, 0.0, 0.0, 0.0])),
+            Bearing(name, at, np.zeros((5, 5)), np.diag([across, across, 0.0, 0.0, 0.0])),
             rotor,
             seat,
             rolling=rolling,
+            damping_time=ROLLING_DAMPING_TIME if damping is None else 0.0,
         )
 
     @property
@@ -94,12 +120,30 @@ class MountedBearing:
 
 @dataclass(frozen=True)
 class MountedGear:
-    """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m]."""
+    """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m].
+
+    Attributes
+    ----------
+    name, rotor : str
+    at : float
+    axis : tuple of float
+    carried : tuple of float, optional
+        Ends of the length of the rotor that moves with the gear's body, from the rotor's left end [m]: the body is
+        rigid beyond. By default the gear moves with the section in the middle of the common face.
+    missing : FaceCompliance, optional
+        What the rotor's modes lack of its compliance over the common face; none by default.
+    """
 
     name: str
     rotor: str
     at: float
     axis: tuple[float, float]
+    carried: tuple[float, float] | None = None
+    missing: FaceCompliance | None = None
+
+    def compliance(self, gear: Gear) -> FloatArray:
+        """Compliance over mean approach, slope and tilt that the rotor's modes lack under this gear, (3, 3)."""
+        return np.zeros((3, 3)) if self.missing is None else self.missing.along_action(gear.base_radius)
 
 
 @dataclass(frozen=True)
@@ -111,10 +155,16 @@ class GearMesh:
     driver, driven : MountedGear
     geometry : GearPairGeometry
     contact : ToothContact
+        Contact law between the rims of the gears.
     backlash : float, optional
         Gap between the back flanks along their line of action [m]; None where they can never meet.
     friction : float
         Coefficient of friction between the teeth, from 0 to 0.5.
+    body_twist : float
+        Twist of the gears' bodies against their shafts, along the line of action [m/N], in series with the contact.
+    faces : FaceSlices, optional
+        Slices by which flanks that carry evenly resist tilting, see :mod:`coupling.machine.mesh_face`. By default those
+        of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
     """
 
     driver: MountedGear
@@ -123,6 +173,8 @@ class GearMesh:
     contact: ToothContact
     backlash: float | None = None
     friction: float = 0.0
+    body_twist: float = 0.0
+    faces: FaceSlices | None = None
 
     @property
     def name(self) -> str:

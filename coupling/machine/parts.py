@@ -17,10 +17,13 @@ from coupling.machine.gear_train import LARGEST_OFFSET, Output
 from coupling.machine.loads import AnyTorque, Drive, ShaftForce
 from coupling.machine.mounted_parts import MountedBearing
 from housing.own_copies import keep_tuples
+from numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from numerics.names import twin_of
 from rotors import Disc, Rotor, Segment
 from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
 from rotors.model.profile import StiffnessDiameter
+from rotors.model.shaft import inertia_findings
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -58,8 +61,19 @@ class Shaft:
     mode_count: int | None = None
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check every number."""
         keep_tuples(self, "axis", "unbalances")
+        kind = Instance(Rotor, "a rotor")
+        refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
+        rules = {
+            "axis": Numbers(2),
+            "start": Number(unit="m"),
+            "damping_ratio": Number(at_least=0.0, below=1.0),
+            "frequency_limit": Number(above=0.0, optional=True, unit="rad/s"),
+            "mode_count": Number(at_least=1, optional=True),
+            "bow": Instance(Bow, "a bow, or None", optional=True),
+        }
+        refuse(attribute_findings(("shaft", self.name), self, **rules), CouplingError)
 
     @property
     def name(self) -> str:
@@ -95,8 +109,19 @@ class ShaftGear:
     stiffens_shaft: bool = True
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check place and inertia."""
         keep_tuples(self, "inertia")
+        refuse(attribute_findings(("shaft gear", ""), self, gear=Instance(Gear, "a gear")), CouplingError)
+        rules: dict[str, Rule] = {"shaft": Text(), "at": Number(at_least=0.0, unit="m")}
+        if self.inertia is not None:
+            rules["inertia"] = Numbers(3, Number(at_least=0.0))
+        findings = [*attribute_findings(("gear", self.name), self, **rules)]
+        if self.inertia is not None and not findings:
+            findings += [
+                replace(finding, part=("gear", self.name), attribute="inertia")
+                for finding in inertia_findings(self.at, *self.inertia)
+            ]
+        refuse(findings, CouplingError)
 
     @property
     def name(self) -> str:
@@ -259,6 +284,17 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
     return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
+def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> float:
+    """Polar inertia of a gear's body beside that of its shaft [kg m²]: of its disc, or of the discs in its place."""
+    own = gear_disc(gear, rotor).polar_inertia
+    return own if own > 0.0 else _inertia_of_discs(gear, rotor)
+
+
+def _inertia_of_discs(gear: ShaftGear, rotor: Rotor) -> float:
+    """Polar inertia of the rotor's discs at a gear's station [kg m²]."""
+    return sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+
+
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
     """Polar inertia of a gear's body with the discs at its station [kg m²], for the damping ratio of its mesh.
 
@@ -273,8 +309,7 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     gears : sequence of ShaftGear
         All gears on the rotor.
     """
-    inertia = gear.body_inertia[1]
-    inertia += sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+    inertia = gear.body_inertia[1] + _inertia_of_discs(gear, rotor)
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
@@ -291,6 +326,11 @@ def require_names(machine: MachineParts) -> None:
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
+        for name in names:
+            twin = twin_of(name, names)
+            if twin is not None:
+                expected = "names that look different: their characters are others, such as Cyrillic letters"
+                raise CouplingError(f"{kind} {name!r} looks like {kind} {twin!r}; expected {expected}")
     if not machine.shafts:
         raise CouplingError("a machine without shafts; expected at least one")
     needed = [(f"bearing {bearing.bearing.name!r}", "shaft", bearing.rotor) for bearing in machine.bearings]

@@ -27,13 +27,14 @@ from coupling.machine.connectors import ContactConnector, Sliding
 from coupling.machine.coordinates import MachineCoordinates
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.machine.mesh_kinematics import LineOfAction
+from coupling.machine.mounted_parts import MountedGear
 
 FloatArray = npt.NDArray[np.float64]
 
 
 def sliding_flanks(
     coordinates: MachineCoordinates,
-    places: Sequence[tuple[str, float]],
+    places: Sequence[tuple[MountedGear, float]],
     geometry: GearPairGeometry,
     friction: SlidingFriction,
     line: LineOfAction,
@@ -43,8 +44,8 @@ def sliding_flanks(
     Parameters
     ----------
     coordinates : MachineCoordinates
-    places : two of (str, float)
-        Rotor of the driver and of the driven gear, and the distance from its left end [m].
+    places : two of (MountedGear, float)
+        Driver and driven gear, and where the mesh force acts from the left ends of their rotors [m].
     geometry : GearPairGeometry
     friction : SlidingFriction
     line : LineOfAction
@@ -54,11 +55,12 @@ def sliding_flanks(
     rolls = (geometry.driver_roll_angle, geometry.driven_roll_angle)
     directions = np.zeros((coordinates.size, 2))
     nominal = np.zeros(2)
-    for (name, at), gear, roll, side in zip(places, gears, rolls, (1.0, -1.0), strict=True):
+    for (mounted, at), gear, roll, side in zip(places, gears, rolls, (1.0, -1.0), strict=True):
+        name = mounted.rotor
         rotor = coordinates.rotor(name)
         begin, end = line.sense * gear.base_radius * roll(np.array([0.0, 1.0]))
         moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
-        rotation = rotor.rotation(at)
+        rotation = rotor.rim_rotation(mounted.name, at)
         directions += coordinates.rows(name, np.array([moved + begin * rotation, (end - begin) * rotation])).T
         nominal += coordinates.speeds[name] * np.array([begin, end - begin])
     return Sliding(friction, directions, nominal)

@@ -153,6 +153,13 @@ class Branch:
         except (PeriodicError, np.linalg.LinAlgError):
             return None
 
+    def near(self, point: Point, speed: float, within: float) -> Point | None:
+        """Point at another speed whose states are those of a given one but for ``within``, in the branch's unit."""
+        try:
+            return self._close(self.ready(speed, point.ready), point.states, speed, within)
+        except (PeriodicError, np.linalg.LinAlgError):
+            return None
+
     def _close(self, ready: Problem, predicted: FloatArray, speed: float, within: float) -> Point | None:
         """Correct a prediction at its speed.
 

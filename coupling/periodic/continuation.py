@@ -17,12 +17,17 @@ Where that does not converge, the branch is followed along its own length s (pse
 which is regular at folds; A is cyclic in the segments, see :mod:`coupling.periodic.orbit`. r_p is a finite
 difference.
 
+A range of speeds that this does not cover is followed from other starts: beyond a place where the branch is lost or
+climbs a resonance that nothing damps, which has no top; from the end of the range; and from the middle of what is left.
+Each start begins a piece of the curve, which ends where it meets a piece that is there. What no piece covers is a gap.
+
 - H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", *Applications of Bifurcation
   Theory*, 1977.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -35,7 +40,7 @@ from coupling.periodic.response import BranchMotion, PeriodicResponse, motion_su
 from coupling.periodic.shooting import integrated_again, periodic_response, problem, response_near
 
 FloatArray = npt.NDArray[np.float64]
-Ending = Literal["end", "start", "lost", "points", "tries"]
+Ending = Literal["end", "start", "joined", "steep", "lost", "points", "tries"]
 Event = Literal["fold", "period doubling", "Neimark-Sacker", "branch point"]
 
 
@@ -62,7 +67,7 @@ class Bifurcation:
 
 @dataclass(frozen=True, eq=False)
 class ResponseCurve:
-    """A branch of periodic motions, p points in the order in which they were followed; c contacts.
+    """Branches of periodic motions, p points in the order in which they were followed; c contacts.
 
     Attributes
     ----------
@@ -71,11 +76,14 @@ class ResponseCurve:
     responses : tuple of BranchMotion
         Summary of each motion; :meth:`motion` computes its course over time.
     bifurcations : tuple of Bifurcation
-    ending : str
-        ``end`` where the branch reached the given speed, ``start`` where it came back to its start; ``lost`` where no
-        next point was found, ``points`` and ``tries`` at the largest number of these.
-    aim : float
-        Speed to which the branch was to be followed.
+    pieces : tuple of int
+        Index of the first point of each piece, 0 first: between two pieces nothing is followed.
+    endings : tuple of str
+        Ending of each piece: ``end`` and ``start`` at the speeds of the range, ``joined`` where it met another piece;
+        ``steep`` where the motion grows without a top at one speed, ``lost`` where no next point was found, ``points``
+        and ``tries`` at the largest number of these.
+    begin, aim : float
+        Speeds between which motions were to be followed.
     """
 
     speeds: FloatArray
@@ -83,8 +91,30 @@ class ResponseCurve:
     bifurcations: tuple[Bifurcation, ...]
     system_at: Callable[[float], CoupledSystem] = field(repr=False)
     periods: int = 1
-    ending: Ending = "end"
+    endings: tuple[Ending, ...] = ("end",)
+    begin: float = np.nan
     aim: float = np.nan
+    pieces: tuple[int, ...] = (0,)
+
+    @property
+    def ending(self) -> Ending:
+        """``end`` where motions are followed over the whole range, else the ending of the first piece."""
+        return "end" if not self.gaps else self.endings[0]
+
+    @property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """Ranges of speed over which no motion is followed, from the lower to the higher speed, ascending."""
+        return _gaps(self.begin, self.aim, [self.speeds[piece] for piece in self.slices])
+
+    @property
+    def slices(self) -> tuple[slice, ...]:
+        """Points of each piece."""
+        return tuple(slice(*ends) for ends in pairwise([*self.pieces, len(self.speeds)]))
+
+    @property
+    def piece_numbers(self) -> npt.NDArray[np.int64]:
+        """Number of each point's piece, from 1, shape (p,)."""
+        return np.searchsorted(self.pieces, np.arange(len(self.speeds)), side="right")
 
     @property
     def account(self) -> str:
@@ -93,20 +123,23 @@ class ResponseCurve:
 
     def told(self, unit: float = 1.0, name: str = "") -> str:
         """Return the response curve with speeds divided by a named unit."""
-        start, last, aim = (value / unit for value in (self.speeds[0], self.speeds[-1], self.aim))
         name = name and f" {name}"
-        way = f"followed from {start:.6g} to {last:.6g}{name}: {len(self.speeds)} points, {len(self.folds)} folds"
-        if self.ending == "end":
-            return way
-        sense = np.sign(self.aim - self.speeds[0])
-        farthest = self.speeds[0] + sense * (sense * (self.speeds - self.speeds[0])).max()
-        why = {
-            "start": "the branch came back to where it began",
-            "lost": "no next motion was found however near: the flanks may begin to graze there, or the motion ends",
-            "points": "as many points as were allowed",
-            "tries": "as many tries as were allowed",
-        }[self.ending]
-        return f"{way}; {why}. Between {farthest / unit:.6g} and {aim:.6g}{name} nothing was followed"
+        words = []
+        for number, (piece, ending) in enumerate(zip(self.slices[:_TOLD], self.endings, strict=False)):
+            speeds = self.speeds[piece] / unit
+            begun = "followed" if number == 0 else "begun anew and followed"
+            folds = sum(piece.start <= fold.index < piece.stop for fold in self.folds)
+            text = f"{begun} from {speeds[0]:.6g} to {speeds[-1]:.6g}{name}: "
+            text += f"{_counted(len(speeds), 'point')}, {_counted(folds, 'fold')}"
+            words.append(text if ending == "end" else f"{text}; {_WHY[ending]}")
+        if len(self.pieces) > _TOLD:
+            words.append(f"{_counted(len(self.pieces) - _TOLD, 'more piece')} with {len(self.speeds)} points in all")
+        if gaps := self.gaps:
+            widest = sorted(sorted(gaps, key=lambda gap: gap[0] - gap[1])[:_TOLD])
+            ranges = ", ".join(f"between {low / unit:.6g} and {high / unit:.6g}" for low, high in widest)
+            more = f", nor in {_counted(len(gaps) - _TOLD, 'narrower range')}" if len(gaps) > _TOLD else ""
+            words.append(f"Nothing was followed {ranges}{name}{more}")
+        return ". ".join(words)
 
     @property
     def folds(self) -> tuple[Bifurcation, ...]:
@@ -152,7 +185,9 @@ class ResponseCurve:
         """
         away = self.speeds - speed
         motions = [(float(i), self.motion(int(i))) for i in np.flatnonzero(away == 0.0)]
-        for i in np.flatnonzero(away[:-1] * away[1:] < 0.0):
+        within = np.ones(max(len(away) - 1, 0), dtype=np.bool_)
+        within[[first - 1 for first in self.pieces[1:]]] = False
+        for i in np.flatnonzero((away[:-1] * away[1:] < 0.0) & within):
             part = away[i] / (away[i] - away[i + 1])
             motions.append((i + part, self._between(int(i), part, speed, tolerance)))
         if not motions:
@@ -160,6 +195,10 @@ class ResponseCurve:
                 f"no motion at {speed:g}: the branch was followed from {self.speeds.min():g} to {self.speeds.max():g}"
             )
         return [response for _, response in sorted(motions, key=lambda one: one[0])]
+
+    def passes(self, speed: float) -> bool:
+        """Whether a piece comes to a speed."""
+        return any(self.speeds[piece].min() <= speed <= self.speeds[piece].max() for piece in self.slices)
 
     def _between(self, index: int, part: float, speed: float, tolerance: float) -> PeriodicResponse:
         """Solve for the motion at a speed that is a part of the way from one point to the next."""
@@ -175,6 +214,34 @@ class ResponseCurve:
         return None if self.periods == 1 else length
 
 
+_WHY: dict[Ending, str] = {
+    "start": "the branch came back to where the range begins",
+    "joined": "it met a branch that is followed already",
+    "steep": "the motion grows without a top at one speed, a resonance that next to nothing damps",
+    "lost": "no next motion was found however near: the flanks may begin to graze there, or the motion ends",
+    "points": "as many points as were allowed",
+    "tries": "as many tries as were allowed",
+}
+_TOLD = 4  # number of pieces, and of gaps, that are told one by one
+_SAME_SPEED = 1e-9  # width of a gap over the range below which it is rounding
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")
+
+
+def _gaps(begin: float, aim: float, pieces: Sequence[FloatArray]) -> tuple[tuple[float, float], ...]:
+    """Ranges between two speeds that no piece spans, ascending."""
+    reached, last = min(begin, aim), max(begin, aim)
+    least = _SAME_SPEED * (last - reached)
+    gaps: list[tuple[float, float]] = []
+    for low, high in sorted((float(piece.min()), float(piece.max())) for piece in pieces):
+        if low > reached + least:
+            gaps.append((reached, low))
+        reached = max(reached, high)
+    return (*gaps, (reached, last)) if last > reached + least else tuple(gaps)
+
+
 _COARSER = 2  # number of levels below that of the first motion, whose monodromy is proved too
 _KEPT = 5  # number of points that predict the next point
 _MISSED = 3e-3  # target error of a prediction, relative to a motion
@@ -182,10 +249,27 @@ _ASIDE = 1.2e-2  # largest error of a prediction, beyond which it leads to anoth
 _FARTHEST = 0.3  # largest relative change of a motion by a step along the branch
 _SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points along the branch
 _SMOOTH = 0.97  # cosine beyond which the next step is longer
+_STRAIGHT = 0.999  # cosine beyond which it is twice as long
 _FEW = 4  # largest number of corrections with which the next step is longer
 _FAILURES = 3  # failed steps at given speed, each half as long, before pseudo-arclength steps
 _SMALL = 0.05  # part of the largest step below which pseudo-arclength steps begin
 _SHORTEST = 1e-4  # part of the largest step below which the branch is lost
+_MIRRORED = (2.0, 4.0, 8.0)  # distances of a step over a resonance, over that before it
+_BESIDE = 0.1  # largest relative change of a motion by such a step
+# Distance of such multipliers from the unit circle over their angle, below which nothing damps them: the inverse of the
+# height of the resonance over what the motion has of it already.
+_UNDAMPED = 3e-3
+_NEAR_ONE = 1.0  # largest of these angles [rad]
+_SAME_ANGLE = 4  # digits of angles that are the same: planes of one shaft
+_NEAREST = 1e-3  # part of the largest step down to which steps at given speed come near a resonance
+_STANDING = 1e-2  # change of speed over the largest step below which the branch stands at one speed
+_CLIMBED = 0.3  # relative change of a motion at one speed beyond which it climbs without a top
+_FEWEST_CLIMBING = 6  # number of points along the branch before that is said
+_BENT = 0.05  # part of the way between two points that the branch may bend aside
+_SKIPS = (0.1, 0.3, 1.0, 3.0)  # widths beyond which a lost branch is looked for again, in largest steps
+_INSIDE = (0.5, 0.25, 0.75)  # parts of a gap at which a motion is looked for
+_MOST_PIECES = 80
+_MOST_SEARCHES = 32  # largest number of searches that find no motion
 _LOCATIONS = 30  # largest number of steps in the location of a bifurcation
 _LOCATED = 1e-5  # tolerance of a located point over the step; the speed of a fold errs by its square
 
@@ -196,19 +280,21 @@ Seen = Callable[[float, PeriodicResponse], None]
 class _Follower:
     """Continuation along a branch. Positions are parts of the speed range, 0 at its start and 1 at its end."""
 
-    def __init__(
-        self, branch: Branch, first: Point, start: float, end: float, points: int, most_tries: int, seen: Seen
-    ) -> None:
-        self.branch, self.start, self.end = branch, start, end
-        self.largest, self.most_tries, self.tries = 1.0 / (points - 1), most_tries, 0
+    def __init__(self, first: Point, start: float, end: float, points: int, seen: Seen, sense: float = 1.0) -> None:
+        self.branch, self.start, self.end = first.branch, start, end
+        self.largest, self.tries = 1.0 / (points - 1), 0
         self.speeds: list[float] = []
         self.motions: list[BranchMotion] = []
         self.events: list[Bifurcation] = []
         self.seen = seen
         self.recent = [first]  # since the speed last turned
-        self.sense, self.stride, self.order = 1.0, 0.3 * self.largest, 1
+        self.sense, self.stride, self.order = sense, 0.3 * self.largest, 1
         self.failures, self.by_arclength, self.ds = 0, False, 0.0
-        self._keep(first)
+        self.breaks: list[int] = []  # points behind resonances that were stepped over
+        # Points along the branch since the speed last moved, the change of the motion over them, and the point before.
+        self.pending: list[tuple[Point, Event | None]] = [(first, None)]
+        self.climbed, self.before = 0.0, first
+        self._flush()
 
     def position(self, speed: float) -> float:
         """Position of a speed in the range."""
@@ -220,16 +306,33 @@ class _Follower:
             return self.end if position == 1.0 else self.start
         return self.start + position * (self.end - self.start)
 
-    def follow(self, most_points: int, progress: Callable[[float], None]) -> Ending:
-        """Continue step by step, to an end of the range or of the branch."""
+    def follow(
+        self,
+        most_points: int,
+        most_tries: int,
+        progress: Callable[[float], None],
+        others: "Sequence[_Follower]" = (),
+    ) -> Ending:
+        """Continue step by step, to an end of the range, of the branch, or of what others have not followed."""
+        ending = self._followed(most_points, most_tries, progress, others)
+        if ending != "steep":
+            self._flush()
+        return ending
+
+    def _followed(
+        self, most_points: int, most_tries: int, progress: Callable[[float], None], others: "Sequence[_Follower]"
+    ) -> Ending:
         while True:
-            if len(self.speeds) >= most_points:
+            if len(self.speeds) + len(self.pending) >= most_points:
                 return "points"
-            if self.tries >= self.most_tries:
+            if self.tries >= most_tries:
                 return "tries"
             if self.by_arclength and self.ds < _SHORTEST * self.largest:
                 return "lost"
+            if self.climbed > _CLIMBED and len(self.pending) > _FEWEST_CLIMBING:
+                return "steep"
             self.tries += 1
+            last = self.recent[-1]
             point = self._along() if self.by_arclength else self._at_given_speed()
             if point is None:
                 continue
@@ -237,6 +340,8 @@ class _Follower:
             progress(min(max(position, 0.0), 1.0))
             if position in (0.0, 1.0):
                 return "end" if position == 1.0 else "start"
+            if any(other.has(point) and other.has(last) for other in others):
+                return "joined"
 
     def _at_given_speed(self) -> Point | None:
         """Take a continuation step at a given speed."""
@@ -246,9 +351,12 @@ class _Follower:
         level = self.branch.level
         point = self.branch.hold(among, self.speed(min(max(position, 0.0), 1.0)), self._within(last))
         if point is None:
-            if self.branch.level <= level:
+            if self.branch.level > level:
+                return None
+            point = self._over_resonance()
+            if point is None:
                 self._failed()
-            return None
+            return point
         missed = max(point.missed / self._motion(point), 1e-12)
         self._accept(point, False)
         self.failures = 0
@@ -256,13 +364,42 @@ class _Follower:
         self.stride = min(self.stride * min(max(grown, 0.5), 2.0), self.largest)
         return point
 
+    def _over_resonance(self) -> Point | None:
+        """Step over a resonance that nothing damps, where the motion has no bound; None where there is none ahead.
+
+        A pair of multipliers e^{±iα} passes 1 there, α falling evenly with the speed. The motion is found again as far
+        behind the resonance as it stands before it; between both lies a gap.
+        """
+        if len(self.recent) < 2:
+            return None
+        last = self.recent[-1]
+        before, here = (self.position(point.speed) for point in self.recent[-2:])
+        for former, angle in zip(*(_undamped_angles(point) for point in self.recent[-2:]), strict=False):
+            ahead = (here - before) * angle / (former - angle) if former > angle else np.inf
+            for times in _MIRRORED:
+                position = here + times * ahead
+                if not 0.0 < position < 1.0 or abs(times * ahead) > self.largest:
+                    break
+                point = self.branch.near(last, self.speed(position), _BESIDE * self._motion(last))
+                if point is not None:
+                    self._flush()
+                    self.breaks.append(len(self.speeds))
+                    self.pending.append((point, None))
+                    self._flush()
+                    self.recent, self.order, self.failures = [point], 1, 0
+                    self.stride, self.climbed, self.before = abs(ahead), 0.0, point
+                    return point
+        return None
+
     def _failed(self) -> None:
         """Shorten the continuation step, or change to pseudo-arclength."""
         self.stride *= 0.5
         self.order = min(self.order, 1)
         self.failures += 1
-        if self.failures == _FAILURES or self.stride < _SMALL * self.largest:
-            last = self.recent[-1]
+        last = self.recent[-1]
+        # Steps at given speed come near a resonance that nothing damps; along the branch they climb it.
+        rises = bool(_undamped_angles(last))
+        if self.stride < (_NEAREST if rises else _SMALL) * self.largest or (not rises and self.failures == _FAILURES):
             try:
                 pace = abs(last.tangent[1])
             except (PeriodicError, np.linalg.LinAlgError):
@@ -292,7 +429,7 @@ class _Follower:
         gone = abs(self.position(point.speed) - self.position(last.speed))
         is_fold = self._accept(point, True)
         if turn > _SMOOTH and point.corrections <= _FEW:
-            self.ds *= 1.5
+            self.ds *= 2.0 if turn > _STRAIGHT else 1.5
         self.ds = min(self.ds, _FARTHEST * self._motion(point))
         if not is_fold and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
             self.by_arclength, self.order = False, 1
@@ -310,9 +447,13 @@ class _Follower:
             self.sense = sense
         event, between = self._event(last, point, is_fold, along)
         if event is not None and between is not None:
-            self.events.append(Bifurcation(len(self.speeds), event, float(between.speed)))
-            self._keep(between)
-        self._keep(point)
+            self.pending.append((between, event))
+        self.pending.append((point, None))
+        self.climbed += self.branch.distance(point.states, last.states) / self._motion(point)
+        moved = abs(self.position(point.speed) - self.position(self.before.speed))
+        if not along or is_fold or moved > _STANDING * self.largest:
+            self._flush()
+            self.climbed, self.before = 0.0, point
         # The bifurcation before it was located with the elements of this point.
         self.branch.accept(point.response.error)
         if is_fold:
@@ -323,11 +464,40 @@ class _Follower:
         self.recent = [*self.recent, point][-_KEPT:]
         return False
 
-    def _keep(self, point: Point) -> None:
-        """Add the summary of a point to the curve; its whole motion is dropped with the next points."""
-        self.seen(point.speed, point.response)
-        self.speeds.append(point.speed)
-        self.motions.append(motion_summary(point.response, point.ready.segments))
+    def _flush(self) -> None:
+        """Add the summaries of the pending points to the curve; the whole motions are dropped with the next points."""
+        for point, event in self.pending:
+            if event is not None:
+                self.events.append(Bifurcation(len(self.speeds), event, float(point.speed)))
+            self.seen(point.speed, point.response)
+            self.speeds.append(point.speed)
+            self.motions.append(motion_summary(point.response, point.ready.segments))
+        self.pending = []
+
+    @property
+    def pieces(self) -> list[FloatArray]:
+        """Speeds of the points between the places that were stepped over."""
+        return np.split(np.array(self.speeds), self.breaks)
+
+    def has(self, point: Point) -> bool:
+        """Whether another follower's point lies on this branch: between two points, as near as predictions are."""
+        away = np.array(self.speeds) - point.speed
+        between = np.flatnonzero(away[:-1] * away[1:] <= 0.0)
+        if not between.size:
+            return False
+        q, v = point.response.at_nodes(point.ready.segments)
+        here = np.concatenate([q, v * point.response.period], axis=1)
+        size = float(np.linalg.norm(here - here.mean(axis=0))) or float(np.linalg.norm(here))
+        for i in between:
+            before, after = (
+                np.concatenate([one.displacements, one.velocities * one.period], axis=1)
+                for one in self.motions[i : i + 2]
+            )
+            part = away[i] / (away[i] - away[i + 1]) if away[i] != away[i + 1] else 0.0
+            aside = np.linalg.norm(before + part * (after - before) - here)
+            if aside < _ASIDE * size + _BENT * np.linalg.norm(after - before):
+                return True
+        return False
 
     def _best_order(self, latest: Point) -> int:
         """Order of the polynomial through the last points that would have predicted ``latest`` best."""
@@ -423,13 +593,15 @@ def response_curve(
     start, end : float
         Speeds between which the branch is followed; ``end`` may be the lower.
     first : tuple of ndarray, or PeriodicResponse, optional
-        Start of the search for the first motion, see ``start`` of :func:`periodic_response`.
+        Start of the search for the first motion, see ``start`` of :func:`periodic_response`; with it only the branch of
+        that motion is followed.
     points : int
         Number of points on a straight branch; more are taken where it turns.
     most_points, most_tries : int
         Largest numbers of points and of attempted steps.
     periods : int
-        Period of the motion in periods of the excitation: 2 follows a motion of twice the excitation's period.
+        Period of the motion in periods of the excitation: 2 follows a motion of twice the excitation's period, and only
+        the branch of the first one.
     tolerance : float
         Largest change of the state after a period by a halving of the elements, relative.
     progress : callable
@@ -441,8 +613,8 @@ def response_curve(
     Returns
     -------
     ResponseCurve
-        Curve whose first point is at ``start`` and whose last is at ``end``, unless the branch comes back to ``start``
-        or is lost: see its ``ending``, and its ``account`` in words.
+        Curve whose first point is at ``start``. Where its branch does not reach ``end`` there are further pieces; what
+        none of them covers is in ``gaps``, and ``account`` says it in words.
 
     Raises
     ------
@@ -454,32 +626,174 @@ def response_curve(
     span = end - start
     if not (np.isfinite(span) and span != 0.0 and points > 1 and min(most_points - 1, most_tries, periods) > 0):
         raise CouplingError(f"a branch from {start} to {end} in {points} points; expected a range and some points")
-    begin = system_at(start)
-    period = None if periods == 1 else periods * problem(begin).period
-    solved = periodic_response(begin, period=period, start=first, tolerance=tolerance)
-    ready = problem(begin, period)
-    q, v = solved.at_nodes(ready.segments)
-    still = ready.part.mean
-    moving = np.concatenate([q[:, ready.kept] - still, v[:, ready.kept] / ready.part.rate_unit], axis=1)
-    unit = np.sqrt(np.mean(np.sum(moving**2, axis=1)))
-    unit = max(float(unit), 0.1 * float(np.linalg.norm(still))) or 1.0
-    branch = Branch(system_at, periods, abs(span), max(solved.level - 1 - _COARSER, 0), tolerance, unit)
-    follower = _Follower(branch, branch.first(solved, start), start, end, points, most_tries, seen)
-    ending = follower.follow(most_points, progress)
-    if len(follower.speeds) == 1:
+    pieces = _Pieces(system_at, start, end, points, (most_points, most_tries), periods, tolerance, progress, seen)
+    if first is not None or periods > 1:
+        pieces.follow(pieces.begun(start, 1.0, first), beyond=False)
+    else:
+        pieces.cover()
+    followers = pieces.followers
+    if all(len(follower.speeds) == 1 for follower in followers):
         raise PeriodicError(
             f"the branch is lost at a speed of {start:g}, where it begins: the flanks may begin to graze there, or the "
             "motion ends; start anew on its other side"
         )
+    firsts = np.cumsum([0, *(len(follower.speeds) for follower in followers)]).tolist()
+    pieces_of: list[int] = []
+    endings: list[Ending] = []
+    steep: Ending = "steep"
+    for begun, follower, ending in zip(firsts, followers, pieces.endings, strict=False):
+        pieces_of += [begun, *(begun + number for number in follower.breaks)]
+        endings += [steep] * len(follower.breaks) + [ending]
     return ResponseCurve(
-        speeds=np.array(follower.speeds),
-        responses=tuple(follower.motions),
-        bifurcations=tuple(follower.events),
+        speeds=np.concatenate([follower.speeds for follower in followers]),
+        responses=tuple(motion for follower in followers for motion in follower.motions),
+        bifurcations=tuple(
+            replace(event, index=begun + event.index)
+            for begun, follower in zip(firsts, followers, strict=False)
+            for event in follower.events
+        ),
         system_at=system_at,
         periods=periods,
-        ending=ending,
+        endings=tuple(endings),
+        begin=start,
         aim=end,
+        pieces=tuple(pieces_of),
     )
+
+
+class _Pieces:
+    """Pieces of a response curve, each with its ending, that are to cover a range of speeds."""
+
+    def __init__(
+        self,
+        system_at: Callable[[float], CoupledSystem],
+        start: float,
+        end: float,
+        points: int,
+        most: tuple[int, int],
+        periods: int,
+        tolerance: float,
+        progress: Callable[[float], None],
+        seen: Seen,
+    ) -> None:
+        self.system_at, self.start, self.end, self.points = system_at, start, end, points
+        self.most_points, self.most_tries = most
+        self.periods, self.tolerance, self.progress, self.seen = periods, tolerance, progress, seen
+        self.followers: list[_Follower] = []
+        self.endings: list[Ending] = []
+        self.failed = 0
+
+    def cover(self) -> None:
+        """Follow the range from its start, from its end, and from within what is left.
+
+        Raises
+        ------
+        PeriodicError
+            Where no motion is found at either end.
+        """
+        try:
+            self.follow(self.begun(self.start, 1.0))
+        except PeriodicError as error:
+            try:
+                self.follow(self.begun(self.end, -1.0))
+            except PeriodicError:
+                raise error from None
+        tried: set[float] = set()
+        while self.room and (speed := self._untried(tried)) is not None:
+            tried.add(speed)
+            follower = self.sought(speed, -1.0)
+            if follower is None:
+                continue
+            seed = follower.recent[-1]
+            self.follow(follower)
+            if speed not in (self.start, self.end) and self.room:
+                self.follow(_Follower(seed, self.start, self.end, self.points, self.seen))
+
+    @property
+    def room(self) -> bool:
+        """Whether the numbers of points, tries, pieces and vain searches leave room for another piece."""
+        return (
+            self._left(self.most_points, [len(one.speeds) for one in self.followers]) > 1
+            and self._left(self.most_tries, [one.tries for one in self.followers]) > 0
+            and len(self.followers) < _MOST_PIECES
+            and self.failed < _MOST_SEARCHES
+        )
+
+    @staticmethod
+    def _left(most: int, used: list[int]) -> int:
+        return most - sum(used)
+
+    def _gaps(self) -> tuple[tuple[float, float], ...]:
+        return _gaps(self.start, self.end, [piece for one in self.followers for piece in one.pieces])
+
+    def _untried(self, tried: set[float]) -> float | None:
+        """Return a speed at which to look for a motion: the end of the range, else within the widest gap."""
+        least = abs(self.end - self.start) / (self.points - 1)
+        for low, high in sorted(self._gaps(), key=lambda gap: gap[0] - gap[1]):
+            ends = [end for end in (self.end, self.start) if end in (low, high)]
+            inside = [low + part * (high - low) for part in _INSIDE if high - low > least]
+            for speed in [*ends, *inside]:
+                if speed not in tried:
+                    return speed
+        return None
+
+    def begun(
+        self, speed: float, sense: float, near: tuple[FloatArray, FloatArray] | PeriodicResponse | None = None
+    ) -> _Follower:
+        """Return a follower of the motion that is found at a speed."""
+        begin = self.system_at(speed)
+        period = None if self.periods == 1 else self.periods * problem(begin).period
+        solved = periodic_response(begin, period=period, start=near, tolerance=self.tolerance)
+        ready = problem(begin, period)
+        q, v = solved.at_nodes(ready.segments)
+        still = ready.part.mean
+        moving = np.concatenate([q[:, ready.kept] - still, v[:, ready.kept] / ready.part.rate_unit], axis=1)
+        unit = np.sqrt(np.mean(np.sum(moving**2, axis=1)))
+        unit = max(float(unit), 0.1 * float(np.linalg.norm(still))) or 1.0
+        level, span = max(solved.level - 1 - _COARSER, 0), abs(self.end - self.start)
+        branch = Branch(self.system_at, self.periods, span, level, self.tolerance, unit)
+        return _Follower(branch.first(solved, speed), self.start, self.end, self.points, self.seen, sense)
+
+    def sought(self, speed: float, sense: float, near: tuple[FloatArray, FloatArray] | None = None) -> _Follower | None:
+        """Return a follower of a motion at a speed, where one is found."""
+        try:
+            return self.begun(speed, sense, near)
+        except PeriodicError:
+            self.failed += 1
+            return None
+
+    def follow(self, follower: _Follower | None, *, beyond: bool = True) -> None:
+        """Follow a piece to its end, and the pieces beyond the places where it is lost."""
+        while follower is not None:
+            others, points, tries = tuple(self.followers), self.most_points, self.most_tries
+            points = self._left(points, [len(one.speeds) for one in others])
+            tries = self._left(tries, [one.tries for one in others])
+            self.followers.append(follower)
+            self.endings.append(follower.follow(points, tries, self.progress, others))
+            lost = beyond and self.endings[-1] in ("lost", "steep") and self.room
+            follower = self._beyond(follower) if lost else None
+
+    def _beyond(self, lost: _Follower) -> _Follower | None:
+        """Return a follower of the motion on the other side of a place where the branch is lost, in a gap."""
+        last = lost.before
+        near = last.response.at_nodes(last.ready.segments)
+        for skip in _SKIPS:
+            position = lost.position(last.speed) + lost.sense * skip * lost.largest
+            speed = lost.speed(min(max(position, 0.0), 1.0))
+            if not any(low <= speed <= high for low, high in self._gaps()) or not self.room:
+                return None
+            found = self.sought(speed, lost.sense, near)
+            if found is not None or position in (0.0, 1.0):
+                return found
+        return None
+
+
+def _undamped_angles(point: Point) -> list[float]:
+    """Angles of undamped pairs of multipliers e^{±iα} near 1, ascending and each once [rad]."""
+    values = point.response.floquet.values
+    angles = np.angle(values)
+    near = angles[(angles > 0.0) & (angles < _NEAR_ONE) & (np.abs(np.abs(values) - 1.0) < _UNDAMPED * angles)]
+    return sorted(set(np.round(near, _SAME_ANGLE).tolist()))
 
 
 def _cosine(point: Point, other: Point) -> float:

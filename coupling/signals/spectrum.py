@@ -11,8 +11,8 @@ overlapping stretches: lines of a steady sine keep their height, and the average
 """
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -27,6 +27,7 @@ ACCELERATION_REFERENCE = 1e-6
 ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
+_WHOLE = 1e-6  # tolerance of a whole number of cycles: a line leaks as large a part of its height
 _NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # bandwidth of the window over the spacing of lines
 
 
@@ -169,6 +170,29 @@ def at_time_zero(lines: ComplexArray, frequencies: FloatArray, start: float) -> 
         Time of the first sample [s].
     """
     return np.asarray(lines * np.exp(-2j * np.pi * start * frequencies))
+
+
+def whole_period_samples(
+    count: int, interval: float, frequencies: Sequence[float], *, least: float = 0.5
+) -> int | None:
+    """Largest number of a record's samples in which all frequencies make whole cycles; None where there is none.
+
+    Parameters
+    ----------
+    count : int
+        Number of samples of the record.
+    interval : float
+        Between samples [s].
+    frequencies : sequence of float
+        Frequencies [Hz].
+    least : float
+        Least part of the record. A record of one common period at least has half its samples in whole ones.
+    """
+    counts = np.arange(count, max(math.ceil(least * count), 1) - 1, -1)
+    for frequency in frequencies:
+        cycles = counts * (interval * frequency)
+        counts = counts[np.abs(cycles - np.rint(cycles)) < _WHOLE]
+    return int(counts[0]) if counts.size else None
 
 
 def _frequencies(count: int, interval: float) -> FloatArray:
@@ -335,16 +359,37 @@ class Spectrogram:
     amplitude : ndarray, shape (t, m)
         Peak amplitudes in the signal's unit; the mean of the stretch at 0 Hz.
     window : {"uniform", "hann"}
+    noise_bandwidth : ndarray, shape (t,)
+        Bandwidth of each stretch's window over the spacing of lines.
     """
 
     times: FloatArray
     frequencies: FloatArray
     amplitude: FloatArray
     window: Window
+    noise_bandwidth: FloatArray
+
+    @property
+    def rms(self) -> FloatArray:
+        """Root mean square of the lines of each stretch, without its mean, in the signal's unit, shape (t,)."""
+        power = (self.amplitude[:, self.frequencies > 0.0] ** 2).sum(axis=1)
+        return np.asarray(np.sqrt(0.5 * power / self.noise_bandwidth))
+
+    def up_to(self, limit: float) -> "Spectrogram":
+        """Return the spectra up to a frequency [Hz]."""
+        below = self.frequencies <= limit * (1.0 + 1e-9)
+        return replace(self, frequencies=self.frequencies[below], amplitude=self.amplitude[:, below])
 
 
 def spectrogram(
-    signal: FloatArray, interval: float, length: int, step: int, *, start: float = 0.0, window: Window = "hann"
+    signal: FloatArray,
+    interval: float,
+    length: int,
+    step: int,
+    *,
+    start: float = 0.0,
+    window: Window = "hann",
+    to_the_ends: bool = False,
 ) -> Spectrogram:
     """Amplitude spectra of stretches along a record: a waterfall over time, or over the speed.
 
@@ -359,6 +404,9 @@ def spectrogram(
     start : float
         Time of the first sample [s].
     window : {"uniform", "hann"}
+    to_the_ends : bool
+        Whether the middles of the stretches reach from the first sample to the last, see :func:`cut_spectra`; they are
+        evenly spaced by ``step`` at the most. Otherwise all stretches lie within the record.
 
     Raises
     ------
@@ -366,13 +414,55 @@ def spectrogram(
         For a length or a step that the record does not allow.
     """
     starts = _starts(signal.shape[-1], length, step)
-    spectra = [amplitude_spectrum(signal[first : first + length], interval, window) for first in starts]
-    return Spectrogram(
-        times=start + interval * (np.array(starts) + 0.5 * length),
-        frequencies=spectra[0].frequencies,
-        amplitude=np.array([spectrum.amplitude for spectrum in spectra]),
-        window=window,
-    )
+    if to_the_ends:
+        middles = np.linspace(0, signal.size - 1, -(-(signal.size - 1) // step) + 1).round().astype(int)
+    else:
+        middles = np.array(starts) + length // 2
+    amplitude, bandwidth = cut_spectra(signal, middles, length, window)
+    times = start + interval * (middles if to_the_ends else np.array(starts) + 0.5 * length)
+    return Spectrogram(times, _frequencies(length, interval), amplitude, window, bandwidth)
+
+
+def cut_spectra(
+    signal: FloatArray, middles: npt.NDArray[np.int64], length: int, window: Window
+) -> tuple[FloatArray, FloatArray]:
+    """Peak amplitudes under windows about samples of a record, which get shorter towards its ends.
+
+    A window that an end would cut is as long as fits about its middle, but no shorter than a quarter; the last one
+    stands beside the end. Each is scaled so that a sine keeps its height, and padded with zeros to the same lines.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (s,)
+    middles : ndarray of int, shape (t,)
+        Sample in the middle of each window.
+    length : int
+        Number of samples of a whole window.
+    window : {"uniform", "hann"}
+
+    Returns
+    -------
+    amplitude : ndarray, shape (t, length // 2 + 1)
+    noise_bandwidth : ndarray, shape (t,)
+        Bandwidth of each window over the spacing of lines.
+    """
+    before, after = length // 2, length - length // 2
+    least = max(length // 8, 1)
+    rows, bandwidths = [], []
+    for middle in middles.tolist():
+        reach = max(min(middle, signal.size - middle), least)
+        centre = min(max(middle, reach), signal.size - reach)
+        first, last = centre - min(before, reach), centre + min(after, reach)
+        weights = window_weights(last - first, window)
+        part, weight = signal[first:last], float(weights.sum())
+        mean = float(part.mean())
+        row = np.abs(np.fft.rfft((part - mean) * weights, length)) * (2.0 / weight)
+        if length % 2 == 0:
+            row[-1] *= 0.5  # the line at half the sampling rate stands alone
+        row[0] = abs(mean)
+        rows.append(row)
+        bandwidths.append(length * float(weights @ weights) / weight**2)
+    return np.array(rows), np.array(bandwidths)
 
 
 def _starts(count: int, length: int, step: int) -> list[int]:

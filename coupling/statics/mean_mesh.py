@@ -18,7 +18,7 @@ from coupling.errors import CouplingError
 from coupling.gears import GearError, ToothContact, loaded_transmission_error
 from coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
 from coupling.machine.coupled_system import CoupledSystem
-from coupling.statics.static_equilibrium import load_balances, static_equilibrium
+from coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -79,16 +79,26 @@ def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
 def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
     """Mean mesh of each contact under the constant load; None without a mean force or where the load cannot balance.
 
+    See `mean_equilibrium`.
+    """
+    return mean_equilibrium(system)[0]
+
+
+def mean_equilibrium(system: CoupledSystem) -> tuple[list[MeanMesh | None], FloatArray]:
+    """Mean mesh of each contact, as of `mean_meshes`, and the mean motion under the constant load, shape (n,).
+
     Newton's method is applied to the contacts' mean curves, starting with their stiffness without load. A contact that
-    the mean load opens while others carry the load has no force and no stiffness.
+    the mean load opens while others carry the load has no force and no stiffness. Nonlinear bearings act as their
+    tangents about their mean loads. The motion is zero where the load cannot balance.
     """
     without_force: list[MeanMesh | None] = [None] * len(system.contacts)
     driving = [number for number, contact in enumerate(system.contacts) if contact.loaded]
     if not driving or not np.any(system.load) or not load_balances(system):
-        return without_force
+        return without_force, np.zeros(system.size)
     rigid, stiffest = system.rigid_body_motions
     stiffness_held = system.stiffness + stiffest * rigid @ rigid.T
     directions = system.contact_directions[:, driving]
+    load = system.load + tangent_offset(system)
     laws = [system.contacts[number].contact for number in driving]
     stiffness = np.array([law.unloaded_mean_mesh_stiffness for law in laws])
     offset = np.array([system.contacts[number].clearance for number in driving])
@@ -99,8 +109,8 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
         matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.T
         if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
             # The mean load opens flanks, and nothing else holds the train.
-            return without_force
-        q = np.linalg.solve(matrix, system.load + directions @ (stiffness * loaded * offset))
+            return without_force, np.zeros(system.size)
+        q = np.linalg.solve(matrix, load + directions @ (stiffness * loaded * offset))
         force = stiffness * (directions.T @ q - offset)
         rounding = _ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
         converged = np.abs(force - before) <= _CONVERGED * np.abs(force * loaded).max() + rounding
@@ -123,7 +133,7 @@ def mean_meshes(system: CoupledSystem) -> list[MeanMesh | None]:
             offset[number] = clearance + mean.deflection - mean.force / mean.secant
     for number, mesh in zip(driving, meshes, strict=True):
         without_force[number] = mesh
-    return without_force
+    return without_force, np.asarray(q)
 
 
 @dataclass(frozen=True)
@@ -227,4 +237,10 @@ def linear_matrices(system: CoupledSystem, contact: ContactState) -> tuple[Float
         )
     directions = system.contact_directions
     stiffness = system.stiffness + (directions * contact.stiffness) @ directions.T
-    return stiffness, system.damping + (directions * contact.damping) @ directions.T
+    damping = system.damping + (directions * contact.damping) @ directions.T
+    for connector in system.linear:
+        # Flanks that are apart resist no tilting either.
+        if connector.of_contact is not None and contact.stiffness[connector.of_contact] == 0.0:
+            stiffness = stiffness - connector.directions @ connector.stiffness @ connector.directions.T
+            damping = damping - connector.directions @ connector.damping @ connector.directions.T
+    return stiffness, damping

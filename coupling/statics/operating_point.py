@@ -113,11 +113,19 @@ class BearingLoad:
         if not self.mounted.needs_load or self.rolling is None:
             return self.mounted
         nominal, law = self.mounted.bearing, self.mounted.law
-        bearing = replace(nominal, stiffness=linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness)
+        stiffness = linearised_bearing(self.rolling, nominal.name, nominal.at).stiffness
+        bearing = replace(nominal, stiffness=stiffness)
+        if self.mounted.damping_time > 0.0:
+            damping = nominal.spatial_damping + self.mounted.damping_time * stiffness
+            bearing = replace(bearing, damping=damping)
         if isinstance(law, RollingLaw):
             return replace(self.mounted, bearing=bearing, law=replace(law, state=self.rolling))
         return replace(self.mounted, bearing=bearing, offset=self.force - self.stiffness @ self.deflection)
 
+
+# Largest gap over the face of spur teeth that counts as none, of the teeth's mean deflection, and at least [m]: the
+# face carries evenly to half of that, and one spring for the face is ten times faster than one for each slice.
+_EVEN_GAP, _LEAST_GAP = 0.01, 1e-9
 
 CAUSES = ("shafts", "bearings", "housing", "bodies")
 """Causes of misalignment: bending of the shafts, deflection of the bearings, motion of their seats, and the twist of
@@ -175,6 +183,19 @@ class PairLoad:
         """Gap of the flanks at the stations of the face, less its mean [m], for :attr:`coupling.GearPair.face_gap`."""
         mean = float(self.pair.contact.face_mean @ self.approach)
         return tuple((mean - self.approach[:-1]).tolist())
+
+    @property
+    def tooth_deflection(self) -> float:
+        """Mean deflection of the teeth under the load, by their mean stiffness [m]; 0 of an idle pair."""
+        return self.force / self.mean_stiffness if self.force > 0.0 else 0.0
+
+    @property
+    def face_gap(self) -> tuple[float, ...]:
+        """Gap that mesh stiffness and motion take: `station_gap`, or none where spur teeth carry evenly with it."""
+        gap = self.station_gap
+        is_spur = self.pair.geometry.driver.helix_angle == 0.0
+        small = is_spur and np.ptp(gap) <= max(_EVEN_GAP * self.tooth_deflection, _LEAST_GAP)
+        return () if small else gap
 
     @property
     def line_load(self) -> FloatArray:
@@ -316,7 +337,9 @@ class OperatingPoint:
         return next(bearing for bearing in self.bearings if bearing.name == name)
 
     def flank_gaps(self, unaligned: Sequence[str]) -> dict[tuple[str, str], tuple[float, ...]]:
-        """Gap of the flanks over the face [m], by the names of driver and driven gear.
+        """Gap of the flanks over the face that motion takes [m], by the names of driver and driven gear.
+
+        See :attr:`PairLoad.face_gap`.
 
         Parameters
         ----------
@@ -333,4 +356,4 @@ class OperatingPoint:
                 f"{', '.join(unaligned)}: no flanks carry a load without a torque, so no misalignment follows; "
                 "expected a torque, or the misalignment"
             )
-        return {pair.names: pair.station_gap for pair in self.pairs}
+        return {pair.names: pair.face_gap for pair in self.pairs}

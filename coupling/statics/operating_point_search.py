@@ -30,6 +30,7 @@ from coupling.statics.static_model import (
     RollingElementLaw,
     StaticBearing,
     StaticPair,
+    StaticRim,
     StaticShaftPart,
 )
 from rotors.rolling_bearings import RollingState, rolling_state
@@ -55,6 +56,7 @@ def solve_operating_point(
     torques: Sequence[Torque],
     gravity: Sequence[float] | None = None,
     forces: Sequence[ShaftForce] = (),
+    rims: Sequence[StaticRim] = (),
 ) -> OperatingPoint:
     """Find the static equilibrium of a machine.
 
@@ -70,6 +72,8 @@ def solve_operating_point(
         Acceleration of free fall along x, y, z [m/s²].
     forces : sequence of ShaftForce
         Constant ones.
+    rims : sequence of StaticRim
+        Rims of gears that several pairs share.
 
     Raises
     ------
@@ -78,7 +82,7 @@ def solve_operating_point(
     EquilibriumNotFoundError
         Where no equilibrium is found, or the forces do not balance to `RESIDUAL_BOUND`.
     """
-    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity, forces)
+    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity, forces, rims)
     return model.solve()
 
 
@@ -91,6 +95,8 @@ class _StaticModel:
         First coordinate of each shaft: six of each of its nodes, along and about x, y, z.
     housing_first, pedestal_first : int, dict of str to int
         First coordinate of the housing's modes, and of each pedestal's motion along x and y.
+    rim_at : dict of str to int
+        Coordinate of each rim's rotation against its hub, by gear; the last ones.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
@@ -116,6 +122,7 @@ class _StaticModel:
         torques: Sequence[Torque],
         gravity: Sequence[float] | None,
         forces: Sequence[ShaftForce],
+        rims: Sequence[StaticRim],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
         self.gravity = None if gravity is None else tuple(gravity)
@@ -132,8 +139,12 @@ class _StaticModel:
             if bearing.mounted.bearing.pedestal is not None
         }
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
-        self.size = size + 2 * len(pedestals)
+        size += 2 * len(pedestals)
+        self.rim_at = {rim.gear: size + n for n, rim in enumerate(rims)}
+        self.size = size + len(rims)
         self.stiffness = self._linear_stiffness()
+        for rim in rims:
+            self.stiffness[self.rim_at[rim.gear], self.rim_at[rim.gear]] = rim.stiffness
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -141,7 +152,7 @@ class _StaticModel:
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.twists = [twist for _, twist in approaches]
         self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
-        self.laws += [FaceContactLaw(pair.contact, pair.clearance) for pair in pairs]
+        self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
         nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
@@ -230,6 +241,10 @@ class _StaticModel:
                 rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
                 twist[number] += turned
             rows[-1] += flank.tilting(middle)
+            if gear.name in self.rim_at:
+                rim = np.zeros(self.size)
+                rim[self.rim_at[gear.name]] = 1.0
+                rows[:-1] += flank.turning(rim)
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -472,7 +487,10 @@ class _StaticModel:
         by_cause["shafts"] -= twist
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
-        force = contact.at(touched).force
+        force = pair.between_rims.at(touched).force
+        # The twist of bodies is a part of the approach by the complete contact.
+        twisted_rims = pair.rim_twist * force * contact.uniform
+        approach, touched = approach + twisted_rims, touched + twisted_rims
         # The force of an idle pair is rounding below the residual of the balance.
         force = force if force > RESIDUAL_BOUND * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)

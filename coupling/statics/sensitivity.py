@@ -111,11 +111,12 @@ def deflection_slope(point: OperatingPoint, load: BearingLoad) -> FloatArray:
 def _face_gradients(pair: PairLoad) -> FloatArray:
     """Gradients of K_Hβ and peak-to-peak transmission error by the approach, by central differences, (2, m)."""
     contact = pair.pair.contact
-    approach = pair.approach - pair.pair.clearance * contact.uniform
+    # Coordinates of the static machine move the flanks against each other without the twist of shared rims.
+    approach = pair.approach - (pair.pair.clearance + pair.pair.rim_twist * pair.force) * contact.uniform
 
     def outcomes(approach: FloatArray) -> FloatArray:
         shape = approach - contact.uniform * float(contact.face_mean @ approach)
-        fine = contact.under_force(contact.at(approach).force, shape, pair.fine.phases)
+        fine = contact.under_force(pair.pair.between_rims.at(approach).force, shape, pair.fine.phases)
         return np.array([face_load_factor(fine, pair.even), np.ptp(fine.deflection)])
 
     step = _STEP * pair.force / pair.mean_stiffness

@@ -59,10 +59,8 @@ def static_equilibrium(system: CoupledSystem, time: float = 0.0) -> FloatArray:
             first_touch = float(contact.contact.pairs(contact.phase_after(time)).deviation.min())
             gap = first_touch + contact.clearance + contact.runout(time)
             closing += contact.contact.unloaded_mean_mesh_stiffness * gap * contact.direction
-    for bearing in system.nonlinear:
-        # Bearings begin at their mean load: within their clearance the tangent would be singular.
-        about, _ = _bearing(bearing, bearing.law.reference[bearing.axes], time)
-        closing += bearing.directions @ (bearing.stiffness @ bearing.law.reference[bearing.axes] - about)
+    # Bearings begin at their mean load: within their clearance the tangent would be singular.
+    closing += tangent_offset(system, time)
     q: FloatArray = np.asarray(
         np.linalg.solve(system.mean_stiffness + penalty, system.load + closing), dtype=np.float64
     )
@@ -97,6 +95,16 @@ def _require_closed_flanks(system: CoupledSystem, penalty: FloatArray) -> None:
                 "driver is driven, and without backlash its back flanks never meet; give the pair a backlash, or turn "
                 "the sign of the torque or of the speed"
             )
+
+
+def tangent_offset(system: CoupledSystem, time: float = 0.0) -> FloatArray:
+    """Constant load, shape (n,), with which nonlinear bearings act as their tangents about their mean loads."""
+    offset = np.zeros(system.size)
+    for bearing in system.nonlinear:
+        reference = bearing.law.reference[bearing.axes]
+        about, _ = _bearing(bearing, reference, time)
+        offset += bearing.directions @ (bearing.stiffness @ reference - about)
+    return offset
 
 
 def load_balances(system: CoupledSystem) -> bool:

@@ -223,7 +223,7 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     moved = [np.zeros((0, system.size))]
     for gear in _gears(machine):
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
-        rows = np.vstack([rotor.motions(gear.at)[:2], rotor.rotation(gear.at)])
+        rows = np.vstack([rotor.motions(gear.at)[:2], rotor.rim_rotation(gear.name, gear.at)])
         moved.append(machine.rows(rotor.name, rows))
     deflections = np.vstack([moved[0], *(connector.directions.T for connector in _bearings(machine))])
     return TransientOutputs(
@@ -330,7 +330,8 @@ class ModalRows:
     x, y : ndarray, shape (m, n)
         Rows of A_i and B_i of the bending modes on averaged supports, ascending, without attachment vectors.
     torsion : ndarray, shape (t, n)
-        Rows of D_i of the free shaft's torsional modes, the rigid rotation first, without attachment vectors.
+        Rows of D_i of the torsional modes of the free shaft with its gears' bodies, the rigid rotation first, without
+        attachment vectors.
     """
 
     x: FloatArray

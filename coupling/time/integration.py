@@ -18,6 +18,7 @@ import numpy.typing as npt
 from coupling.connector_forces.kernel_arrays import LAST_TOUCH, PEAK, Samples
 from coupling.errors import DeflectionError, TransientError
 from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.driving_frequencies import harmonic_frequencies
 from coupling.machine.speed_profile import SpeedProfile
 from coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
 from coupling.time.settings import TransientSettings
@@ -35,10 +36,14 @@ _MOST_BLOCKS = 1 << 24
 
 
 def coarsest_step(system: CoupledSystem, profile: SpeedProfile, largest: float) -> float:
-    """Coarsest step [s]: it resolves the highest natural frequency, and the largest step at the highest speed."""
-    highest = system.highest_frequency
+    """Coarsest step [s]: it resolves the highest natural frequency and every excitation at the highest speed.
+
+    A step that is a whole number of an excitation's periods would see a constant load, and no local error.
+    """
+    fastest = max(1.0, float(profile.speed_ratios.max()))
+    highest = max([system.highest_frequency, *(2.0 * np.pi * one for one in harmonic_frequencies(system, fastest))])
     resolving = 2.0 * np.pi / (highest * _POINTS_PER_PERIOD) if highest > 0.0 else np.inf
-    return float(min(largest / max(1.0, float(profile.speed_ratios.max())), resolving))
+    return float(min(largest / fastest, resolving))
 
 
 def same_time(step: float) -> float:

@@ -13,6 +13,7 @@ import struct
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,8 +23,9 @@ from coupling.assembly import CoupledMachine
 from coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
 from coupling.errors import CouplingError, TransientError
 from coupling.machine.coupled_system import CoupledSystem
+from coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
 from coupling.machine.speed_profile import SpeedProfile
-from coupling.signals.spectrum import Spectrum, amplitude_spectrum
+from coupling.signals.spectrum import Spectrum, amplitude_spectrum, whole_period_samples
 from coupling.time.condensation import condensed
 from coupling.time.exponential_collocation import CollocationStepper, exact_part
 from coupling.time.histories import HISTORY_QUANTITIES, Histories
@@ -220,8 +222,11 @@ class EnergyBalance:
 
     @property
     def error(self) -> float:
-        """Error of the balance, as a part of the scale."""
-        return abs(self.change - self.loads + self.lost - self.teeth) / self.scale if self.scale > 0.0 else 0.0
+        """Error of the balance, as a part of the scale; infinite where a part is no number."""
+        missing = abs(self.change - self.loads + self.lost - self.teeth)
+        if not np.isfinite([missing, self.scale]).all():
+            return float("inf")
+        return missing / self.scale if self.scale > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -338,7 +343,7 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
 def _balance(change: float, totals: FloatArray, stored: float) -> EnergyBalance:
     loads, lost, teeth, motion, friction = (float(value) for value in totals)
     # Free vibration exchanges energy between motion and springs without any work or loss.
-    scale = max(abs(loads), abs(lost), abs(teeth), stored, motion)
+    scale = float(np.max(np.abs([loads, lost, teeth, stored, motion])))
     return EnergyBalance(change, loads, lost, teeth, scale, friction)
 
 
@@ -383,10 +388,18 @@ class Motion:
     def spectrum(self, quantity: str, signal: str) -> Spectrum:
         """Amplitude spectrum of one signal, for instance ``("mesh_force", "pinion -> wheel")``.
 
+        It is that of the last whole periods of all excitations, whose lines are exact; of the whole record under Hann's
+        window where it holds none.
+
         Raises
         ------
         KeyError
             Where there is no such quantity or signal.
         """
         values = self.dataset[quantity].sel({self.dataset[quantity].dims[0]: signal}).values
-        return amplitude_spectrum(values, float(self.histories.times[1] - self.histories.times[0]))
+        interval, system = float(self.histories.times[1] - self.histories.times[0]), self.machine.system
+        frequencies = [*driving_frequencies(system).values(), *chain.from_iterable(element_passes(system).values())]
+        whole = whole_period_samples(len(values), interval, frequencies)
+        if whole is None or varies_within(system, *self.histories.times[[0, -1]].tolist()):
+            return amplitude_spectrum(values, interval, "hann")
+        return amplitude_spectrum(values[-whole:], interval)

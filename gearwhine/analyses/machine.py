@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from coupling import CoupledMachine
 from coupling.gears.loaded.gear_pair import LoadedGearPair
+from coupling.linear.damping_band import DampingBand
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
@@ -24,15 +25,18 @@ from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_system
-from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
+from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
 from gearwhine.solve.machine import basis_error, point_of_pairs, solve_machine, solve_pairs
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
+    add_damping_bands,
     add_uncertainty,
     centrifugal_warnings,
     constant_speed_warnings,
     machine_warnings,
+    parted_flank_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
@@ -104,9 +108,10 @@ def gears(
     ----------
     case : Case
     housing : SolvedHousing, optional
-        Housing where it is solved already; only a tip relief that aims at a sensor needs it.
+        Housing where it is solved already. It is solved here for a tip relief that aims at a sensor alone; without one
+        a misalignment that is found is that of rigid seats, with a warning.
     folder : path, optional
-        Results folder, whose housing modes are read where a tip relief aims at a sensor.
+        Results folder, whose housing modes are read where it keeps them.
     progress : callable
 
     Raises
@@ -116,16 +121,25 @@ def gears(
         aims at a sensor.
     """
     require(case, "gear_pair", command="gears")
-    point = point_of_pairs(case, None, progress)
-    loaded = solve_pairs(case, None, progress, point=point)
+    if housing is None and case.housing is not None and case.rotor and case.operation is not None:
+        if aims_at_sensor(case):
+            housing = solve_housing(case, progress, folder=folder)
+        elif any(case.finds_misalignment(pair) for pair in case.gear_pair):
+            housing = kept_housing(case, folder, progress)
+    point = point_of_pairs(case, housing, progress)
+    loaded = solve_pairs(case, housing, progress, point=point)
     aims = relief_aims(case, loaded, progress, housing=housing, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
     document = gears_document(pairs)
     if point is not None and case.housing is not None:
         for pair in document["pairs"]:
-            pair["misalignment_seats"] = "rigid"
-        message = "the misalignment is that of bearings in rigid seats; load and run find it with the housing"
-        add_warnings(document, [warning("rigid seats", message)])
+            pair["misalignment_seats"] = "rigid" if housing is None else "housing"
+        if housing is None:
+            message = (
+                "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
+                "so is the best tip relief; run, load or modes before gears give it those of the housing"
+            )
+            add_warnings(document, [warning("rigid seats", message)])
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_gear_pairs
@@ -187,7 +201,9 @@ def operating_point(
     elif housing is None and case.housing is not None:
         refuse = check_before_modes(case) if ranked else None
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
-    solved = solve_load(case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line)
+    solved = solve_load(
+        case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line, over_hunting_period=True
+    )
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
 
@@ -246,6 +262,10 @@ class _LoadedMachine:
         point = None if self.load is None else self.load.point
         error = basis_error(self.case, self.machine, self.housing, self.pairs, progress, point=point)
         add_uncertainty(document, error, document["trusted_below_hz"])
+        progress("bands of the lines by damping")
+        add_damping_bands(document, DampingBand(self.machine))
+        document["damping"] = damping_document(self.case)
+        add_warnings(document, damping_warnings(self.case))
 
     def figures(self) -> "Iterator[tuple[str, Figure]]":
         """Draw the operating point."""
@@ -401,6 +421,7 @@ def steady(
     )
     document = steady_document(case.title, solved)
     add_warnings(document, [*constant_speed_warnings(case), *machine_warnings(loaded.machine)])
+    add_warnings(document, parted_flank_warnings(loaded.machine, solved.contact_loss))
     loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":

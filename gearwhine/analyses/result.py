@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from gearwhine.case import Case
+from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.output import COMMANDS, finite, json_text, staging
-from gearwhine.output.quantity import add_warnings
+from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
 from gearwhine.progress import Progress, silent
 from housing.storage.netcdf import Variables
@@ -83,8 +84,8 @@ class Result(Generic[Solved]):
     _options: tuple[Sequence[Option], Sequence[str]] = ((), ())
 
     def __post_init__(self) -> None:
-        """Give the document its list of warnings."""
-        add_warnings(self.document)
+        """Give the document its list of warnings, with those of the case."""
+        add_warnings(self.document, [warning("case", text) for text in warnings_of(self.case)])
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coupling.linear.damping_band import DampingBand
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.machine import require_machine
@@ -37,15 +38,18 @@ from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.coupled_system import solve_system
+from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import basis_error, build_machine, reduce_housing, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
+    add_damping_bands,
     add_uncertainty,
     bearing_load_warnings,
     beyond_limit_warnings,
+    parted_flank_warnings,
     settling_warnings,
     unbalanced_torque_warnings,
     unstable_modes_warnings,
@@ -156,10 +160,14 @@ def run(
         begin = time.perf_counter()
         machine = build_machine(case, part, pairs, progress, point=point)
         basis = basis_error(case, machine, part, pairs, progress, point=point)
+        bands = DampingBand(machine)
         system = solve_system(case, machine, housing, progress)
         document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
+        add_damping_bands(document["system"], bands)
+        document["damping"] = damping_document(case)
+        add_warnings(document, damping_warnings(case))
         timed("system", begin)
         if load is not None:
             document["load"] = load_part(load)
@@ -182,9 +190,11 @@ def run(
             document = joined(document, transient_document(transient, signature, run_signature))
             add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
             add_warnings(document, beyond_limit_warnings(transient))
+            add_warnings(document, parted_flank_warnings(transient.machine, transient.result.contact_loss))
             if signature is not None:
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
+            add_damping_bands(document, bands)
             add_warnings(document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(case)])
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)

@@ -11,8 +11,8 @@ Public names:
   :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`RotorAnalysis`,
   :class:`Measured`, :class:`Update`. The tables within these stand in the modules of their topics.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
-- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques` -- quantities that
-  follow without a solution.
+- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques`,
+  :func:`force_origins` -- quantities that follow without a solution.
 - :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- speeds at which a rotor is analysed.
 - :func:`swept_keys` -- the keys of a sweep, each a :class:`SweptKey` with its values.
 - :func:`require` -- the error for tables that a command needs and a case lacks.
@@ -38,11 +38,13 @@ from gearwhine.case.load import (
 )
 from gearwhine.case.measured import Measured, Update, UpdateParameter
 from gearwhine.case.model import Case, case_document, dump_case, require
-from gearwhine.case.operation import Operation, Sweep, TorqueLine, Transient
+from gearwhine.case.operation import Operation, OrderTracking, Sweep, TorqueLine, Transient
 from gearwhine.case.rotors import CouplingSegment, Probe, Rotor, RotorAnalysis, Segment, TorsionalAnalysis, TorsionProbe
 from gearwhine.case.speeds_and_torques import (
+    EQUAL_MESHES,
     applied_torques,
     campbell_speeds,
+    force_origins,
     mesh_frequencies,
     pair_torques,
     response_speeds,
@@ -54,6 +56,7 @@ from gearwhine.case.speeds_and_torques import (
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 
 __all__ = [
+    "EQUAL_MESHES",
     "SPEED_KEY",
     "Bearing",
     "Box",
@@ -74,6 +77,7 @@ __all__ = [
     "MeshFile",
     "Mount",
     "Operation",
+    "OrderTracking",
     "Probe",
     "Problem",
     "RollingStiffness",
@@ -101,6 +105,7 @@ __all__ = [
     "case_document",
     "did_you_mean",
     "dump_case",
+    "force_origins",
     "load_case",
     "mesh_frequencies",
     "pair_torques",

@@ -37,7 +37,7 @@ from gearwhine.case.fields import (
 from gearwhine.case.units import Dimension
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
     import numpy as np
     import numpy.typing as npt
@@ -526,9 +526,10 @@ class _Radial(Table):
 class RadialStiffness(_Radial):
     """A 2×2 radial stiffness [N/m]: force against the shaft's motion relative to its seat."""
 
-    xx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
-    """Stiffness xx: force along x against motion along x; a list with `speeds`."""
-    yy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS, above=0.0))]
+    xx: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))]
+    """Stiffness xx: force along x against motion along x; a list with `speeds`. 0 of a damper; negative of seals and
+    magnetic bearings."""
+    yy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))]
     """Stiffness yy: force along y against motion along y; a list with `speeds`."""
     xy: Annotated[Coefficient, OverSpeed(Quantity(units.STIFFNESS))] = 0.0
     """Stiffness xy: force along x against motion along y; a list with `speeds`."""
@@ -604,14 +605,16 @@ _STIFFNESSES = (units.STIFFNESS, units.COUPLED_STIFFNESS, units.TILT_STIFFNESS)
 _DAMPINGS = (units.DAMPING, units.COUPLED_DAMPING, units.TILT_DAMPING)
 
 
-def _read_matrix(value: Any, kinds: tuple[Dimension, Dimension, Dimension]) -> MatrixRows:
-    """Validate a 5x5 matrix of quantities over (x, y, z, tilt about x, tilt about y), none negative on its diagonal."""
+def _read_matrix(
+    value: Any, kinds: tuple[Dimension, Dimension, Dimension], least_direct: float | None = None
+) -> MatrixRows:
+    """Validate a 5x5 matrix of quantities over (x, y, z, tilt about x, tilt about y)."""
     rows = value if isinstance(value, (list, tuple)) else ()
     if len(rows) != 5 or any(not isinstance(row, (list, tuple)) or len(row) != 5 for row in rows):
         raise wrong("five rows of five, over x, y, z and the tilts about x and y")
     return tuple(
         tuple(
-            Quantity(kinds[(i >= 3) + (j >= 3)], at_least=0.0 if i == j else None).validate_at(entry, i, j)
+            Quantity(kinds[(i >= 3) + (j >= 3)], at_least=least_direct if i == j else None).validate_at(entry, i, j)
             for j, entry in enumerate(row)
         )
         for i, row in enumerate(value)
@@ -646,7 +649,15 @@ class MatrixDamping(_Matrix):
     @field_validator("matrix", mode="before")
     @classmethod
     def _read(cls, value: Any) -> MatrixRows:
-        return _read_matrix(value, _DAMPINGS)
+        return _read_matrix(value, _DAMPINGS, least_direct=0.0)
+
+
+class StiffnessDamping(Table):
+    """A damping in proportion to the bearing's stiffness, in all its directions."""
+
+    over_stiffness: Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e-2)]
+    """Damping over stiffness. Rolling bearings have 2.5e-6 to 2.5e-5 s (Krämer 1993); at a frequency f the loss factor
+    is 2π f times it."""
 
 
 class RollingStiffness(Table):
@@ -669,7 +680,8 @@ def _stiffness_form(value: Any) -> str:
 
 
 def _damping_form(value: Any) -> str:
-    return "~matrix" if _stiffness_form(value) == "~matrix" else "~radial"
+    keys = value if isinstance(value, dict) else getattr(value, "model_fields_set", ())
+    return next((form for key, form in (("matrix", "~matrix"), ("over_stiffness", "~time")) if key in keys), "~radial")
 
 
 class Bearing(Table):
@@ -699,15 +711,21 @@ class Bearing(Table):
         Discriminator(_stiffness_form),
     ]
     """Stiffness against the shaft's motion relative to its seat, in one of four forms."""
-    damping: Annotated[
-        Annotated[RadialDamping, Tag("~radial")] | Annotated[MatrixDamping, Tag("~matrix")],
-        Discriminator(_damping_form),
-    ] = RadialDamping()
-    """Damping, in one of two forms."""
+    damping: (
+        Annotated[
+            Annotated[RadialDamping, Tag("~radial")]
+            | Annotated[MatrixDamping, Tag("~matrix")]
+            | Annotated[StiffnessDamping, Tag("~time")],
+            Discriminator(_damping_form),
+        ]
+        | None
+    ) = None
+    """Damping, in one of three forms. Default: of a rolling bearing by its elements `{ over_stiffness = "8 us" }`, the
+    middle of Krämer's range; of others none."""
     load: BearingLoad | None = None
     """Mean force of the shaft on a rolling bearing or stop. Default: of a rolling bearing that of the static
-    equilibrium, in a case with an operation where gear pairs or an `axial_offset` on its rotor load it; of a stop
-    none."""
+    equilibrium, in a case with an operation where gear pairs, a force, gravity or an `axial_offset` on its rotor load
+    it; of a stop none."""
 
     @property
     def follows_own_law(self) -> bool:
@@ -736,6 +754,16 @@ class Bearing(Table):
         return self
 
     @property
+    def damping_time(self) -> float:
+        """Damping over stiffness [s]; 0 where the damping is given by itself, and of typed stiffness without any."""
+        from rotors.rolling_bearings import ROLLING_DAMPING_TIME
+
+        if isinstance(self.damping, StiffnessDamping):
+            return self.damping.over_stiffness
+        by_elements = isinstance(self.stiffness, RollingStiffness)
+        return ROLLING_DAMPING_TIME if self.damping is None and by_elements else 0.0
+
+    @property
     def lacks_load(self) -> bool:
         """Whether it is a rolling bearing whose load is not given."""
         return isinstance(self.stiffness, RollingStiffness) and self.load is None
@@ -758,9 +786,11 @@ class Bearing(Table):
         return self.seat == "ground"
 
 
-def operation_loads(bearing: Bearing, bearings: Iterable[Bearing], *, geared: bool) -> bool:
+def operation_loads(bearing: Bearing, bearings: Iterable[Bearing], loaded_rotors: Container[str]) -> bool:
     """Whether the static equilibrium of a case with an operation has the load of a bearing, which is not given.
 
-    It does where the case has gear pairs (``geared``), or where one of its ``bearings`` is set against this one.
+    It does where gears, a force or weight load its rotor (:func:`gearwhine.case.model.loaded_rotors`), or where one of
+    the case's ``bearings`` is set against this one.
     """
-    return bearing.lacks_load and (geared or any(one.is_offset and one.rotor == bearing.rotor for one in bearings))
+    opposed = any(one.is_offset and one.rotor == bearing.rotor for one in bearings)
+    return bearing.lacks_load and (bearing.rotor in loaded_rotors or opposed)

@@ -28,6 +28,7 @@ from pydantic_core import PydanticCustomError, core_schema
 from gearwhine.case import units
 from gearwhine.case.input_files import files_of
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
+from numerics.names import has_hidden_characters
 
 if TYPE_CHECKING:
     from housing import Patch as BuiltPatch
@@ -188,6 +189,8 @@ class _NameRule:
     def validate(self, value: object) -> str:
         if not isinstance(value, str) or _NAME.fullmatch(value) is None:
             raise wrong("a name of 1 to 100 characters, without slashes, line breaks or blanks at its ends")
+        if has_hidden_characters(value):
+            raise wrong("a name without characters that nobody sees, such as blanks without a width")
         return value
 
 

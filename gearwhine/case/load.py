@@ -18,6 +18,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from gearwhine.case.checks.plausible import library_findings
 from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
 from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, did_you_mean, problem_of
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
@@ -309,6 +310,8 @@ def parse_case(
         broken = frozenset(str(finding.location[0]) for finding in findings if finding.location)
         draft = draft_of_document(document, broken, context)
     findings += check(draft)
+    if not findings:
+        findings += [finding.as_error() for finding in library_findings(case) if not finding.warns]
     if findings:
         raise CaseError(_in_words(findings, document, source, sources or {}))
     return case

@@ -88,6 +88,9 @@ class Case(Table):
     """Parameters that are fitted to the measured modes."""
     acoustics: Acoustics | None = None
     """Sound that the housing radiates."""
+    unusual: tuple[Annotated[str, Field(max_length=1000)], ...] = Field(default=(), max_length=MOST_ENTRIES)
+    """Key paths, `*` for any entry, whose unlikely values are meant: at them and below them no implausible value is
+    warned of. What cannot be stays an error."""
     provenance: dict[str, Text] = Field(default={}, max_length=MOST_ENTRIES)
     """Standing of each number: from key path (`*` for any entry) to "published", "nominal" or "found", with text after
     a colon."""
@@ -130,24 +133,30 @@ class Case(Table):
 
     def finds_load(self, bearing: Bearing) -> bool:
         """Whether the load of a rolling bearing follows from the machine's operating point."""
-        geared = bool(self.gear_pair)
-        return self.operation is not None and operation_loads(bearing, self.bearing, geared=geared)
+        if self.operation is None:
+            return False
+        names = [rotor.name for rotor in self.rotor]
+        return operation_loads(bearing, self.bearing, loaded_rotors(names, self.operation, geared=bool(self.gear_pair)))
 
     @property
     def needs_operating_point(self) -> bool:
-        """Whether the load of a bearing or the misalignment of a gear pair is left to the machine's operating point."""
+        """Whether there is no machine without its operating point: bearings or flanks are left to it explicitly.
+
+        A misalignment that is left out does not count: where no equilibrium is found, it is taken as 0.
+        """
         unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
         return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
 
     def finds_misalignment(self, pair: GearPair) -> bool:
         """Whether the misalignment of a gear pair follows from the machine's operating point.
 
-        By default it does if a torque loads the flanks and the load of a bearing follows from that point, too; else it
-        is 0.
+        By default it does if a torque loads the flanks of gears with a face on shafts in bearings; else it is 0.
         """
         if pair.misalignment is None:
             loaded = self.operation is not None and self.operation.torque != 0.0
-            return loaded and any(self.finds_load(bearing) for bearing in self.bearing)
+            gears = self.gear_named(pair.driver), self.gear_named(pair.driven)
+            have_faces = all(gear.rotor is not None and gear.face_width is not None for gear in gears)
+            return loaded and have_faces and bool(self.bearing)
         return pair.misalignment == "found"
 
     @property
@@ -170,6 +179,13 @@ class Case(Table):
         if gear.material is None and len(self.material) == 1:
             return next(iter(self.material.values()))
         return self.material[gear.material] if gear.material is not None else None
+
+
+def loaded_rotors(names: Iterable[str], operation: Operation, *, geared: bool) -> frozenset[str]:
+    """Return the rotors that gear pairs, weight or forces of the operation load across their axis or along it."""
+    if geared or (operation.gravity is not None and any(operation.gravity)):
+        return frozenset(names)
+    return frozenset(force.rotor for force in operation.force if force.x or force.y or force.z)
 
 
 AnyTable = TypeVar("AnyTable", bound=Table)

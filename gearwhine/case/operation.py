@@ -105,6 +105,18 @@ class TorqueRipple(Table):
         return BuiltRipple(rotor, at, amplitude, self.phase, self.order, frequency)
 
 
+class OrderTracking(Table):
+    """`[transient.run.orders]`: windows of the order cuts along a run, by revolutions of the first driver's rotor."""
+
+    window: Literal["hann", "uniform"] = "hann"
+    """Weights of a window's samples."""
+    resolution: Annotated[float, Quantity(units.RATIO, at_least=1e-3, at_most=1.0)] | None = None
+    """Spacing of the orders that a window tells apart: it is as many revolutions long as the inverse, rounded up.
+    Default: as fine as the orders of shafts and meshes need, as far as the run has revolutions for it."""
+    overlap: Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.99)] = 0.9
+    """Part of a window that the next one shares. There are at most 400 windows."""
+
+
 class Run(Table):
     """`[transient.run]`: how the speed of the first driver's rotor varies, in the sense of `[operation] speed`.
 
@@ -123,6 +135,8 @@ class Run(Table):
     """Ascending times from 0 s on, with `speeds`; in place of `from`, `to` and `time`."""
     speeds: tuple[SpeedFromZero, ...] = Field(default=(), max_length=MOST_ENTRIES)
     """Speed at each time, linear between."""
+    orders: OrderTracking = OrderTracking()
+    """Windows of the order cuts."""
 
     @model_validator(mode="after")
     def _one_form(self) -> Run:

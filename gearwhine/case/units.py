@@ -224,6 +224,9 @@ def _matches(unit: _Unit, dimension: Dimension) -> bool:
         return unit.powers == (("cycle", 1), ("second", -1))
     if dimension in (ANGLE, SPEED, FREQUENCY):
         return unit.powers == required.powers
+    # An angle may be left out, as in N*m for N*m/rad; a torque in N*m/deg is none.
+    if dict(unit.powers).get("radian", 0) not in (0, dict(required.powers).get("radian", 0)):
+        return False
     return unit.without_angle() == required.without_angle()
 
 

@@ -118,7 +118,8 @@ def on_loaded(
         document = work(loaded, progress)
     add_warnings(document)
     for warning in document["warnings"]:
-        sys.stderr.write(f"warning: {warning['message']}\n")
+        if warning["message"] not in loaded.warnings:
+            sys.stderr.write(f"warning: {warning['message']}\n")
     hand_over(document, common, show)
     return document
 

@@ -1,6 +1,6 @@
-"""Spectra figures: spectral lines on a logarithmic scale, and waterfall diagrams.
+"""Spectra figures: spectral lines on a logarithmic scale, waterfall diagrams, and level maps (Campbell plots).
 
-A waterfall shows spectra over speed, with mesh harmonics and the housing's natural frequencies.
+Waterfalls and level maps show spectra over speed, with mesh harmonics and the housing's natural frequencies.
 """
 
 from collections.abc import Sequence
@@ -12,16 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coupling.signals.spectrum import Spectrum
+from coupling.signals.spectrum import Spectrum, decibels
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
+    GREY,
     HEAD,
     INK,
+    LABEL,
     LEFT,
+    MM_PER_INCH,
     RED,
     SERIES,
     SHEET_WIDTH,
+    TICK,
     Label,
     arrange,
     column_width,
@@ -45,6 +49,8 @@ _ROW_DECADES = 4.0  # decades that a row shows below the highest line of all
 _OVERLAP = 1.7  # height of a row over the distance to the next
 _MOST_HARMONICS = 12
 _MOST_ROWS = 40  # largest number of legible rows
+_LEVELS = 60.0  # decibels below the highest level that a map shows
+_LEVEL_MAP, _LEVEL_BAR, _MARKS = 100.0, 14.0, 3.0  # a map's height, width of its scale, height of marks above it [mm]
 _LOWEST_PANEL, _ROW_HEIGHT, _HIGHEST_PANEL = 40.0, 3.4, 175.0  # heights of a waterfall and its rows [mm of paper]
 
 
@@ -156,6 +162,91 @@ def draw_waterfall(
     return figure
 
 
+def draw_level_map(
+    title: str,
+    values: npt.ArrayLike,
+    frequencies: FloatArray,
+    amplitudes: FloatArray,
+    *,
+    value_name: str,
+    unit: str,
+    note: str = "",
+    mesh_frequencies: npt.ArrayLike = (),
+    mesh_names: Sequence[str] = (),
+    housing_frequencies: FloatArray | None = None,
+) -> Figure:
+    """Draw the level of spectra by colours over frequency and the value that they belong to.
+
+    Parameters
+    ----------
+    title : str
+        Title of the sheet.
+    values : array_like, shape (s,)
+        Values of the spectra, such as speeds, that ascend or descend.
+    frequencies : ndarray, shape (m,)
+        Frequencies of the lines [Hz].
+    amplitudes : ndarray, shape (s, m)
+        Peak amplitudes, in ``unit``.
+    value_name, unit : str
+        Name of the axis of values, and unit of the amplitudes; levels are re a millionth of it.
+    note : str
+        Note below the title.
+    mesh_frequencies, mesh_names
+        See :func:`draw_waterfall`.
+    housing_frequencies : ndarray, shape (n,), optional
+        Natural frequencies [Hz], marked above the panel.
+    """
+    at = np.asarray(values, dtype=np.float64)
+    meshes = _table(mesh_frequencies, at.size)
+    limit = float(frequencies[-1])
+    lines = frequencies > 0.0
+    levels = decibels(amplitudes[:, lines])
+    top = 5.0 * np.ceil(float(levels.max()) / 5.0) if np.isfinite(levels.max()) else 0.0
+    rising = np.argsort(at, kind="stable")
+    harmonics = _mesh_harmonics(at[rising], meshes[rising], list(mesh_names), limit)
+    above = [harmonic.label for harmonic in harmonics if harmonic.at_top]
+    beside = [harmonic.label for harmonic in harmonics if not harmonic.at_top]
+    names = column_width(beside)
+    width = SHEET_WIDTH - LEFT - names - _LEVEL_BAR
+    row = arrange(above, [label.x / limit * width for label in above], width)
+    figure = sheet(HEAD + row.height + _MARKS + _LEVEL_MAP + FOOT, title, note)
+    axes = panel(figure, FOOT, _LEVEL_MAP, width=width)
+    colors = axes.pcolormesh(
+        frequencies[lines],
+        at,
+        np.maximum(levels, top - _LEVELS),
+        cmap="viridis",
+        vmin=top - _LEVELS,
+        vmax=top,
+        shading="nearest",
+        rasterized=True,
+        label="_levels",
+    )
+    axes.grid(visible=False)
+    axes.set(xlim=(0.0, limit), ylim=(float(at.min()), float(at.max())))
+    axes.set(xlabel="frequency [Hz]", ylabel=value_name)
+    handles = _draw_harmonics(axes, harmonics, color="white")
+    draw_row(axes, row, _LEVEL_MAP + _MARKS)
+    draw_column(axes, beside)
+    if housing_frequencies is not None and housing_frequencies.size:
+        inside = housing_frequencies[housing_frequencies <= limit]
+        axes.plot(
+            inside, np.full(inside.size, 1.015), "v", color=INK, ms=3.0, transform=axes.get_xaxis_transform(),
+            clip_on=False, label="_modes",
+        )  # fmt: skip
+        handles["modes"] = Line2D([], [], color=INK, marker="v", ms=3.0, ls="", label="housing mode")
+    for line in handles.values():
+        if line.get_linestyle() == "--":
+            # White lines on the map are grey ones on the sheet.
+            handles[str(line.get_label())] = Line2D([], [], color=GREY, lw=0.8, ls=(0, (4, 3)), label=line.get_label())
+    legend(figure, list(handles.values()))
+    box, across = axes.get_position(), float(figure.get_size_inches()[0]) * MM_PER_INCH
+    bar = figure.colorbar(colors, cax=figure.add_axes((box.x1 + names / across, box.y0, 2.5 / across, box.height)))
+    bar.ax.tick_params(labelsize=TICK, colors=INK)
+    bar.set_label(f"level [dB re 1 µ{unit}]", size=LABEL, color=INK)
+    return figure
+
+
 def _chosen_rows(values: FloatArray, heights: FloatArray) -> IntArray:
     """Return the spectra that are drawn, ascending in their value: at most `_MOST_ROWS` that are not all NaN.
 
@@ -209,14 +300,14 @@ def _mesh_harmonics(values: FloatArray, meshes: FloatArray, names: list[str], li
     return harmonics
 
 
-def _draw_harmonics(axes: Axes, harmonics: Sequence[_MeshHarmonic]) -> dict[str, Line2D]:
-    """Draw mesh harmonics through the rows, and return a line of each name for the legend."""
+def _draw_harmonics(axes: Axes, harmonics: Sequence[_MeshHarmonic], color: str = "") -> dict[str, Line2D]:
+    """Draw mesh harmonics through the rows, in one color or their own; return a line of each name for the legend."""
     handles: dict[str, Line2D] = {}
     for harmonic in harmonics:
         (line,) = axes.plot(
             harmonic.frequencies,
             harmonic.values,
-            color=harmonic.color,
+            color=color or harmonic.color,
             lw=0.8,
             ls=(0, (4, 3)),
             zorder=4.5,

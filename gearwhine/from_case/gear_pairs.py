@@ -30,6 +30,7 @@ def solve_gears(
     """Solve every gear pair of the case.
 
     ``gaps`` are those of the flanks over the face by driver and driven gear, where the misalignment is to be found.
+    Without one, flanks whose misalignment the case leaves out are aligned.
 
     Raises
     ------
@@ -72,12 +73,17 @@ class TakenMisalignment:
     found: float | None
 
 
-def taken_misalignments(case: Case, point: OperatingPoint | None) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of the case, beside that of its operating point where it is solved."""
+def taken_misalignments(
+    case: Case, point: OperatingPoint | None, *, is_sought: bool = True
+) -> tuple[TakenMisalignment, ...]:
+    """Misalignment of every gear pair of the case, beside that of its operating point where it is solved.
+
+    ``is_sought`` is false before that point is sought: flanks that are left to it are not yet taken as aligned.
+    """
     misalignments = []
     for number, entry in enumerate(case.gear_pair):
         at_operating_point = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if case.finds_misalignment(entry):
+        if case.finds_misalignment(entry) and not (is_sought and at_operating_point is None):
             misalignments.append(TakenMisalignment(at_operating_point, "operating point", at_operating_point))
         elif isinstance(entry.misalignment, float | int):
             misalignments.append(TakenMisalignment(entry.misalignment, "case", at_operating_point))

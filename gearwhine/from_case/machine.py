@@ -51,6 +51,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         own_bearings = [(n, entry) for n, entry in enumerate(case.bearing) if entry.rotor == rotor.name]
         laws = {entry.name: bearing_law(case, n) for n, entry in own_bearings}
         elements = {entry.name: rolling_elements(case, n) for n, entry in own_bearings}
+        damping_times = {entry.name: entry.damping_time for _, entry in own_bearings}
         # Bearings of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for _, entry in own_bearings if not entry.grounded}
         bearings += [
@@ -60,6 +61,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
                 None if grounded else seats.get(bearing.name),
                 laws.get(bearing.name),
                 elements.get(bearing.name),
+                damping_time=damping_times.get(bearing.name, 0.0),
             )
             for bearing in build_bearings(case, rotor.name)
         ]

@@ -13,21 +13,24 @@ from gearwhine.case.box import Box
 from gearwhine.case.checks.housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
-from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
+from gearwhine.from_case.mesh import box_mesh_size, build_mesh, cover_joints, materials_of
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from housing import HousingError, Joint
+from housing import HousingError, Joint, ModeSet
 from housing.model.seats import sensor_port
+from housing.modes.health import DISCRETISATION_BOUND
 from meshes import GeometryError, Mesh, MeshDefect, diagnose, resolution_defects
 from meshes.gmsh_meshing import expected_elements
-from meshes.lengths import UNITS
-from meshes.quality import WaveCarrier
+from meshes.lengths import UNITS, length_text
+from meshes.quality import WaveCarrier, resolving_size, wall_thickness
 
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6
+_ORDER_AT_INNER_EDGES = 2.0 * 0.545
+_BEYOND_ESTIMATE = 0.3  # estimated error from which it is a lower bound: the mode's shape itself is another one
 _BESIDE = 0.01  # distance of a point from the surface above which a warning is given, over the housing's diagonal
 
 
@@ -72,6 +75,46 @@ def resolution_warnings(case: Case, mesh: Mesh, limit_hz: float | None) -> list[
     return _warnings(resolution_defects(mesh, _wave(case, limit_hz if limit_hz else 1e-6)))
 
 
+def discretisation_warnings(case: Case, mesh: Mesh, modes: ModeSet) -> list[dict[str, Any]]:
+    """Warnings about modes whose estimated error by the mesh is too large, with the size of elements that suffices.
+
+    The size of elements is judged by the modes themselves here; what their kind does to them is told besides.
+    """
+    table, errors = case.housing, modes.discretisation_errors
+    assert table is not None
+    warnings = [entry for entry in resolution_warnings(case, mesh, None) if entry["name"] != "size"]
+    if errors is None or not (coarse := errors > DISCRETISATION_BOUND).any():
+        return warnings
+    worst, count = int(np.argmax(errors)), int(coarse.sum())
+    # So coarse a mesh that the mode is another one: how much too high it is no stress field of its own can tell.
+    least = "at least " if errors[worst] > _BEYOND_ESTIMATE else ""
+    finer = size_for(errors[worst], DISCRETISATION_BOUND)
+    advice, figures = f"use elements of at most {finer:.2g} of their size", {}
+    if table.mesh_size is not None:
+        # Elements that are larger than the walls' waves say little of smaller ones.
+        wave = _wave(case, float(modes.frequencies_hz[worst])).shortest_wave(wall_thickness(mesh))
+        size = min(table.mesh_size * finer, resolving_size(wave, mesh.order))
+        advice, figures = f"use a mesh_size of about {length_text(size)}", {"mesh_size_m": size}
+    missing = "" if table.frequency_limit is None else ", and higher ones that belong below the limit may be missing"
+    message = (
+        f"this mesh makes {count} of {len(errors)} modes more than {100 * DISCRETISATION_BOUND:g} % too high by an "
+        f"estimate from their own stresses, mode {worst + 1} at {modes.frequencies_hz[worst]:.4g} Hz by {least}"
+        f"{100 * errors[worst]:.2g} %{missing}; {advice}"
+    )
+    found = warning("discretisation", message, count=count, largest_error=float(errors[worst]), **figures)
+    return [found, *warnings]
+
+
+def size_for(error: float, wanted: float) -> float:
+    """Return the size of elements that brings an error down to what is wanted, as a part of their size.
+
+    The error of a smooth mode's frequency falls with h² or h⁴, by elements of order 1 or 2. At a right-angled inner
+    edge, as walls have where they meet, stresses grow with r^(0.545 - 1) (Williams 1952), and it falls with h^1.09 in
+    the end, whatever the order (Strang and Fix 1973, chapter 8); that is taken.
+    """
+    return float((wanted / error) ** (1.0 / _ORDER_AT_INNER_EDGES))
+
+
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
     assert case.housing is not None
     material = case.material[case.housing.material]
@@ -113,7 +156,7 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, 
     table = case.housing
     assert table is not None
     if table.box is not None:
-        load = _preview_load(expected_elements(wall_volume(table.box), table.box.mesh_size))
+        load = _preview_load(expected_elements(wall_volume(table.box), box_mesh_size(case)))
         preview = MeshPreview(np.array(table.box.size), table.box.mesh_size, bolts=cover_joints(case))
         return preview, _preview_size(case, table.box) + load
     remarks: list[str] = []
@@ -132,17 +175,19 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, 
 def _preview_size(case: Case, box: Box) -> list[dict[str, Any]]:
     assert case.housing is not None
     limit = case.housing.frequency_limit
-    if limit is None:
+    if limit is None or box.mesh_size is None:
         return []
     walls = box.walls
     thinnest = min(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front)
     length = _wave(case, limit).shortest_wave(thinnest)
-    if box.mesh_size <= length / 3.0:
+    size = resolving_size(length, 2)
+    if box.mesh_size <= size:
         return []
     message = (
-        f"elements of {1e3 * box.mesh_size:.3g} mm are longer than 1/3 of the shortest wave, "
+        f"elements of {1e3 * box.mesh_size:.3g} mm are longer than 1/{length / size:g} of the shortest wave, "
         f"{1e3 * length:.3g} mm at {limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
-        f"that frequency come out too high: use a mesh_size of at most {1e3 * length / 3.0:.3g} mm"
+        f"that frequency come out some per cent too high: use a mesh_size of at most {1e3 * size:.3g} mm, "
+        "and see the estimated error of each mode in `gearwhine modes`"
     )
     return [warning("size", message)]
 

@@ -13,6 +13,7 @@ from coupling.machine.parts import rotor_with_gears
 from gearwhine.case import Bearing, Case, CaseError, Problem, RollingStiffness, StopStiffness
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
+from gearwhine.case.bearings import MatrixDamping, RadialDamping
 from gearwhine.case.errors import UNSAID
 from rotors import Bearing as RotorBearing
 from rotors import EquilibriumError, Rotor, RotorError
@@ -135,11 +136,15 @@ def rolling_states(case: Case, rotor: str) -> dict[str, rolling.RollingState]:
 
 def _bearing(case: Case, index: int) -> RotorBearing:
     entry = case.bearing[index]
+    stiffness = _stiffness(case, index)
+    damping = entry.damping_time * stiffness
+    if isinstance(entry.damping, RadialDamping | MatrixDamping):
+        damping = entry.damping.build()
     return RotorBearing(
         entry.name,
         entry.at,
-        _stiffness(case, index),
-        entry.damping.build(),
+        stiffness,
+        damping,
         None if entry.speeds is None else np.array(entry.speeds),
         None if entry.pedestal is None else entry.pedestal.build(),
     )

@@ -14,8 +14,10 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
-from gearwhine.results.operating_point import misalignment_words
+from gearwhine.results.motion import damping_lines
+from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.solve.case_summary import check_case
+from gearwhine.solve.damping import damping_document
 
 if TYPE_CHECKING:
     from coupling.machine.loads import Torque
@@ -108,6 +110,7 @@ HOUSING = (
     ),
     Quantity("size_m", lambda checked: checked.mesh.size),
     _optional("mesh_size_m", lambda checked: checked.mesh.mesh_size),
+    _optional("accuracy", lambda checked: checked.case.housing.accuracy),
     _optional("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
     Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores(checked.mesh.mesh), BORE),
     _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
@@ -206,6 +209,7 @@ PAIR = (
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
     Quantity("mean_force_n", lambda pair: pair.mean_force),
+    Quantity("mean_force_from", lambda pair: pair.force_origin),
     Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
     Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
@@ -344,6 +348,7 @@ CHECK = (
     _optional_part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
     _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
     _optional("provenance", lambda checked: checked.case.provenance or None),
+    _optional("damping", lambda checked: damping_document(checked.case) or None),
     _optional("warnings", lambda checked: checked.warnings or None),
 )
 """Quantities of a checked case."""
@@ -399,6 +404,7 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
         ],
         "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
+        "damping": damping_lines(document.get("damping", ())),
         "operation": [", ".join(_operation_lines(document["operation"]))] if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
@@ -445,6 +451,7 @@ def _pair_summary(pair: Document) -> str:
     line = f"{pair['driver']} → {pair['driven']}: {teeth} teeth, contact ratio {pair['total_contact_ratio']:.3f}"
     if pair["mesh_frequency_hz"] is not None:
         line += f", mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean force {pair['mean_force_n']:.1f} N"
+        line += share_words(pair.get("mean_force_from"))
     return line
 
 
@@ -457,6 +464,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "location": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
+        "damping": damping_lines(document.get("damping", ())),
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],
         "sweep": [counted(document["sweep"]["speeds"], "speed")] if "sweep" in document else [],
@@ -530,6 +538,8 @@ def _housing_lines(housing: Document) -> list[str]:
         shape += f" of {' x '.join(f'{1e3 * length:.6g}' for length in housing['size_m'])} mm"
     if "mesh_size_m" in housing:
         shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
+    if "accuracy" in housing:
+        shape += f", elements as small as modes within {100 * housing['accuracy']:g} % need"
     if "mesh" in housing:
         shape += f", {housing['mesh']['nodes']} nodes, {kinds_of_elements(housing['kinds'])}"
     limit, count = housing["frequency_limit_hz"], housing["modes"]
@@ -627,6 +637,7 @@ def _pair_lines(pair: Document, on_bearings: bool) -> list[str]:
     lines += [_tooth_line(gear) for gear in pair["geometry"]["gears"]]
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"mesh frequency {pair['mesh_frequency_hz']:.2f} Hz, mean mesh force {pair['mean_force_n']:.1f} N")
+        lines[-1] += share_words(pair.get("mean_force_from"))
     origin = pair.get("misalignment_from", "default")
     if origin != "default" or (pair["mean_force_n"] and on_bearings):
         words = misalignment_words(pair.get("misalignment_rad"), origin, None)

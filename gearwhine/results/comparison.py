@@ -237,6 +237,10 @@ RESPONSES = (
 """Quantities of measured responses beside the model's."""
 
 
+_BY_MESH = "discretisation_error"
+_MESH_ERROR = Column("mesh error [%]", _BY_MESH, ".2g", 100.0)
+
+
 def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
     """Return the comparison as the command's JSON."""
     shapes = comparison.shapes
@@ -245,7 +249,12 @@ def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> di
     # Counted below the next full kilohertz over the measured modes, as far as the model's modes are known.
     highest = min(float(np.ceil(last / HERTZ / 1000.0) * 1000.0), solved.trusted_limit_hz)
     count = int(np.count_nonzero(solved.modes.frequencies_hz < highest))
-    return document_of(COMPARISON, comparison) | {"model_modes": {"below_hz": highest, "count": count}}
+    document = document_of(COMPARISON, comparison)
+    errors = solved.modes.discretisation_errors
+    if errors is not None:
+        # Beside each difference: how much of it the mesh may make.
+        document["pairs"] = [pair | {_BY_MESH: float(errors[pair["mode"] - 1])} for pair in document["pairs"]]
+    return document | {"model_modes": {"below_hz": highest, "count": count}}
 
 
 def survey_document(survey: "MappedSurvey") -> dict[str, Any]:
@@ -286,7 +295,7 @@ def report(document: Document) -> Section:
 
 LINKED_PAIR = tuple(
     replace(column, link=lambda pair: shape_places(pair["mode"])) if column.of == "mode" else column
-    for column in columns_of(PAIR)
+    for column in (*columns_of(PAIR), _MESH_ERROR)
 )
 """Columns of a measured mode and its partner, with a link to the partner's shape."""
 _PICTURES = (
@@ -308,6 +317,7 @@ _PAIRS = (
     Column("measured [Hz]", "measured_hz", ".0f"),
     Column("model [Hz]", "model_hz", ".1f"),
     Column("error", "error_percent", shown=lambda pair: f"{pair['error_percent']:+.2f} %"),
+    _MESH_ERROR,
     Column("MAC", "mac", ".3f"),
     Column("confidence", "confidence", ".2f"),
     Column("strength [1/kg]", "strength", ".2e"),

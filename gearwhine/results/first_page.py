@@ -21,7 +21,7 @@ from gearwhine.output.sections import (
 from gearwhine.results.bearing_lives import LONGEST_LIFE
 from gearwhine.results.comparison import LINKED_PAIR, rule_of
 from gearwhine.results.line_columns import LINE_NAME
-from gearwhine.results.motion import leading_lines, path_place, shape_column
+from gearwhine.results.motion import amplitude_words, band_words, leading_lines, path_place, shape_column
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
@@ -416,8 +416,10 @@ def _highest(rows: Sequence[Document]) -> list[str]:
         return []
     near = f", near a mode of the coupled machine ({_near(row)})" if _near(row) else ""
     by = f"; largest part by {row['by']}" if row["by"] else ""
+    between = f" ({band} dB with all damping doubled or halved)" if (band := band_words(row)) else ""
     return [
-        f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {row['amplitude_m_per_s2']:.3g} m/s² peak: "
+        f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {amplitude_words(row)} m/s² peak"
+        f"{between}: "
         f"{arrowed(str(row['name']))}{near}{by}."
     ]
 
@@ -473,7 +475,8 @@ def _near(row: Document) -> str:
 _CAUSES = (
     Column("sensor", "sensor"),
     Column("frequency [Hz]", "frequency_hz", ".1f", link=_paths_of),
-    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
+    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", shown=amplitude_words),
+    Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
     LINE_NAME,
     Column("coupled mode near it", _near),
     Column("mostly through bearing", _through),

@@ -16,7 +16,7 @@ from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
-from gearwhine.results.operating_point import misalignment_words
+from gearwhine.results.operating_point import misalignment_words, share_words
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -260,6 +260,8 @@ CURVES = (
 )
 """Quantities of a pair at even phases of the mesh period."""
 
+_SEATS = {"rigid": " in rigid seats", "housing": " on the modes of the housing"}
+
 HUNTING = (
     Quantity("", lambda mesh: mesh.phases, "hunting_phase", ("hunting_step",), "1", "mesh periods"),
     Quantity(
@@ -430,6 +432,7 @@ PAIR = (
     ),
     Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
     Quantity("mean_force_n", lambda pair: pair.solved.static.force),
+    Quantity("mean_force_from", lambda pair: pair.force_origin),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
     Part("", lambda pair: path_of_contact(pair.solved.geometry), PATH),
@@ -600,12 +603,13 @@ def _mesh(pair: Document) -> list[str]:
     if pair["mesh_frequency_hz"] is not None:
         lines.append(f"Mesh frequency {pair['mesh_frequency_hz']:.2f} Hz")
         lines[-1] += f", torque on the driver {pair['torque_n_m']:.5g} N·m, mesh force {pair['mean_force_n']:.1f} N"
+        lines[-1] += share_words(pair.get("mean_force_from"))
     origin = pair.get("misalignment_from", "default")
     if origin != "default" or pair["mean_force_n"]:
         misalignment = pair.get("misalignment_rad")
         words = misalignment_words(misalignment, origin, misalignment if origin == "operating point" else None)
-        in_seats = " in rigid seats" if pair.get("misalignment_seats") and origin == "operating point" else ""
-        lines.append(words[0].upper() + words[1:] + in_seats)
+        seats = _SEATS.get(pair.get("misalignment_seats", ""), "") if origin == "operating point" else ""
+        lines.append(words[0].upper() + words[1:] + seats)
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
         f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "

@@ -23,6 +23,7 @@ class _Mode(NamedTuple):
     number: int
     frequency: float
     damping_ratio: float
+    discretisation_error: float | None
     strength: float | None
     effective_mass: Any
     survey_shape: "npt.NDArray[np.float64]"
@@ -32,9 +33,20 @@ def _modes(solved: "SolvedHousing") -> list[_Mode]:
     frequencies, ratios = solved.modes.frequencies_hz, solved.total_damping_ratios
     numbers = range(1, len(frequencies) + 1)
     strengths = [None] * len(numbers) if solved.strengths is None else solved.strengths.acceleration
+    errors = solved.modes.discretisation_errors
     masses = solved.checks["effective_mass"]["fractions"]
     return [
-        _Mode(*row) for row in zip(numbers, frequencies, ratios, strengths, masses, solved.survey_shapes, strict=True)
+        _Mode(*row)
+        for row in zip(
+            numbers,
+            frequencies,
+            ratios,
+            [None] * len(numbers) if errors is None else errors,
+            strengths,
+            masses,
+            solved.survey_shapes,
+            strict=True,
+        )
     ]
 
 
@@ -65,6 +77,16 @@ MODE = (
         long_name="housing modal damping ratio",
         heading="damping ratio",
         shown=".4f",
+    ),
+    Quantity(
+        "discretisation_error",
+        lambda mode: mode.discretisation_error,
+        "housing_discretisation_error",
+        unit="1",
+        long_name="estimate of the natural frequency's relative error by the mesh",
+        heading="mesh error [%]",
+        shown=".2g",
+        scale=100.0,
     ),
     Quantity(
         "strength",
@@ -159,6 +181,7 @@ HOUSING: Fields = (
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
     Part("mesh", lambda solved: solved.mesh, MESH_SIZE),
+    Quantity("refinement", lambda solved: solved.refinement or ABSENT),
     Quantity("size_m", lambda solved: np.ptp(solved.mesh.points, axis=0)),
     Quantity("mass_kg", lambda solved: solved.mass),
     Quantity("center_of_mass_m", lambda solved: solved.checks["health"]["center_of_gravity_m"]),
@@ -324,6 +347,7 @@ _MODES = (
     Column("mode", "number", "d"),
     Column("frequency [Hz]", "frequency_hz", ".2f"),
     Column("damping", "damping_ratio", ".4g"),
+    Column("mesh error [%]", "discretisation_error", ".2g", 100.0),
     Column("strength [1/kg]", "strength", ".3e"),
 )
 _CHECKS = (
@@ -367,7 +391,13 @@ def detailed_sections(document: Document) -> tuple[Section, ...]:
 
 
 def _modes_content(document: Document) -> tuple[str | Table, ...]:
-    return (*table_of(_MODES, document["modes"]), modes_sentence(document))
+    return (*table_of(_MODES, document["modes"]), modes_sentence(document), *_refinement(document))
+
+
+def _refinement(document: Document) -> Iterator[str]:
+    if steps := document.get("refinement"):
+        meshes = ", ".join(f"{1e3 * step['mesh_size_m']:.3g} mm {100 * step['largest_error']:.2g} %" for step in steps)
+        yield f"Refined until every mode is within its accuracy; largest estimated error by elements of {meshes}"
 
 
 def modes_sentence(document: Document) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.output.quantity import Quantity
-from gearwhine.output.sections import Column, Document, Table, percent, table_of
+from gearwhine.output.sections import NOTHING, Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
@@ -99,11 +99,62 @@ def shape_column(heading: str) -> Column:
     return Column(heading, "by", link=_shapes_of)
 
 
+def damping_lines(parts: Iterable[Document]) -> list[str]:
+    """Return the damping of the parts of a machine in words, like ones together, and what nobody gave."""
+    alike: dict[str, list[str]] = {}
+    for part in parts:
+        words = part["damping"] + ("" if part["given"] else " (default)")
+        alike.setdefault(words, []).append(part["part"])
+    return [f"{', '.join(names)}: {words}" for words, names in alike.items()]
+
+
+def damping_sentence(document: Document) -> list[str]:
+    """Return the damping behind the lines of a document as a sentence; none where it has none."""
+    lines = damping_lines(document.get("damping", ()))
+    return [f"Damping of {'; '.join(lines)}."] if lines else []
+
+
+_TIGHT, _WIDE = 0.5, 6.0  # widths of a band [dB] below which a line is shown with a digit more, and from which with one
+
+
+def band_words(row: Document) -> str:
+    """Return the band of a line by damping, such as ``-2.1 +3.4``; empty where there is none."""
+    band = row.get("band_db")
+    return NOTHING if band is None else "{:+.1f} {:+.1f}".format(*(value + 0.0 for value in band))
+
+
+def _width(row: Document) -> float:
+    """Width of a line's band by damping [dB]; 0 where there is none."""
+    below, above = row.get("band_db") or (0.0, 0.0)
+    return float(above - below)
+
+
+def amplitude_words(row: Document) -> str:
+    """Return a line's amplitude with as many digits as its band by damping leaves: three, two or one."""
+    width = _width(row)
+    digits = 3 if width < _TIGHT else 2 if width < _WIDE else 1
+    amplitude = row.get("amplitude_m_per_s2")
+    return NOTHING if amplitude is None else plain(amplitude, digits)
+
+
+def level_words(row: Document) -> str:
+    """Return a line's level [dB], with tenths where its band by damping is narrow."""
+    level = row.get("level_db")
+    return NOTHING if level is None else format(level, ".1f" if _width(row) < _TIGHT else ".0f")
+
+
+def plain(value: float, digits: int) -> str:
+    """Return a number with as many digits, without an exponent where there are more before the point."""
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:g}" if rounded < 1e6 else f"{value:.{digits}g}"
+
+
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
     line_frequency(_paths_of),
-    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", ".3g"),
-    Column("level [dB re 1e-6 m/s²]", "level_db", ".1f"),
+    Column("amplitude [m/s², peak]", "amplitude_m_per_s2", shown=amplitude_words),
+    Column("level [dB re 1e-6 m/s²]", "level_db", shown=level_words),
+    Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
     Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
     LINE_NAME,
     shape_column("mostly by"),
@@ -150,6 +201,5 @@ def _line(line: Document) -> str:
     """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
     error = line.get("uncertainty", 0.0)
     beside = "" if error <= _LEAST_ERROR else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
-    # Two digits, without an exponent where there are more before the point.
-    amplitude = float(f"{line['amplitude_m_per_s2']:.2g}")
-    return f"{line['frequency_hz']:.0f} ({amplitude:g}{beside})"
+    digits = 2 if _width(line) < _WIDE else 1
+    return f"{line['frequency_hz']:.0f} ({plain(line['amplitude_m_per_s2'], digits)}{beside})"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from coupling.statics.operating_point import CAUSES, PairLoad
+from gearwhine.case import EQUAL_MESHES
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import (
     Column,
@@ -334,8 +335,16 @@ TAKEN = (
         "misalignment that mesh stiffness and motion take",
     ),
     Quantity("misalignment_taken_from", lambda pair: pair.misalignment.origin, "misalignment_taken_from"),
+    Part(
+        "transmission_error_over_hunting_period_m",
+        lambda pair: pair.hunting,
+        (
+            Quantity("mean", lambda mesh: mesh.mean_transmission_error),
+            Quantity("peak_to_peak", lambda mesh: mesh.peak_to_peak_transmission_error),
+        ),
+    ),
 )
-"""Misalignment that the motion takes of a gear pair."""
+"""Misalignment that the motion takes of a gear pair, and its static transmission error over the hunting period."""
 
 _PAIR_COLUMNS = (
     *columns_of(PAIR),
@@ -779,6 +788,20 @@ def _misalignments(load: Document) -> Iterator[str]:
             pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
         )
         yield f"  {pair['driver']} → {pair['driven']}: {words}"
+        over_hunting_period = pair.get("transmission_error_over_hunting_period_m")
+        if over_hunting_period is not None:
+            yield (
+                f"  {pair['driver']} → {pair['driven']}: {_MICRO * over_hunting_period['peak_to_peak']:.3f} µm of "
+                "transmission error p-p over the hunting period, with the pitch deviations and faults that the "
+                "equilibrium leaves out"
+            )
+
+
+def share_words(origin: str | None) -> str:
+    """Return what the mean force of a pair in a loop of pairs assumes; nothing for others."""
+    if origin != EQUAL_MESHES:
+        return ""
+    return ", if the meshes of its loop of pairs are equally stiff; `gearwhine load` finds the shares"
 
 
 def misalignment_words(misalignment: float | None, origin: str, at_operating_point: float | None) -> str:

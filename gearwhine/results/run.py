@@ -1,5 +1,6 @@
 """Run of a case: quantities of the transient, its spectra and the origin of their lines, and how they are shown."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from operator import attrgetter
@@ -23,6 +24,7 @@ from gearwhine.results.motion import (
     SENSOR_COLUMNS,
     MeshFigures,
     NamedParts,
+    damping_sentence,
     leading_lines,
     line_table,
     mesh_sentence,
@@ -320,6 +322,7 @@ CONVENTIONS = {
     "phase": "of the cosine at t = 0 of the histories' time axis, also where the record begins later",
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
+    "band_db": "change of the line by all damping doubled and halved, below and above, by the linear model",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
 }
 SIGNATURE = (
@@ -341,8 +344,25 @@ RUN = (
     Quantity("to_rpm", lambda solved: solved.speed * solved.turning.speed_ratios[-1] * RPM),
     Quantity("seconds", lambda solved: solved.turning.times[-1]),
     Quantity("revolutions", lambda solved: solved.revolutions),
+    Quantity("train_inertia_kg_m2", lambda solved: solved.machine.train_inertia),
+    Part(
+        "accelerating_torque_n_m",
+        lambda solved: solved.accelerating_torque,
+        (Quantity("least", lambda ends: ends[0]), Quantity("largest", lambda ends: ends[1])),
+    ),
 )
-"""Speeds of the first driver's rotor over a run."""
+"""Speeds of the first driver's rotor over a run, and the torque on it that changes them."""
+
+
+def _acceleration(run: Document) -> str:
+    """Return a sentence on the driving torque of a run."""
+    least, largest = (run["accelerating_torque_n_m"][key] for key in ("least", "largest"))
+    between = f"{largest:.3g}" if math.isclose(least, largest, rel_tol=1e-6) else f"{least:.3g} to {largest:.3g}"
+    return (
+        f"Beside the load, {between} N m at the first driver accelerate the train, of "
+        f"{run['train_inertia_kg_m2']:.3g} kg m² there"
+    )
+
 
 RECORD = (
     Quantity("samples", lambda solved: solved.record.samples),
@@ -602,10 +622,19 @@ ORDER = (
     Quantity("order", lambda row: row["order"]),
     Quantity("highest_amplitude", lambda row: row["highest_amplitude"], heading="highest [peak]", shown=".3g"),
     Quantity("unit", lambda row: row["unit"], heading="unit"),
+    Quantity("level_db", lambda row: row["level_db"], heading="level [dB]", shown=".1f"),
     Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
     Quantity("frequency_hz", lambda row: row["frequency_hz"], heading="that is [Hz]", shown=".0f"),
 )
 
+OVERALL = (
+    Quantity("signal", lambda row: row["signal"], heading="signal"),
+    Quantity("highest_rms", lambda row: row["highest_rms"], heading="highest [rms]", shown=".3g"),
+    Quantity("unit", lambda row: row["unit"], heading="unit"),
+    Quantity("level_db", lambda row: row["level_db"], heading="level [dB]", shown=".1f"),
+    Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
+)
+_LEVELS = "Levels are of rms values, in dB re 1 µm/s² and 1 µN."
 
 _EACH_UNIT = "see run_unit"  # signals differ in their unit
 
@@ -640,6 +669,7 @@ RUN_SIGNATURE = (
     Quantity("window_turns", lambda signature: signature.turns),
     Quantity("trusted_below_hz", lambda signature: signature.limit),
     Quantity("orders", lambda signature: signature.highest()),
+    Quantity("overall", lambda signature: signature.loudest()),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
     Quantity(
         "",
@@ -658,7 +688,7 @@ RUN_SIGNATURE = (
         "order_speed",
         ("order_speed",),
         "rpm",
-        "speed of the leading shaft over each window",
+        "speed of the leading shaft in the middle of each window",
     ),
     Quantity(
         "",
@@ -677,6 +707,15 @@ RUN_SIGNATURE = (
         "unit of the signal's amplitudes",
     ),
     _run_table("run_spectrum", "spectra", ("run_speed", "run_frequency"), "of stretches along the run"),
+    Quantity(
+        "",
+        lambda signature: np.array(list(signature.overall.values()), dtype=np.float32),
+        "run_overall",
+        ("run_signal", "run_speed"),
+        _EACH_UNIT,
+        "root mean square over the lines of each stretch, without the mean",
+        attributes=_run_attributes,
+    ),
     _run_table("run_orders", "orders", ("order_speed", "order"), "by order along the run"),
     Quantity("", lambda signature: list(signature.named), "named_order", ("named_order",)),
     Quantity(
@@ -798,10 +837,11 @@ _PICTURES = (
     Picture("modal-coordinates", "Modal coordinates over time, and their spectra: the modes that answer most."),
     Picture("friction", "Friction between the teeth: force and power over time."),
     Picture(
-        "run-up-waterfall",
-        "Spectra along the run: lines through the origin are orders, upright ones are modes; they meet in resonances.",
+        "run-up-map",
+        "Level over frequency and speed: lines through the origin are orders, upright ones are modes; they meet in "
+        "resonances.",
     ),
-    Picture("run-up-orders", "Amplitude of each order along the run: peaks are resonances."),
+    Picture("run-up-orders", "Level of each order along the run, and the overall level: peaks are resonances."),
 )
 _CONTRIBUTIONS = Picture(
     "contributions",
@@ -813,6 +853,7 @@ _CURVES = (
     Curves("mesh_force_spectrum", ("frequency",), "Mesh force."),
     Curves("run_spectrum", ("run_frequency", "run_speed"), "Spectra along the run."),
     Curves("run_order_amplitude", ("order_speed",), "Orders along the run."),
+    Curves("run_overall", ("run_speed",), "Overall level along the run."),
 )
 
 
@@ -824,13 +865,19 @@ def report(document: Document) -> Section:
     ]
     if document.get("trusted_below_hz"):
         sentences.append(f"The model's modes are complete up to {document['trusted_below_hz']:.0f} Hz.")
+    if document.get("run") is not None:
+        sentences.append(f"{_acceleration(document['run'])}.")
     sentences += _basis_error(document)
+    sentences += damping_sentence(document)
     tables = (
         *table_of(MESH_COLUMNS, document.get("gear_pairs", ()), "Gear meshes"),
         *_line_table(document),
         *table_of(columns_of(BEARING), document.get("bearings", ()), "Bearings"),
+        *table_of(columns_of(OVERALL), document.get("run_signature", {}).get("overall", ()), "Highest overall levels"),
         *table_of(columns_of(ORDER), document.get("run_signature", {}).get("orders", ()), "Orders along the run"),
     )
+    if "run_signature" in document:
+        sentences.append(_LEVELS)
     return Section("Motion", (*sentences, *tables), pictures=_PICTURES, inner=_paths(document), curves=_CURVES)
 
 
@@ -894,15 +941,19 @@ def _content(document: Document) -> Iterator[str | Table]:
             "Levels of rms values re 1 µm/s². Shares are in phase with the line and add up to it; "
             "of parts that cancel each other some exceed 100 %."
         )
+    if document.get("run") is not None:
+        yield _acceleration(document["run"])
     if run is not None:
+        yield from table_of(columns_of(OVERALL), run.get("overall", ()), "Highest overall levels along the run")
         yield from table_of(columns_of(ORDER), _highest_orders(run["orders"]), "Highest of the orders along the run")
+        yield _LEVELS
         yield f"Speed from {run['from_rpm']:.0f} to {run['to_rpm']:.0f} rpm between the first and the last spectrum"
         if any(order["unit"] == "m/s²" for order in run["orders"]) and "trusted_below_hz" in run:
             yield f"Orders of sensors up to {run['trusted_below_hz']:.0f} Hz, where the model is complete"
         if "window_turns" in run:
             yield (
-                f"Orders are means over {run['window_turns']} turns of the leading shaft: a resonance passed within "
-                "them is lower than at steady speed"
+                f"Orders are fitted to windows of {run['window_turns']} turns of the leading shaft: a resonance passed "
+                "within one turn is lower than it was"
             )
     if "steps" in document:
         yield (

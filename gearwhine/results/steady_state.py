@@ -9,7 +9,15 @@ import numpy as np
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
-from gearwhine.results.motion import BEARING, MESH, SENSOR_COLUMNS, NamedParts, line_table, mesh_sentence
+from gearwhine.results.motion import (
+    BEARING,
+    MESH,
+    SENSOR_COLUMNS,
+    NamedParts,
+    damping_sentence,
+    line_table,
+    mesh_sentence,
+)
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -322,6 +330,15 @@ CURVE = (
         "whether no small disturbance grows",
     ),
     Quantity("ending", lambda solved: solved.curve.ending),
+    Quantity(
+        "piece",
+        lambda solved: solved.curve.piece_numbers,
+        "branch_piece",
+        _POINT,
+        "",
+        "number of the piece, from 1: between two pieces nothing is followed",
+    ),
+    Quantity("gaps_rpm", lambda solved: [[end * RPM for end in gap] for gap in solved.curve.gaps]),
     Quantity("account", lambda solved: solved.curve.told(1.0 / RPM, "rpm")),
     Quantity(
         "",
@@ -351,6 +368,7 @@ CURVE = (
         "sensors",
         lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()],
     ),
+    Quantity("assumed_mesh_damping", lambda solved: list(solved.assumed_damping)),
     Rows("loudest", lambda solved: solved.loudest, LOUDEST),
     Rows("bifurcations", lambda solved: solved.curve.bifurcations, EVENT),
     Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
@@ -394,10 +412,9 @@ STEADY_SAME = ("speed_rpm", "coordinates", "load")
 
 
 def steady_document(title: str, solved: "SolvedSteady") -> dict[str, Any]:
-    """Return the steady state as the command's JSON, with a warning where superposition is not valid."""
+    """Return the steady state as the command's JSON, with warnings where it was not followed or superposition fails."""
     document = {"title": title} | document_of(STEADY, solved)
-    if solved.superposed is not None:
-        add_warnings(document, solved.superposition_warnings())
+    add_warnings(document, [*solved.branch_warnings(), *solved.superposition_warnings()])
     return document
 
 
@@ -418,7 +435,7 @@ def report(document: Document) -> Section:
         tables += table_of(columns_of(BEARING), motion.get("bearings", ()), "Bearings")
         tables += line_table(motion["sensors"], "lines")
     tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")
-    return Section("Steady state", (*_content(document), *tables), pictures=_PICTURES)
+    return Section("Steady state", (*_content(document), *damping_sentence(document), *tables), pictures=_PICTURES)
 
 
 _PICTURES = (
@@ -506,6 +523,11 @@ def curve_sentences(curve: Document) -> Iterator[str | Table]:
         yield (
             f"Gear mesh {pair['driver']} → {pair['driven']}: largest force {pair['peak_force_n'][highest]:.0f} N at "
             f"{speeds[highest]:.0f} rpm"
+        )
+    if assumed := curve.get("assumed_mesh_damping"):
+        yield (
+            f"Mesh damping of {', '.join(assumed)} is the default, a ratio of 0.05, as the case gives none; the "
+            "literature has 0.03 to 0.17, and folds and jumps come and go with it"
         )
     yield from table_of(columns_of(LOUDEST), curve.get("loudest", ()))
     for event in curve["bifurcations"]:

@@ -11,6 +11,7 @@ from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
+from gearwhine.results.motion import band_words, damping_sentence
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -119,13 +120,17 @@ MODE = (
 
 
 def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
-    """Return the mesh stiffness at which each loaded flank is linearised, beside its mean without load."""
+    """Return the mesh stiffness at which each loaded flank is linearised, beside its mean without load.
+
+    It is that between the rims; the twist of the gears' bodies is in series with it.
+    """
     contact, unloaded = solved.contact, solved.unloaded.stiffness
     rows = []
     for number, tooth in enumerate(solved.machine.system.contacts):
         if not tooth.loaded:
             continue
         force = None if contact.force is None else float(contact.force[number])
+        twist = solved.machine.meshes[solved.machine.flanks(number)[0]].body_twist
         if force is None:
             linearisation = "tangent at the mesh phase"
         elif contact.stiffness[number] == 0.0:
@@ -138,6 +143,7 @@ def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
                 "taken": linearisation,
                 "stiffness_n_per_m": contact.stiffness[number],
                 "unloaded_mean_n_per_m": unloaded[number],
+                "bodies_n_per_m": None if twist == 0.0 else 1.0 / twist,
                 "force_n": force,
             }
         )
@@ -522,7 +528,7 @@ _WHIRL = 0.5  # circularity from which a sense of whirl is named
 
 def report(document: Document) -> Section:
     """Chapter of the report."""
-    content = tuple(_content(document))
+    content = (*_content(document), *damping_sentence(document))
     return Section("Coupled system", content, pictures=_PICTURES, curves=_CURVES)
 
 
@@ -599,7 +605,9 @@ def _mesh_sentence(mesh: Document) -> str:
     stiffness, unloaded = 1e-6 * mesh["stiffness_n_per_m"], 1e-6 * mesh["unloaded_mean_n_per_m"]
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
-    return f"Mesh stiffness of {mesh['name']}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}."
+    bodies = mesh.get("bodies_n_per_m")
+    twist = "" if bodies is None else f"; behind the rims the bodies twist by {1e-6 * bodies:.4g} N/µm"
+    return f"Mesh stiffness of {mesh['name']}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}{twist}."
 
 
 def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
@@ -688,6 +696,7 @@ def _lines(lines: list[Document]) -> Iterator[str | Table]:
         of_sensor = [
             {"sensor": sensor, "frequency_hz": line["frequency_hz"], "cause": line["cause"]}
             | {name: line["sensor_acceleration_m_per_s2"][name][sensor] for name, _, _ in _PARTS}
+            | ({"band_db": line["band_db"][sensor]} if "band_db" in line else {})
             for line in lines
         ]
         rows += sorted(of_sensor, key=lambda row: -row["together"])[:_LINES]
@@ -704,6 +713,7 @@ _LINE_COLUMNS = (
     Column("by transmission error", "by_transmission_error", ".3g"),
     Column("by load shuttling", "by_load_shuttling", ".3g"),
     Column("together", "together", ".3g"),
+    Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
 )
 
 _CROSSING_COLUMNS = (

@@ -6,7 +6,7 @@ from typing import Any
 
 from coupling.gears import GearPairGeometry
 from coupling.machine.axial_location import AxialLocation
-from gearwhine.case import Case, GearPair, Rotor, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
@@ -61,6 +61,8 @@ class CheckedPair:
         Mesh frequency [Hz]; None without an operation.
     torque : float or None
         Torque on the driver [N m]; None without an operation.
+    force_origin : str
+        See :func:`gearwhine.case.force_origins`.
     """
 
     given: GearPair
@@ -68,6 +70,7 @@ class CheckedPair:
     misalignment: TakenMisalignment
     mesh_frequency: float | None
     torque: float | None
+    force_origin: str
 
     @property
     def mean_force(self) -> float | None:
@@ -171,8 +174,9 @@ def checked_pairs(case: Case) -> Iterator[CheckedPair]:
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
-    misalignments = taken_misalignments(case, None)
-    for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, strict=True):
+    misalignments = taken_misalignments(case, None, is_sought=False)
+    origins = force_origins(case)
+    for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, origins, strict=True):
         pair = CheckedPair(*row)
         build_pair(case, pair.given).require_sound_faults(pair.geometry)
         yield pair

@@ -37,7 +37,7 @@ from coupling.gears.loaded.optimal_relief import (
 from coupling.linear.mesh_harmonics import MeshHarmonicModel
 from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.operating_point import OperatingPoint
-from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case import Case, CaseError, Problem, force_origins, require
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
@@ -115,6 +115,8 @@ class PairAnalysis:
     optimum : ReliefOptimum or None
         Best relief for the case's torque, with all teeth alike; None unless asked for, and without a torque or
         single pairs.
+    force_origin : str
+        See :func:`gearwhine.case.force_origins`.
     """
 
     given: GivenPair
@@ -126,6 +128,7 @@ class PairAnalysis:
     pitch_pressure: float | None
     harris: HarrisMap | None = None
     optimum: ReliefOptimum | None = None
+    force_origin: str = "torques"
 
     @property
     def label(self) -> str:
@@ -257,7 +260,9 @@ def analyse_pairs(
     ``point`` is the machine's operating point, where it is solved.
     """
     rows = zip(case.gear_pair, solved, taken_misalignments(case, point), strict=True)
-    return tuple(_analysis(case, entry, pair, misalignment) for entry, pair, misalignment in rows)
+    analysed = (_analysis(case, entry, pair, misalignment) for entry, pair, misalignment in rows)
+    origins = force_origins(case)
+    return tuple(replace(pair, force_origin=origin) for pair, origin in zip(analysed, origins, strict=True))
 
 
 def first_touch(contact: ToothContact, phases: FloatArray) -> FloatArray:

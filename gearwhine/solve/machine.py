@@ -10,6 +10,8 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from coupling import CoupledMachine
+from coupling.errors import CouplingError, EquilibriumNotFoundError
+from coupling.gears import GearError
 from coupling.gears.geometry.pair import pair_label
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
@@ -26,8 +28,12 @@ from gearwhine.solve.housing_modes import SolvedHousing, base_participation, sol
 from housing import ModeSet
 from housing.housing import RESPONSE_ORDERS
 from housing.modes.residual_modes import leading_residual_modes
+from rotors import EquilibriumError, RotorError
 
 FloatArray = npt.NDArray[np.float64]
+
+NO_OPERATING_POINT = (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError)
+"""Errors of a machine whose equilibrium is not found."""
 
 _MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparison, which gives the error
 
@@ -162,12 +168,13 @@ def point_of_pairs(
 ) -> OperatingPoint | None:
     """Solve the operating point that gives gear pairs their misalignment, on rigid seats where there is no housing.
 
-    None where no pair is left to it.
+    None where no pair is left to it, and where the machine has none and only misalignments that the case leaves out
+    would follow from it.
 
     Raises
     ------
     CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError
-        Where the machine has no operating point.
+        Where the machine has no operating point, and bearings or flanks are left to it explicitly.
     """
     if not any(case.finds_misalignment(pair) for pair in case.gear_pair):
         return None
@@ -175,7 +182,13 @@ def point_of_pairs(
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     component = None if housing is None else housing.component
-    return describe_machine(case, component, grounded=component is None).operating_point(gravity(case))
+    machine = describe_machine(case, component, grounded=component is None)
+    try:
+        return machine.operating_point(gravity(case))
+    except NO_OPERATING_POINT:
+        if case.needs_operating_point:
+            raise
+        return None
 
 
 def basis_error(

@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import Machine
-from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import GearError
+from coupling.gears.geometry.pair import pair_label
+from coupling.gears.loaded.gear_pair import load_gear_pair
+from coupling.gears.loaded.transmission_error import LoadedMesh
 from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
@@ -25,11 +26,10 @@ from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import ReducedHousing, reduce_housing
+from gearwhine.solve.machine import NO_OPERATING_POINT, ReducedHousing, reduce_housing
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
-from rotors import EquilibriumError, RotorError
 from rotors.rolling_bearings import BallRow, RollerRow, Row
 
 FloatArray = npt.NDArray[np.float64]
@@ -40,7 +40,7 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 _PLACES = 201  # places along a shaft at which its deflection is given
 _ROUNDED = 1e-15  # deflection up to which it counts as zero [m]
 _DIFFERENCE = 0.1  # difference of two numbers up to which no warning is given, as a part of the larger one
-_ALIGNED = 1e-6  # difference of misalignments up to which no warning is given [rad]
+_ALIGNED = 0.1  # difference of misalignments over the face up to which no warning is given, of the teeth's deflection
 _UNEVEN = 2.0  # K_Hβ above which a face carries unevenly
 _SHORT_LIFE = 1000.0  # life below which a warning is given [h]
 _WRONG_SIDE = 1e-3  # part of a bearing's force that balls in angular contact may carry against their angle
@@ -97,10 +97,21 @@ class LoadedBearing:
 
 @dataclass(frozen=True, eq=False)
 class LoadedPair:
-    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take."""
+    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take.
+
+    Attributes
+    ----------
+    load : PairLoad
+        Of sound teeth without pitch deviations.
+    misalignment : TakenMisalignment
+    hunting : LoadedMesh or None
+        Static mesh over the hunting period, of teeth with their pitch deviations and faults under the force and the gap
+        of the operating point; None where all mesh periods are alike, and where it is not asked for.
+    """
 
     load: PairLoad
     misalignment: TakenMisalignment
+    hunting: LoadedMesh | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +195,7 @@ def solve_load(
     over_torque: bool = False,
     sensitivity: bool = False,
     line: str | None = None,
+    over_hunting_period: bool = False,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
@@ -199,6 +211,8 @@ def solve_load(
         Whether to compute its gradients, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
     line : str, optional
         Line that parameters are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
+    over_hunting_period : bool
+        Whether to solve pairs with pitch deviations or damaged teeth over their hunting period, too.
 
     Raises
     ------
@@ -238,11 +252,28 @@ def solve_load(
         for bearing in point.bearings
     )
     pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
+    if over_hunting_period:
+        pairs = tuple(
+            replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
+        )
     gradients = None
     if sensitivity:
         assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
         gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
     return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, points, gradients)
+
+
+def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:
+    """Return the static mesh of a pair over its hunting period, at the force and the gap of the operating point."""
+    geometry = machine.pair_geometries[number]
+    gears = (geometry.driver, geometry.driven)
+    if load.force == 0.0 or not any(gear.pitch_deviations or gear.faults for gear in gears):
+        return None
+    # Inertias are for the damping alone.
+    pair = replace(machine.gear_pairs[number], misalignment=0.0, face_gap=load.face_gap, damping=0.0)
+    torque = math.copysign(load.force * geometry.driver.base_radius, machine.pair_torques[number])
+    speed = machine.speeds[load.pair.driver.shaft]
+    return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting
 
 
 def _given_loads(case: Case) -> dict[str, FloatArray]:
@@ -276,10 +307,13 @@ def find_load(
         return None, []
     try:
         solved = solve_load(case, housing, progress)
-    except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError) as error:
+    except NO_OPERATING_POINT as error:
         if case.needs_operating_point:
             raise
         message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
+        aligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
+        if aligned:
+            message += f"; the misalignment of {', '.join(aligned)} is taken as 0"
         return None, [warning("operating point", message)]
     return solved, load_warnings(case, solved)
 
@@ -478,21 +512,28 @@ def _face_warnings(load: PairLoad) -> Iterator[dict[str, Any]]:
 
 
 def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
-    """Warn where the misalignment that the case gives is not the one that the deflections make."""
+    """Warn where the misalignment that the motion takes is not the one that the deflections make.
+
+    Flanks of an idle pair have no deflection to hold the difference against.
+    """
     for pair in solved.pairs:
-        typed, at_equilibrium = pair.misalignment.taken, pair.load.misalignment
-        if pair.misalignment.origin != "case" or typed is None:
+        load, taken, at_equilibrium = pair.load, pair.misalignment.taken, pair.load.misalignment
+        if pair.misalignment.origin == "operating point" or taken is None or load.force == 0.0:
             continue
-        if abs(typed - at_equilibrium) <= max(_DIFFERENCE * max(abs(typed), abs(at_equilibrium)), _ALIGNED):
+        apart = abs(taken - at_equilibrium) * load.pair.geometry.face_width
+        if apart <= _ALIGNED * load.tooth_deflection:
             continue
-        driver, driven = pair.load.names
+        driver, driven = load.names
+        said = f"the case gives a misalignment of {1e6 * taken:.4g} µrad, which the motion takes"
+        if pair.misalignment.origin == "default":
+            said = "the motion takes the flanks as aligned, as no face_width is given"
         yield warning(
             "misalignment",
-            f"{pair.load.pair.label}: the case gives a misalignment of {1e6 * typed:.4g} µrad, which the motion takes; "
-            f"the equilibrium finds {1e6 * at_equilibrium:.4g} µrad",
+            f"{load.pair.label}: {said}; the equilibrium finds {1e6 * at_equilibrium:.4g} µrad, {1e6 * apart:.3g} µm "
+            f"apart over the face, where the teeth deflect by {1e6 * load.tooth_deflection:.3g} µm",
             driver=driver,
             driven=driven,
-            given_rad=typed,
+            given_rad=taken,
             found_rad=at_equilibrium,
         )
 

@@ -16,6 +16,7 @@ from coupling import CoupledMachine, coupled_modes
 from coupling import stability as coupled_stability
 from coupling.gears.geometry.pair import pair_label
 from coupling.linear.complex_modes import Stability
+from coupling.linear.damping_band import DampingBand
 from coupling.linear.frequency_response import BasisError
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
@@ -31,6 +32,8 @@ _DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, 
 _ROUNDING = 1e-6  # part of the load below which a component counts as zero
 _MOST = 0.5  # part of the power of an acceleration above the limit without a warning
 _SETTLED = 0.02  # free vibration at the begin of a record, as a part of that at the start, without a warning
+_PARTED = 1e-3  # part of the time in which flanks are apart without a warning
+_HELD = 0.1  # part of the resistance to a tilt of the face that flanks may have without that warning
 _HIGHEST = 5  # lines of a sensor that are looked at
 _OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
 
@@ -311,6 +314,38 @@ def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
     return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))
 
 
+def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> list[dict[str, Any]]:
+    """Warn of flanks that part in motion and whose resistance to tilting, linear about the mean load, holds shafts.
+
+    Parameters
+    ----------
+    machine : CoupledMachine
+    contact_loss : ndarray, shape (c,)
+        Part of the time in which the flanks of each contact are apart.
+    """
+    system = machine.system
+    rigid, stiffest = system.rigid_body_motions
+    tilts = [one for one in system.linear if one.of_contact is not None and contact_loss[one.of_contact] > _PARTED]
+    if not tilts:
+        return []
+    held = system.mean_stiffness + stiffest * rigid @ rigid.T
+    warnings = []
+    for tilt in tilts:
+        assert tilt.of_contact is not None
+        yielding = tilt.directions.T @ np.linalg.solve(held, tilt.directions)
+        # Part of a moment on the slope of the face that its flanks resist, and not the shafts.
+        part = float((tilt.stiffness @ yielding)[0, 0])
+        name, loss = system.contacts[tilt.of_contact].name, float(contact_loss[tilt.of_contact])
+        if part > _HELD:
+            message = (
+                f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the "
+                f"shafts; the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, "
+                "as under the mean load"
+            )
+            warnings.append(warning("parted flanks", message, contact=name, contact_loss=loss, part=part))
+    return warnings
+
+
 _BANDS = 8  # bands of equal width up to the limit
 _OF_A_BAND = 12  # frequencies in each band
 
@@ -330,15 +365,41 @@ def add_uncertainty(document: dict[str, Any], error: BasisError | None, limit_hz
     """
     if error is None:
         return
-    holders = [document, *document.get("motions", ())]
-    sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
-    rows = [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
+    rows = _sensor_lines(document)
     frequencies = np.unique([line["frequency_hz"] for _, line in rows])
     errors = error.at(_TWO_PI * frequencies)
     for name, line in rows:
         line["uncertainty"] = float(errors[name][np.searchsorted(frequencies, line["frequency_hz"])])
     if limit_hz is not None:
         document["basis_error"] = _bands(error, limit_hz)
+
+
+def _sensor_lines(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Return the lines of a document's sensors, and of those of its motions, each with the sensor's name."""
+    holders = [document, *document.get("motions", ())]
+    sensors = [sensor for holder in holders for sensor in holder.get("sensors", ())]
+    return [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
+
+
+def add_damping_bands(document: dict[str, Any], bands: DampingBand) -> None:
+    """Add ``band_db`` to every line of the document's sensors, [below, above]: damping doubled and halved.
+
+    ``mesh_lines`` have one by sensor.
+    """
+    rows, harmonics = _sensor_lines(document), document.get("mesh_lines") or ()
+    frequencies = np.unique([line["frequency_hz"] for line in (*(line for _, line in rows), *harmonics)])
+    if not frequencies.size or not bands.machine.sensor_rows:
+        return
+    by_sensor = bands.at(_TWO_PI * frequencies)
+
+    def band(sensor: str, line: dict[str, Any]) -> list[float]:
+        below, above = by_sensor[sensor][np.searchsorted(frequencies, line["frequency_hz"])].tolist()
+        return [below, above]
+
+    for sensor, line in rows:
+        line["band_db"] = band(sensor, line)
+    for line in harmonics:
+        line["band_db"] = {sensor: band(sensor, line) for sensor in by_sensor}
 
 
 def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:

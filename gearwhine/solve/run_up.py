@@ -1,4 +1,10 @@
-"""Signature of a run-up or run-down: spectra along the run, and orders over the speed."""
+"""Signature of a run-up or run-down: spectra along the run, order cuts and overall level over the speed.
+
+Spectra are those of windows in time, order cuts those of windows in revolutions, see
+:mod:`coupling.signals.order_tracking`. Both reach from the first speed of the run to the last. A line of order o whose
+shaft gains n' revolutions a second each second moves by o n' T over a window of the duration T, whose own lines are
+1 / T apart: T = 2 / √(o n') balances both.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -9,7 +15,8 @@ import numpy.typing as npt
 
 from coupling import signals as signature
 from coupling.linear.excitation_orders import excitation_lines
-from gearwhine.case import Case, speed_ratios
+from coupling.signals import decibels, peak_of_rms
+from gearwhine.case import Case, OrderTracking, mesh_frequencies, speed_ratios
 from gearwhine.output.quantity import warning
 from gearwhine.solve.transient import SolvedTransient
 
@@ -17,8 +24,11 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.1  # part of the highest speed below which samples are left out: a turn would take too many of them
-_ROWS = 28  # stretches of the waterfall, which overlap by half
-_WINDOWS = 60  # windows of the order map, about, which overlap by half
+_LONGEST = 15  # part of the run that a window of the spectra takes at most
+_SPECTRUM_OVERLAP = 0.9  # part of a window of the spectra that the next one shares
+_MOST_WINDOWS = 400  # largest number of spectra and of order cuts along a run
+_FEWEST_SAMPLES = 60  # least number of samples in which the machine turns
+_WINDOWS = 60  # part of the run that a window of the orders takes, where these allow it
 _HARMONICS = 3  # harmonics of each mesh that are followed
 _ABOVE = 1.25  # highest order of the map over the highest named one
 _APART, _PARTED = 3.0, 2.0  # lines of a window between orders: wanted, and the least that Hann's window separates
@@ -38,13 +48,15 @@ class RunSignature:
         Spectra of stretches along the run, up to the trusted limit.
     speeds_rpm : ndarray, shape (t,)
         Speed of the leading shaft in the middle of each stretch [rpm], of the sign of the speed of operation.
+    overall : dict of str to ndarray, shape (t,)
+        Overall level: rms over the lines of each spectrum, without the mean, in the signal's unit.
     orders : dict of str to coupling.signals.OrderMap
         Orders, in cycles each turn of the leading shaft, over its speeds of that sign; NaN of a sensor where an order's
         frequency is beyond the trusted limit.
     named : dict of str to float
         Orders that have names: shafts and harmonics of the meshes, of those of equal order one name for all.
     turns : int
-        Turns of the leading shaft in a window of the orders; an amplitude is that of the mean over it.
+        Turns of the leading shaft in a window of the orders.
     limit : float
         Trusted limit: the frequency up to which the orders of sensors are complete [Hz].
     """
@@ -52,6 +64,7 @@ class RunSignature:
     units: dict[str, str]
     spectra: dict[str, signature.Spectrogram]
     speeds_rpm: FloatArray
+    overall: dict[str, FloatArray]
     orders: dict[str, signature.OrderMap]
     named: dict[str, float]
     turns: int
@@ -76,11 +89,25 @@ class RunSignature:
                         "name": order_name,
                         "order": order,
                         "highest_amplitude": float(along[place]),
+                        "level_db": float(decibels(along[place])),
                         "at_rpm": float(60.0 * orders.speeds[place]),
                         "frequency_hz": float(order * abs(orders.speeds[place])),
                     }
                 )
         return rows
+
+    def loudest(self) -> list[dict[str, Any]]:
+        """Return the highest overall level of each signal along the run."""
+        return [
+            {
+                "signal": name,
+                "unit": self.units[name],
+                "highest_rms": float(overall.max()),
+                "level_db": float(decibels(peak_of_rms(overall.max()))),
+                "at_rpm": float(self.speeds_rpm[int(np.argmax(overall))]),
+            }
+            for name, overall in self.overall.items()
+        ]
 
     def highest_of(self, signal: str) -> list[dict[str, Any]]:
         """Return the rows of :meth:`highest` of one signal, the highest order first."""
@@ -98,6 +125,8 @@ class _Windows:
     span : slice
     turns : int
         Turns of the leading shaft in each window.
+    step : float
+        Turns from the middle of a window to the next.
     named : dict of str to float
         Orders that windows of that length separate.
     merged : tuple of str
@@ -106,6 +135,7 @@ class _Windows:
 
     span: slice
     turns: int
+    step: float
     named: dict[str, float]
     merged: tuple[str, ...]
 
@@ -127,18 +157,23 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * _ABOVE * max(named.values())))
-    length = 2 * len(times) // (_ROWS + 1)
-    units, spectra, orders = {}, {}, {}
+    length = _window_length(case, solved, times)
+    step = max(round((1.0 - _SPECTRUM_OVERLAP) * length), len(times) // _MOST_WINDOWS, 1)
+    units, spectra, overall, orders = {}, {}, {}, {}
     signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
     for number in solved.machine.loaded_contacts:
         name = solved.machine.system.contacts[number].name
         signals[name] = solved.histories.mesh_force[name], "N"
     for name, (signal, unit) in signals.items():
-        spectrogram = signature.spectrogram(signal[span], interval, length, length // 2, start=float(times[0]))
-        turned = signature.resample_by_angle(signal[span], times, turning, turns_per_second, per_turn=per_turn)
-        units[name], spectra[name] = unit, _up_to(spectrogram, solved.trusted_limit)
+        along = signature.spectrogram(
+            signal[span], interval, length, step, start=float(times[0]), to_the_ends=True
+        ).up_to(solved.trusted_limit)
+        units[name], spectra[name], overall[name] = unit, along, along.rms
+        turned = signature.resample_by_angle(
+            signal[span], times, turning, turns_per_second, per_turn=per_turn, whole_turns=False
+        )
         mapped = signature.order_map(
-            turned, turns=cut.turns, step=max(cut.turns // 2, 1), follow=sorted(set(named.values()))
+            turned, turns=cut.turns, step=cut.step, window=_tracking(case).window, follow=sorted(set(named.values()))
         )
         mapped = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
         orders[name] = (
@@ -146,7 +181,25 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
         )
     middles = next(iter(spectra.values())).times
     speeds_rpm = 60.0 * sense * turns_per_second * turning.at(middles)[1]
-    return RunSignature(units, spectra, speeds_rpm, orders, named, cut.turns, solved.trusted_limit)
+    return RunSignature(units, spectra, speeds_rpm, overall, orders, named, cut.turns, solved.trusted_limit)
+
+
+def _tracking(case: Case) -> OrderTracking:
+    """Return the windows of the order cuts."""
+    run = None if case.transient is None else case.transient.run
+    return OrderTracking() if run is None else run.orders
+
+
+def _window_length(case: Case, solved: SolvedTransient, times: FloatArray) -> int:
+    """Return the number of samples of a window of the spectra: T = 2 / √(o n') for the highest mesh order o."""
+    assert solved.turning is not None
+    assert case.operation is not None
+    turns_per_second = abs(case.operation.speed) / _TWO_PI
+    gain = turns_per_second * float(np.abs(solved.turning.at(times)[2]).max())
+    order = max(mesh_frequencies(case)) / turns_per_second
+    interval, longest = float(times[1] - times[0]), len(times) // _LONGEST
+    shortest = 2.0 / math.sqrt(order * gain) / interval if gain > 0.0 else longest
+    return 2 * max(round(0.5 * min(shortest, longest)), 2)
 
 
 def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
@@ -172,8 +225,8 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
         return None
     span = _turning_span(turning.at(times)[1])
     times = times[span]
-    if len(times) < 2 * _ROWS:
-        return f"{len(times)} samples in which the machine turns; expected {2 * _ROWS} or more"
+    if len(times) < _FEWEST_SAMPLES:
+        return f"{len(times)} samples in which the machine turns; expected {_FEWEST_SAMPLES} or more"
     turns_per_second = abs(case.operation.speed) / _TWO_PI
     first, last = turns_per_second * turning.at(times[[0, -1]])[0]
     # As `resample_by_angle` counts them: the end of the last sample's interval closes a turn.
@@ -194,6 +247,11 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
         # Windows of whole turns of every shaft have every order as a line.
         turns = math.ceil(turns / whole) * whole
     turns = min(turns, max(2 * total // _FEWEST, 2))
+    tracking = _tracking(case)
+    if tracking.resolution is not None:
+        turns = math.ceil(1.0 / tracking.resolution - 1e-9)
+        if turns > total:
+            return f"{total} turns of the leading shaft for windows of {turns}, by the resolution of the orders"
     # Where two orders are too close to each other, the lower harmonic or the first shaft is followed.
     followed: dict[str, float] = {}
     for name, order in named.items():
@@ -203,7 +261,8 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
     merged = tuple(name for name in named if name not in followed)
     if not followed:
         return f"windows of {turns} turns tell no order apart"
-    return _Windows(span, turns, followed, merged)
+    step = max((1.0 - tracking.overlap) * turns, total / _MOST_WINDOWS)
+    return _Windows(span, turns, step, followed, merged)
 
 
 def _turning_span(rates: FloatArray) -> slice:
@@ -233,13 +292,6 @@ def _complete(table: signature.OrderMap, limit: float) -> signature.OrderMap:
         table,
         amplitude=np.where(np.outer(turning, table.orders) <= most, table.amplitude, np.nan),
         followed={order: np.where(order * turning <= most, along, np.nan) for order, along in table.followed.items()},
-    )
-
-
-def _up_to(spectrogram: signature.Spectrogram, limit: float) -> signature.Spectrogram:
-    below = spectrogram.frequencies <= limit * (1.0 + 1e-9)
-    return signature.Spectrogram(
-        spectrogram.times, spectrogram.frequencies[below], spectrogram.amplitude[:, below], spectrogram.window
     )
 
 

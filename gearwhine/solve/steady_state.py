@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
+from coupling.gears.geometry.pair import pair_label
 from coupling.machine.base_motion import BaseMotion
+from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.periodic.continuation import ResponseCurve
 from coupling.periodic.response import PeriodicResponse
 from coupling.periodic.superposition import (
@@ -27,7 +29,7 @@ from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
 from gearwhine.from_case.machine import base_motion
-from gearwhine.output.quantity import warning
+from gearwhine.output.quantity import RPM, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.machine import in_space
@@ -41,6 +43,12 @@ _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
 _LINES = 20  # reported lines of each signal
 _NAMED = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
 _DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
+
+_NARROW = 0.01  # width over that of the whole range below which ranges are told together
+_WHY_NOT = (
+    "the branch is lost there and no other start led to a motion; --points 400 takes shorter steps, a narrower [sweep] "
+    "more of them, and `run` or `sweep` shows what the machine does there"
+)
 
 CURVE_TOLERANCE = 1e-5
 """Relative tolerance of the points of a branch: a tenth of a transient's default."""
@@ -160,6 +168,8 @@ class SolvedSteady:
         Rms of each sensor's acceleration up to the trusted limit at every point of the branch [m/s²].
     loudest : tuple of LoudestPoint
         Loudest point of each sensor on the branch.
+    assumed_damping : tuple of str
+        Gear pairs whose mesh damping the case leaves to the default.
     """
 
     machine: CoupledMachine
@@ -168,6 +178,15 @@ class SolvedSteady:
     branch_rms: dict[str, FloatArray] = field(default_factory=dict)
     superposed: SuperposedResponse | None = None
     loudest: tuple[LoudestPoint, ...] = ()
+    assumed_damping: tuple[str, ...] = ()
+
+    @property
+    def contact_loss(self) -> FloatArray:
+        """Largest part of the time in which the flanks of each contact are apart in any of the motions, shape (c,)."""
+        losses = [motion.response.contact_loss for motion in self.motions]
+        losses += [] if self.superposed is None else [self.superposed.contact_loss]
+        losses += [] if self.curve is None else [self.curve.contact_loss.max(axis=0)]
+        return np.asarray(np.max(losses, axis=0))
 
     def bearing_parts(self, motion: SteadyMotion | None = None) -> list[tuple[str, SignalParts]]:
         """Mean and alternating part of each bearing's load in one motion, or in all that are superposed.
@@ -182,6 +201,31 @@ class SolvedSteady:
             mean, rms = np.mean([part.mean for part in parts], axis=0), np.hypot.reduce([part.rms for part in parts])
             loads.append((name, SignalParts(mean, rms, np.sum([part.peak for part in parts], axis=0))))
         return loads
+
+    def branch_warnings(self) -> list[dict[str, Any]]:
+        """Warnings of every range of speeds over which no motion was followed; narrow ones together."""
+        curve = self.curve
+        if curve is None or not curve.gaps:
+            return []
+        low, high = sorted((abs(curve.begin), abs(curve.aim)))
+        gaps = [tuple(sorted((RPM * abs(first), RPM * abs(last)))) for first, last in curve.gaps]
+        narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW * RPM * (high - low)]
+        warnings = []
+        for first, last in (gap for gap in gaps if gap not in narrow):
+            message = (
+                f"no motion was followed between {first:.5g} and {last:.5g} rpm of {RPM * low:.5g} to "
+                f"{RPM * high:.5g}: {_WHY_NOT}"
+            )
+            warnings.append(warning("branch range", message, from_rpm=first, to_rpm=last))
+        if narrow:
+            width = sum(last - first for first, last in narrow)
+            widest = max(narrow, key=lambda gap: gap[1] - gap[0])
+            message = (
+                f"no motion was followed in {len(narrow)} narrow ranges, {width:.4g} rpm together, the widest "
+                f"{widest[0]:.6g} to {widest[1]:.6g} rpm: resonances that next to nothing damps, or flanks that graze"
+            )
+            warnings.append(warning("branch ranges", message, ranges_rpm=[list(gap) for gap in narrow]))
+        return warnings
 
     def superposition_warnings(self) -> list[dict[str, Any]]:
         """Warnings where the sum of the groups' motions is no longer near the motion under all of them."""
@@ -285,12 +329,16 @@ def solve_steady(
         seen=seen,
     )
     progress("the motions at the speed of operation")
-    reached = sorted((float(curve.speeds.min()), float(curve.speeds.max())))
-    responses = curve.at(speed) if reached[0] <= speed <= reached[1] else [periodic_response(machine.system)]
+    responses = curve.at(speed) if curve.passes(speed) else [periodic_response(machine.system)]
     motions = tuple(_motion(case, machine, housing, speed, response, base) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
     loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
-    return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)
+    assumed = tuple(
+        pair_label(pair.driver, pair.driven)
+        for pair in case.gear_pair
+        if not pair.model_fields_set & {"damping_ratio", "damping"}
+    )
+    return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest, assumed_damping=assumed)
 
 
 def _loudest(
@@ -390,6 +438,7 @@ def _motion(
     limit = _HARMONICS * ratio * max(mesh_frequencies(case), default=1000.0) if case.gear_pair else 1000.0
     if housing is not None:
         limit = housing.trusted_limit_hz
-    samples = 2 ** math.ceil(math.log2(max(_OVERSAMPLING * limit * response.period, _LEAST_SAMPLES)))
+    rate = max(_OVERSAMPLING * limit, least_sampling_rate(response.system)[0])
+    samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
     record = response.record(transient_outputs(machine), samples)
     return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, base), limit)

@@ -114,6 +114,18 @@ class SolvedTransient:
         return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _TWO_PI
 
     @property
+    def accelerating_torque(self) -> tuple[float, float]:
+        """Least and largest torque that accelerates the train over a run, at the first driver's rotor [N m].
+
+        It comes on top of the torque that the load takes, and is below zero where the train slows down.
+        """
+        if self.turning is None:
+            return 0.0, 0.0
+        times = self.turning.times
+        gains = self.turning.at(times[:-1] if times.size > 1 else times)[2] * abs(self.speed)
+        return self.machine.train_inertia * float(gains.min()), self.machine.train_inertia * float(gains.max())
+
+    @property
     def averages(self) -> int:
         """Number of stretches over which the spectra were averaged."""
         return next(

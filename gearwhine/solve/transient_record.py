@@ -7,13 +7,17 @@ that is killed, interrupted or fails leaves its blocks; the next run with the sa
 before any damage. A run of anything else clears them away.
 
 Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
-the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. A record
+the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. They are
+closer together where an excitation of a higher frequency asks for it, see :mod:`coupling.machine.driving_frequencies`:
+an inverter's ripple above half the sampling rate would be a false line. A record
 that fits in memory stays like that, and its spectra are those of the whole. A longer one is filtered as it comes and
 stored at four times that frequency: its histories and spectra are right up to there, which is also as far as the
 model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
 
-Window: lines are exact where every shaft turns whole times and every excitation makes whole periods in the record, or
-in a stretch of a long one. Otherwise, and where a load varies over time, Hann's window is taken.
+Window: lines are exact where every shaft turns whole times and every excitation makes whole periods. Spectra are
+therefore taken over the last such stretch of the record. Where the record holds none, and where a load varies over
+time, Hann's window is taken; at constant speed the stretch then holds whole periods of the meshes at least, whose lines
+keep their height.
 """
 
 import math
@@ -34,10 +38,15 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledSystem, SpeedProfile, TransientSettings, amplitude_spectrum
-from coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
+from coupling.machine.driving_frequencies import (
+    driving_frequencies,
+    element_passes,
+    least_sampling_rate,
+    varies_within,
+)
 from coupling.signals.decimation import Decimation
 from coupling.signals.decimation import decimation as coupled_decimation
-from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum
+from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum, whole_period_samples
 from coupling.time.histories import Histories, ModalRecord
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.case import Case, CaseError, Problem, speed_ratios
@@ -52,6 +61,7 @@ FloatArray = npt.NDArray[np.float64]
 _TWO_PI = 2.0 * math.pi
 _OVERSAMPLING = 100.0  # sampling of the integration over the highest frequency of interest
 _FEWEST_SAMPLES = 16  # least number of samples of an integration
+_MOST_SAMPLES = 2_000_000_000  # largest number that an excitation may ask for: days of computing
 _STORED_SAMPLING = 4.0  # sampling of stored long records over that frequency: aliases are a wide transition away
 RECORD_BYTES = 128 << 20
 """The longest record that is stored as it was sampled, all signals together."""
@@ -60,6 +70,7 @@ _LONGEST_STRETCH = 1 << 18  # samples
 _BLOCK_BYTES = 32 << 20
 _LARGEST_BLOCK = 1 << 18  # samples
 _WHOLE = 1e-6  # tolerance of a whole number of periods: a line leaks as large a part of its height
+_NEARLY_ALL = 0.9  # least part of a record under Hann's window that is cut to whole periods of the meshes
 _MOST_TURNS = 1000  # largest number of times that a period of the shafts is repeated until a driving frequency is whole
 
 
@@ -261,17 +272,24 @@ def sampling(
     Raises
     ------
     CaseError
-        Where more is discarded than a run turns.
+        Where more is discarded than a run turns, or an excitation asks for samples without end.
     """
     assert case.operation is not None
     assert case.transient is not None
     transient = case.transient
     nominal = _TWO_PI / abs(case.operation.speed)
-    period = nominal / (1.0 if turning is None else float(turning.speed_ratios.max()))
-    per_revolution = _power_of_two(max(transient.points_per_revolution, _OVERSAMPLING * limit * period))
+    fastest = 1.0 if turning is None else float(turning.speed_ratios.max())
+    period = nominal / fastest
+    duration, record_from = transient_duration(case), _record_from(case, nominal, turning)
+    rate, exciting = least_sampling_rate(system, record_from, duration, fastest=fastest)
+    if rate * duration > _MOST_SAMPLES:
+        told = f"an excitation at {exciting:.4g} Hz, which asks for {rate * duration:.2g} samples in {duration:.4g} s"
+        expected = f"at most {_MOST_SAMPLES:g} of them: a lower frequency, or a shorter run"
+        raise CaseError([Problem("transient", told, expected)])
+    per_revolution = _power_of_two(max(transient.points_per_revolution, _OVERSAMPLING * limit * period, rate * period))
     settings = TransientSettings(
-        duration=transient_duration(case),
-        record_from=_record_from(case, nominal, turning),
+        duration=duration,
+        record_from=record_from,
         sample_interval=period / per_revolution,
         largest_step=nominal / transient.points_per_revolution,
         tolerance=transient.tolerance,
@@ -285,9 +303,11 @@ def sampling(
     steady = turning is None and not varies_within(system, settings.record_from, settings.duration)
     orders = _driving_orders(system, nominal)
     if 8 * signals * settings.samples <= largest:
-        window: Window = "uniform" if steady and _holds_whole_periods(case, orders) else "hann"
-        decimation = coupled_decimation(1, 0.25)
-        return Sampling(settings, block or SAMPLES_PER_BLOCK, decimation, settings.samples, window)
+        window: Window = "hann"
+        stretch = settings.samples
+        if turning is None:
+            stretch, window = _whole_stretch(case, system, orders if steady else None, per_revolution, stretch)
+        return Sampling(settings, block or SAMPLES_PER_BLOCK, coupled_decimation(1, 0.25), stretch, window)
     stored_per_revolution = min(_power_of_two(_STORED_SAMPLING * limit * period), per_revolution // 2)
     factor = per_revolution // stored_per_revolution
     decimation = coupled_decimation(factor, limit * period / stored_per_revolution)
@@ -344,13 +364,24 @@ def _driving_orders(system: CoupledSystem, revolution: float) -> list[float]:
     return sorted({revolution * frequency for frequency in [*driving_frequencies(system).values(), *passes]})
 
 
-def _holds_whole_periods(case: Case, orders: list[float]) -> bool:
-    """Whether every shaft turns, and every order repeats, a whole number of times in the record."""
-    assert case.transient is not None
-    assert case.transient.revolutions is not None
-    recorded = case.transient.revolutions - case.transient.discard
-    periods = [recorded * order for order in [*map(abs, map(float, speed_ratios(case).values())), *orders]]
-    return all(abs(count - round(count)) < _WHOLE for count in periods)
+def _whole_stretch(
+    case: Case, system: CoupledSystem, orders: list[float] | None, per_revolution: int, samples: int
+) -> tuple[int, Window]:
+    """Return the number of samples at the end of a record that hold whole periods, and the window for them.
+
+    The stretch has whole periods of all shafts and orders; else, under Hann's window, of the first driver's shaft and
+    the meshes, where it is nearly all of the record; else it is the whole record. ``orders`` is None where a load
+    varies in the record.
+    """
+    if orders is not None:
+        turns = [abs(float(ratio)) for ratio in speed_ratios(case).values()]
+        whole = whole_period_samples(samples, 1.0 / per_revolution, [*turns, *orders])
+        if whole is not None:
+            return whole, "uniform"
+    assert case.operation is not None
+    meshes = [abs(contact.mesh_frequency) * _TWO_PI / abs(case.operation.speed) for contact in system.contacts]
+    whole = whole_period_samples(samples, 1.0 / per_revolution, [1.0, *meshes], least=_NEARLY_ALL)
+    return whole or samples, "hann"
 
 
 def _period(case: Case, orders: list[float]) -> int | None:

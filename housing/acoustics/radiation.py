@@ -446,6 +446,7 @@ class HousingRadiation:
         *,
         edge: float,
         close_holes: float,
+        resting_caps: bool = False,
         method: Method = "boundary-elements",
         medium: Medium = AIR,
         floor: HardPlane | None = None,
@@ -463,6 +464,8 @@ class HousingRadiation:
             Edge of the triangles [m].
         close_holes : float
             Diameter of the largest hole that is capped [m].
+        resting_caps : bool
+            Whether caps are at rest; else they move as their rims.
         method : {"boundary-elements", "erp"}
         medium : Medium
         floor : HardPlane, optional
@@ -488,7 +491,7 @@ class HousingRadiation:
             elements.require_few()
             if highest_frequency is not None:
                 elements.require_resolved(highest_frequency)
-        carried = surface_velocity(mesh, surface)
+        carried = surface_velocity(mesh, surface, resting_caps=resting_caps)
         error = transfer_error(carried, shapes[:natural_modes])
         error.require()
         points = carried.points(tuple(still)).on(elements.uncovered)

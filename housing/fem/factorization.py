@@ -4,12 +4,16 @@ Two direct solvers, rslab and SuperLU, have one interface. Both factor a symmetr
 from its lower triangle, and report its inertia. Work that would exceed the available memory is refused beforehand.
 """
 
+import importlib
 import os
+import sys
+import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -143,15 +147,40 @@ def can_import(module: str) -> bool:
     return find_spec(module) is not None
 
 
+_RSLAB = threading.Lock()
+
+
+def _load_rslab() -> Any:
+    """Import rslab in a thread that lasts as long as the process.
+
+    Where the thread that loads the library ends, the process crashes at the library's next call (1.7.0): a thread other
+    than the main one, which may be a caller's or one that finds an ordering, leaves that to a thread that never ends.
+    """
+    with _RSLAB:
+        if threading.current_thread() is not threading.main_thread() and "rslab" not in sys.modules:
+            done: SimpleQueue[BaseException | None] = SimpleQueue()
+            threading.Thread(target=_import_and_stay, args=("rslab", done), name="rslab", daemon=True).start()
+            if (error := done.get()) is not None:
+                raise error
+    return importlib.import_module("rslab")
+
+
+def _import_and_stay(module: str, done: "SimpleQueue[BaseException | None]") -> None:
+    """Import a module, report the error that this raised or None, and wait for ever."""
+    try:
+        importlib.import_module(module)
+    except BaseException as error:
+        done.put(error)
+    else:
+        done.put(None)
+        threading.Event().wait()
+
+
 class RslabSolver:
     """rslab: supernodal L D Lᵀ with pivots of order 1 and 2 (Bunch and Kaufman 1977), by threads."""
 
     def __init__(self, threads: int) -> None:
-        # Loaded here, not by a thread that finds an ordering: where the thread that loads the library ends, the
-        # process crashes at the library's next call (1.7.0).
-        import rslab
-
-        self._analyze = rslab.analyze
+        self._analyze = _load_rslab().analyze
         self._threads = threads
         self._symbolic: Any = None
 

@@ -20,6 +20,7 @@ from housing.fem.nearest_point import SurfacePoint, surface_point
 from housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
 from housing.own_copies import keep_tuples
 from meshes import Mesh
+from numerics.findings import Finding, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -97,6 +98,10 @@ def port_fixture_matrices(
     return Additions(blocks(stiffness), blocks(mass), blocks(damping))
 
 
+_FARTHEST_OFFSET = 10.0
+"""Distance of the centre of gravity of a mass from its patch that no gearbox has [m]."""
+
+
 @dataclass(frozen=True)
 class LumpedMass:
     """A rigid body that moves with a patch, or a point mass on a point of the surface.
@@ -139,6 +144,11 @@ class LumpedMass:
         keep_tuples(self, "position", "inertia", "offset")
         if not 0.0 < self.mass < np.inf:
             raise HousingError(f"mass {self.name!r} of {self.mass} kg: expected a positive one")
+        if not np.linalg.norm(self.offset) <= _FARTHEST_OFFSET:
+            finding = Finding(
+                ("mass", self.name), "offset", self.offset, f"an offset of at most {_FARTHEST_OFFSET:g} m"
+            )
+            refuse([finding], HousingError)
         if (self.patch is None) == (self.position is None):
             raise HousingError(f"mass {self.name!r} needs a patch or a position, one of the two")
         if self.position is not None and (self.inertia != NO_INERTIA or any(self.offset)):

@@ -28,6 +28,8 @@ MASS_BOUND = 1e-6  # error of mass, and of the centre over the diagonal: curved 
 REGULAR_BOUND = 1e-9
 STRAIN_BOUND = 1e-10  # rounding of K R is about 1e-14
 SYMMETRY_BOUND = 1e-12
+DISCRETISATION_BOUND = 0.03
+"""Estimated relative error of a frequency above which the mesh is too coarse for it."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,7 @@ def health_report(
         *_matrix_lines(mesh, unsupported, supported, body),
         *_grounding_lines(ground, modes),
         *_mode_lines(supported, modes),
+        *_discretisation_lines(modes),
         *_port_lines(modes),
     ]
     return HealthReport(tuple(lines), body, ground)
@@ -235,6 +238,15 @@ def _mode_lines(supported: Matrices, modes: ModeSet) -> list[HealthLine]:
             "|φᵀ K φ - diag ω²| over ω² + limit², attachments included",
         ),
     ]
+
+
+def _discretisation_lines(modes: ModeSet) -> list[HealthLine]:
+    errors = modes.discretisation_errors
+    if errors is None:
+        return []
+    worst = int(np.argmax(errors))
+    why = f"estimate of a frequency's relative error by the mesh, the largest: mode {worst + 1}"
+    return [HealthLine("discretisation", float(errors[worst]), DISCRETISATION_BOUND, why, essential=False)]
 
 
 def _port_lines(modes: ModeSet) -> list[HealthLine]:

@@ -53,6 +53,9 @@ class ModeSet:
         Workers of the factorisation.
     residual_modes : ResidualModes or None
         Residual modes, which complete the static response to loads at the ports, where ports were given.
+    discretisation_errors : ndarray, shape (n_modes,), or None
+        Estimate of each frequency's relative error by the mesh, where the mesh is known; see
+        :mod:`housing.modes.discretisation_error`.
     """
 
     frequencies: FloatArray
@@ -63,6 +66,7 @@ class ModeSet:
     shift: float
     threads: int
     residual_modes: ResidualModes | None = None
+    discretisation_errors: FloatArray | None = None
 
     @property
     def frequencies_hz(self) -> FloatArray:

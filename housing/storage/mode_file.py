@@ -230,6 +230,10 @@ def _mode_arrays(modes: ModeSet) -> dict[str, LabelledArray]:
             ("solver_step",), np.array(list(modes.seconds.values())), "s", "time that each step took"
         ),
     }
+    if modes.discretisation_errors is not None:
+        arrays["discretisation_error"] = LabelledArray(
+            _MODE, modes.discretisation_errors, "1", "estimate of the frequency's relative error by the mesh"
+        )
     for name, value in asdict(modes.certificate).items():
         units, long_name = _CERTIFIED[name]
         arrays[f"certificate_{name}"] = LabelledArray((), np.array(value), units, long_name)
@@ -248,6 +252,7 @@ def _modes(arrays: Mapping[str, LabelledArray], attributes: Mapping[str, str]) -
         shift=arrays["solver_shift"].values.item(),
         threads=arrays["solver_threads"].values.item(),
         residual_modes=residual_modes_of(arrays, arrays["shape"].values.shape[1]),
+        discretisation_errors=arrays["discretisation_error"].values if "discretisation_error" in arrays else None,
     )
 
 

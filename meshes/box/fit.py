@@ -44,6 +44,8 @@ def mm(length: float) -> str:
 
 
 _MOST_PER_EDGE = 200
+_THINNEST_WALL = 1e-3
+"""Thickness of a wall over the smallest size of its box."""
 
 
 def cover_misfits(box: Box, cover: Cover) -> Iterator[BoxMisfit]:
@@ -182,6 +184,11 @@ def _wall_misfits(box: Box) -> Iterator[BoxMisfit]:
         if box.wall.of(low) + box.wall.of(high) >= size:
             expected = f"{low} and {high} walls that leave room inside the {mm(size)} of the box along {axis}"
             yield BoxMisfit(("wall",), expected)
+    least = _THINNEST_WALL * min(box.size)
+    thin = [face for face in FACES if box.wall.of(face) < least]
+    if thin:
+        faces = "walls" if len(thin) == len(FACES) else f"{' and '.join(thin)} walls"
+        yield BoxMisfit(("wall",), f"{faces} of at least {mm(least)}, a thousandth of the box: thinner ones are foil")
 
 
 def _foot_sizes(box: Box) -> Iterator[BoxMisfit]:
@@ -204,6 +211,8 @@ def _bore_misfits(box: Box, index: int, bore: Bore) -> Iterator[BoxMisfit]:
             f"or in the front wall, {mm(half - box.wall.front)} to {mm(half)}"
         )
         yield BoxMisfit((*location, "center", 2), expected)
+    if bore.boss is not None and bore.boss.length > box.size[2]:
+        yield BoxMisfit((*location, "boss", "length"), f"a boss no longer than the box, {mm(box.size[2])}")
     x, y, _ = bore.center
     for feature, diameter in (("bore", bore.diameter), ("boss", bore.boss.diameter if bore.boss else 0.0)):
         over = max(abs(x) + diameter / 2.0 - box.size[0] / 2.0, diameter / 2.0 - y, y + diameter / 2.0 - box.size[1])

@@ -80,9 +80,11 @@ class BoxGeometry:
         if problems:
             raise BoxMisfitError(problems)
         patches = {name for bolt in self.bolts for name in (bolt.cover_surface, bolt.body_surface)}
-        for bore in self.bores:
-            if bore.name in {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}:
-                raise GeometryError(f"a seat cannot be named {bore.name!r}, which is a surface of the box itself")
+        taken = {*FACES, *FOOT_NAMES, *(f"{name}-bolt" for name in FOOT_NAMES), *patches}
+        expected = "another name than that of a face or foot of the box, or of a patch under a bolt"
+        named = (BoxMisfit(("bores", at, "name"), expected) for at, bore in enumerate(self.bores) if bore.name in taken)
+        if problems := tuple(named):
+            raise BoxMisfitError(problems)
 
     @property
     def bolts(self) -> tuple[Bolt, ...]:

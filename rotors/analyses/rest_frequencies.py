@@ -123,9 +123,10 @@ def rest_frequencies(
 
 
 def _is_planar(bearing: Bearing) -> bool:
-    """Whether the bearing is rigidly mounted and its stiffness is diagonal."""
+    """Whether the bearing is rigidly mounted and its stiffness is diagonal, without a negative one."""
     stiffness = bearing.stiffness
-    return bearing.pedestal is None and np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
+    diagonal = np.count_nonzero(stiffness) == np.count_nonzero(stiffness.diagonal())
+    return bearing.pedestal is None and diagonal and bool((stiffness.diagonal() >= 0.0).all())
 
 
 def _shares(continuous_shafts: list[ContinuousShaft], count: int) -> tuple[list[DiscretisedShaft], list[int]]:

@@ -115,8 +115,8 @@ class Bearing:
     Raises
     ------
     RotorError
-        A matrix of another shape or not finite, a direct stiffness that is negative, or speeds that do not fit the
-        tables or do not ascend.
+        A matrix of another shape or not finite, or speeds that do not fit the tables or do not ascend. Direct
+        stiffness may be zero, as of a damper, or negative, as of a seal or a magnetic bearing.
     """
 
     name: str
@@ -127,7 +127,7 @@ class Bearing:
     pedestal: Pedestal | None = None
 
     def __post_init__(self) -> None:
-        """Check position, speeds, shapes of the tables and direct stiffness; freeze the arrays."""
+        """Check position, speeds and shapes of the tables; freeze the arrays."""
         label = f"bearing {self.name!r}"
         require_finite(f"{label} position", self.at, minimum=0.0)
         if self.speeds is not None:
@@ -146,8 +146,6 @@ class Bearing:
         require(
             tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"
         )
-        direct = np.diagonal(self.stiffness, axis1=-2, axis2=-1)
-        require(bool((direct >= 0.0).all()), f"{label} stiffness", direct.tolist(), "no negative direct stiffness")
 
     def __eq__(self, other: object) -> bool:
         """Equal in name, place and every coefficient."""
@@ -228,8 +226,11 @@ class Bearing:
 
     @property
     def mean_support(self) -> RadialSupport:
-        """The planar spring of the modal basis."""
-        return RadialSupport(self.at, self.mean_stiffness, self.mean_tilt_stiffness)
+        """The planar spring of the modal basis: none where the mean stiffness is negative.
+
+        The basis is of a shaft on springs that hold it; the difference from the bearing's own matrix acts through it.
+        """
+        return RadialSupport(self.at, max(self.mean_stiffness, 0.0), max(self.mean_tilt_stiffness, 0.0))
 
     def plane_support(self, direction: int) -> RadialSupport:
         """Return the bearing's own direct spring in x (``direction`` 0) or y (1)."""

@@ -1,14 +1,15 @@
 """Rotor: round shaft segments end to end with rigid discs on them, and its inertias."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from numerics.findings import Finding, Severity, refuse
 from rotors.errors import RotorError, require, require_finite
 from rotors.model.material import ShaftMaterial
 from rotors.model.profile import STATION_TOLERANCE, Profile, StiffnessDiameter, merged_positions, shaft_profile
@@ -16,6 +17,8 @@ from rotors.model.segment import Coupling, Segment
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
+
+_LARGEST_STRAIN = 0.1
 
 MassModel = Literal["distributed", "lumped"]
 
@@ -32,19 +35,36 @@ class Disc:
         Mass [kg].
     polar_inertia, diametral_inertia : float
         Moments of inertia about the axis and about a diameter [kg·m²].
+    size : tuple of float, optional
+        Width, outer and inner diameter [m], of a disc by its dimensions.
+
+    Raises
+    ------
+    RotorError
+        A number that is negative or not finite, or inertias that no body has.
     """
 
     at: float
     mass: float
     polar_inertia: float = 0.0
     diametral_inertia: float = 0.0
+    size: tuple[float, float, float] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        """Check that position, mass and inertias are finite and not negative."""
+        """Check that position, mass and inertias are finite and not negative, and that a body can have them."""
         require_finite("disc position", self.at, minimum=0.0)
         require_finite("disc mass", self.mass, minimum=0.0)
         require_finite("disc polar_inertia", self.polar_inertia, minimum=0.0)
         require_finite("disc diametral_inertia", self.diametral_inertia, minimum=0.0)
+        refuse(self.findings, RotorError)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Inertias that no body has, or hardly one on a shaft.
+
+        About a diameter through the centre of mass J_d = J_p / 2 + ∫ z² dm, so that J_p is at most 2 J_d.
+        """
+        return tuple(inertia_findings(self.at, self.mass, self.polar_inertia, self.diametral_inertia))
 
     @classmethod
     def from_dimensions(
@@ -52,7 +72,26 @@ class Disc:
     ) -> "Disc":
         """Disc of a round ring of the given width and diameters [m] and density [kg/m³]."""
         ring = Segment(width, outer_diameter, inner_diameter, ShaftMaterial(1.0, 0.5, density))
-        return cls(at, ring.mass, ring.polar_inertia, ring.diametral_inertia)
+        return cls(at, ring.mass, ring.polar_inertia, ring.diametral_inertia, (width, outer_diameter, inner_diameter))
+
+
+_PRINTED = 1.02  # rounding of printed inertias
+_LARGEST_GYRATION = 10.0  # m, of any rotor
+
+
+def inertia_findings(at: float, mass: float, polar: float, diametral: float) -> Iterator[Finding]:
+    """Yield inertias about the axis of more than twice those about a diameter, and masses too far out."""
+    part = ("disc", f"at {at:g} m")
+    if polar > 2.0 * _PRINTED * diametral:
+        expected = (
+            f"at most twice the diametral_inertia of {diametral:g} kg·m², as of any body (a thin disc has just twice)"
+        )
+        severity: Severity = "error" if diametral > 0.0 else "warning"
+        yield Finding(part, "polar_inertia", polar, expected, severity)
+    if mass > 0.0 and polar > mass * _LARGEST_GYRATION**2:
+        gyration = math.sqrt(polar / mass)
+        expected = f"an inertia that {mass:g} kg have on a rotor; they would lie {gyration:.4g} m off the axis"
+        yield Finding(part, "polar_inertia", polar, expected)
 
 
 @dataclass(frozen=True)
@@ -107,6 +146,27 @@ class Rotor:
         slack = STATION_TOLERANCE * self.length
         inside = math.isfinite(at) and -slack <= at <= self.length + slack
         require(inside, f"{label} position", at, f"a place on the shaft, 0 to {self.length:g} m")
+
+    @cached_property
+    def highest_speed(self) -> float:
+        """Speed at which the shaft's own rotation would strain its surface by a tenth [rad/s]; inf without inertia.
+
+        The hoop strain of a thin ring is ρ ω² r² / E (Timoshenko, Strength of Materials II): steel would move at
+        1.6 km/s, five times the speed at which any steel bursts, and linear elasticity ends before.
+        """
+        shafts = [part for part in self.segments if isinstance(part, Segment) and part.material.density > 0.0]
+        speeds = [
+            math.sqrt(_LARGEST_STRAIN * part.material.youngs_modulus / part.material.density)
+            * (2.0 / max(part.section(end).outer_diameter for end in (0.0, 1.0)))
+            for part in shafts
+        ]
+        return min(speeds, default=math.inf)
+
+    def require_speed(self, label: str, speed: float) -> None:
+        """Raise `RotorError` unless ``speed`` [rad/s] is finite and one that a shaft can turn at."""
+        require_finite(label, speed)
+        possible = abs(speed) <= self.highest_speed
+        require(possible, label, speed, f"at most {self.highest_speed:.3g} rad/s, where rotor {self.name!r} is torn")
 
     @cached_property
     def joints(self) -> FloatArray:

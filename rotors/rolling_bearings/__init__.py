@@ -16,6 +16,7 @@ from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, opera
 from rotors.rolling_bearings.element_contacts import ElementLoads
 from rotors.rolling_bearings.equilibrium import (
     COORDINATES,
+    ROLLING_DAMPING_TIME,
     RollingElements,
     RollingState,
     kramer_ball_stiffness,
@@ -33,6 +34,7 @@ from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
     "COORDINATES",
+    "ROLLING_DAMPING_TIME",
     "STEEL",
     "BallRow",
     "CharacteristicFrequencies",

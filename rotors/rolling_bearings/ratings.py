@@ -25,13 +25,17 @@ they are,
 
 0.407 = J_r(½)/J_1(½) and 0.389 = J_r/J_2 are Sjövall's integrals, so that half a loaded circle has the life of ISO 281.
 
-**Static rating** C₀ (ISO 76). Balls: the load under which Hertz's greatest pressure reaches 4 200 MPa at the inner ring
-(in self-aligning bearings 4 600 MPa at the outer one), where the worst of Z balls carries 5/(Z cos α) of a radial load.
-Rollers: 44 (1 − γ) Z L D cos α, in N and mm. A row in four-point contact is rated as two, one for each diagonal.
+**Static rating** C₀ (ISO 76; its factors after ISO/TR 10657). Balls: the load under which Hertz's greatest pressure
+reaches 4 200 MPa (4 600 MPa in self-aligning bearings) at the ring where it is higher, with the worst of Z balls under
+5/(Z cos α) of a radial load. The outer ring decides below γ = 0.09, and the inner one above. The standard's f₀ holds
+for Young's moduli of 207 GPa and for grooves up to 0.52 D and 0.53 D; closer ones are rated with these. Rollers:
+44 (1 − γ) Z L D cos α, in N and mm. A row in four-point contact is rated as two, one for each diagonal.
 """
 
 import math
+from dataclasses import replace
 
+from rotors.rolling_bearings.hertz import STEEL, ContactElasticity
 from rotors.rolling_bearings.roller_rows import LineContactRow, SphericalRollerRow
 from rotors.rolling_bearings.rows import BallRow, FourPointRow
 
@@ -42,6 +46,8 @@ _RATING_PRESSURE, _SELF_ALIGNING_PRESSURE = 4.2e9, 4.6e9
 # ISO 281: groove radii over the ball's diameter up to which ratings hold, and the radius they are made with.
 _WIDEST_INNER, _WIDEST_OUTER, _RATED_GROOVE = 0.52, 0.53, 0.52
 _LARGE_BALL = 25.4
+# ISO/TR 10657: bearing steel of the static rating.
+_RATED_STEEL = ContactElasticity(ring_modulus=207e9, element_modulus=207e9)
 _EDGE_LOSS = 0.83  # λν of rollers, for the stresses at their ends
 
 
@@ -49,10 +55,13 @@ def static_rating(row: Row) -> float:
     """Radial static load rating C₀ of one row after ISO 76, N, for a check of a row against a catalogue."""
     if isinstance(row, BallRow):
         share = _diagonals(row) * row.count * math.cos(row.contact_angle) / 5.0
-        if row.self_aligning:
-            # The sphere fits a ball less closely than the inner groove does.
-            return share * row.outer_contact.load_at_pressure(_SELF_ALIGNING_PRESSURE)
-        return share * row.inner_contact.load_at_pressure(_RATING_PRESSURE)
+        pressure = _SELF_ALIGNING_PRESSURE if row.self_aligning else _RATING_PRESSURE
+        rated = replace(
+            row, inner_groove=max(row.inner_groove, _WIDEST_INNER), outer_groove=max(row.outer_groove, _WIDEST_OUTER)
+        )
+        load = min(contact.load_at_pressure(pressure) for contact in (rated.inner_contact, rated.outer_contact))
+        # At one pressure the load goes as 1/E*²: other materials keep their ratio to the steel of the rest of the code.
+        return share * load * (STEEL.contact_modulus / _RATED_STEEL.contact_modulus) ** 2
     across = row.count * row.length * row.roller_diameter * math.cos(row.contact_angle)
     return 44e6 * (1.0 - row.gamma) * across
 

@@ -58,6 +58,9 @@ Profile = Literal["straight", "logarithmic"]
 _PALMGREN_STEEL = 35948.0 * 1000.0 ** (8.0 / 9.0) * 1000.0 ** (10.0 / 9.0)
 
 
+_MOST_SLENDER = 15.0  # length of a roller over its diameter: needles have up to 10
+
+
 @dataclass(frozen=True)
 class LineContactRow:
     """Common base of rows of rollers: see `RollerRow`, `TaperedRollerRow` and `SphericalRollerRow`."""
@@ -79,6 +82,8 @@ class LineContactRow:
         """Check that the rollers fit on the pitch circle, and length, slices, profile, places and direction."""
         require_space("roller", self.count, self.roller_diameter, self.pitch_diameter)
         require_finite("roller length", self.length, positive=True)
+        most = _MOST_SLENDER * self.roller_diameter
+        require(self.length <= most, "roller length", self.length, f"at most {most:.4g} m, of a needle so thick")
         require_count("count of slices", self.slices)
         is_known = self.profile in ("straight", "logarithmic")
         require(is_known, "roller profile", self.profile, "'straight' or 'logarithmic'")
@@ -105,6 +110,11 @@ class LineContactRow:
     def element_diameter(self) -> float:
         """Diameter of the rollers in their middle [m]."""
         return self.roller_diameter
+
+    @property
+    def width(self) -> float:
+        """Width of the rollers along the axis [m]."""
+        return self.length * math.cos(self.contact_angle)
 
     @property
     def has_axial_stiffness(self) -> bool:

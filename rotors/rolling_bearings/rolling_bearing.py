@@ -10,12 +10,16 @@ Forces of the elements and the 5x5 bearing stiffness follow in :mod:`rotors.roll
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal
 
 from scipy.optimize import brentq
 
 from rotors.errors import RotorError, require, require_finite
 from rotors.rolling_bearings.ratings import Row
+from rotors.rolling_bearings.roller_rows import SphericalRollerRow
+
+_CLOSEST = 0.7  # distance of two rows over the width of their elements, which may be staggered
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,7 @@ class RollingBearing:
         if not self.rows:
             raise RotorError(f"{self.name} has no rows; expected at least one")
         require_finite(f"axial preload of {self.name}", self.axial_preload)
+        self._require_rows_apart()
         if self.floating:
             self._require_floats()
         is_opposed = self.axial_preload == 0.0 or self.has_axial_stiffness
@@ -61,6 +66,16 @@ class RollingBearing:
             self.axial_preload,
             "none: cylindrical rollers carry no axial load without flanges",
         )
+
+    def _require_rows_apart(self) -> None:
+        """Refuse rows whose elements stand in each other."""
+        # Rows of spherical rollers are placed by their angle, on a sphere about one centre; two rows in one place are
+        # two contacts of the same elements.
+        placed = [row for row in self.rows if not isinstance(row, SphericalRollerRow)]
+        for one, other in pairwise(sorted(placed, key=lambda row: row.position)):
+            apart, least = other.position - one.position, _CLOSEST * 0.5 * (one.width + other.width)
+            expected = f"rows at least {least:.4g} m apart, whose elements do not overlap"
+            require(apart == 0.0 or apart >= least, f"distance of two rows of {self.name}", apart, expected)
 
     def _require_floats(self) -> None:
         """Refuse a floating bearing that slides open, or whose preload its sliding ring does not hold."""
@@ -85,6 +100,15 @@ class RollingBearing:
     def force_scale(self) -> float:
         """E* D² of the smallest element, a force far above its capacity [N]."""
         return min(row.elasticity.contact_modulus * row.element_diameter**2 for row in self.rows)
+
+    @property
+    def envelope(self) -> tuple[float, float, float, float]:
+        """Ends of the elements along z from the centre, and radii within and without which there are none [m]."""
+        left = min(row.position - 0.5 * row.width for row in self.rows)
+        right = max(row.position + 0.5 * row.width for row in self.rows)
+        inner = min(row.pitch_diameter - row.element_diameter for row in self.rows)
+        outer = max(row.pitch_diameter + row.element_diameter for row in self.rows)
+        return left, right, 0.5 * inner, 0.5 * outer
 
     @property
     def largest_element(self) -> float:

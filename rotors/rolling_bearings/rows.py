@@ -109,6 +109,11 @@ class BallRow:
         return self.ball_diameter
 
     @property
+    def width(self) -> float:
+        """Width of the balls along the axis [m]."""
+        return self.ball_diameter
+
+    @property
     def groove_distance(self) -> float:
         """Distance A of the centres of the grooves' curvature with a ball that just touches both [m]."""
         return (self.inner_groove + self.outer_groove - 1.0) * self.ball_diameter

@@ -17,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 
 from rotors.certificate import ModeCertificate, combined_certificate
-from rotors.errors import require_finite
 from rotors.model.bearing import Bearing
 from rotors.model.shaft import Rotor
 from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, is_conservative, oscillating
@@ -206,7 +205,7 @@ class WhirlSolver:
 
     def modes(self, speed: float, *, frequency_limit: float | None = None, count: int | None = None) -> WhirlModes:
         """Complex modes at a speed of rotation [rad/s], certified complete; arguments and errors of `solve_whirl`."""
-        require_finite("speed", speed)
+        self.rotor.require_speed("speed", speed)
         basis = self.planar_basis(frequency_limit, count)
         constant = tuple(bearing.at_speed(speed) for bearing in self.bearings)
         turning = np.array([speed])

@@ -15,6 +15,6 @@ peak_rpm = float(mesh_order.idxmax("order_speed"))
 
 print(f"mesh force of the mesh order [N], peak, over speed [rpm]:\n{mesh_order.to_series()}")
 print(f"largest at {peak_rpm:.0f} rpm, where the mesh frequency is {28 * peak_rpm / 60:.0f} Hz")
-figure = run.plot("run-up-waterfall-pinion-wheel")
+figure = run.plot("run-up-map-pinion-wheel")
 if len(sys.argv) > 1:
     figure.savefig(sys.argv[1])

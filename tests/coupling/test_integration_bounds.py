@@ -6,7 +6,8 @@ import pytest
 from coupling import CoupledSystem, SpeedProfile, TransientOutputs, TransientSettings, simulate
 from coupling.machine.components import Component
 from coupling.machine.connectors import LinearConnector, SpeedTable
-from coupling.machine.coupled_system import TimedLoad
+from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.time.integration import boundaries, coarsest_step
 
 RUN_UP = SpeedProfile(np.array([0.0, 4.0]), np.array([0.5, 2.0]))
@@ -26,6 +27,33 @@ def test_a_machine_that_runs_faster_is_stepped_finer() -> None:
     assert fine == pytest.approx(0.5e-3, rel=1e-12)
     # Six points of the period of 2 rad/s, where nothing finer is asked for.
     assert coarsest_step(oscillator(), nominal, 100.0) == pytest.approx(np.pi / 6.0, rel=1e-12)
+
+
+def test_a_load_that_repeats_with_every_coarse_step_is_no_constant_load() -> None:
+    """x'' + 4 x = cos 12 t from rest, x = (cos 12 t - cos 2 t) / (4 - 144): the coarsest step is a period of it."""
+    load = HarmonicLoad(12.0, np.ones(1, dtype=np.complex128))
+    settings = TransientSettings(20.0, 0.0, 0.01, 10.0, tolerance=1e-5)
+    one = np.ones((1, 1))
+    result = simulate(oscillator(harmonic_loads=(load,)), settings, TransientOutputs(one, one, one))
+    expected = (np.cos(12.0 * result.times) - np.cos(2.0 * result.times)) / (4.0 - 144.0)
+    np.testing.assert_allclose(result.displacement[:, 0], expected, atol=2e-4)
+
+
+def test_samples_follow_what_excites() -> None:
+    """Harmonic loads at the speed that they follow, a table by the bends of its line; one of zero asks for nothing."""
+    zero = HarmonicLoad(1e6, np.zeros(1, dtype=np.complex128))
+    steady, turning = (HarmonicLoad(12.0, np.ones(1, dtype=complex), follows) for follows in ("time", "turning"))
+    assert least_sampling_rate(oscillator(harmonic_loads=(zero,))) == (0.0, 0.0)
+    for load, highest in ((steady, 12.0), (turning, 24.0)):
+        rate, frequency = least_sampling_rate(oscillator(harmonic_loads=(load,)), fastest=2.0)
+        assert frequency == pytest.approx(highest / (2.0 * np.pi))
+        assert rate > 2.0 * frequency
+    # A triangle wave of period 0.5 s has the lines 4 / (π n)² of its range, n odd: below 1 % from n = 7 on.
+    corners = np.arange(0.0, 20.0, 0.25)
+    wave = TimedLoad(corners, np.where(np.arange(len(corners)) % 2, 1.0, -1.0), np.ones(1))
+    rate, _ = least_sampling_rate(oscillator(timed_loads=(wave,)), 0.0, 20.0)
+    assert 5.0 / 0.5 < 0.5 * rate < 9.0 / 0.5
+    assert least_sampling_rate(oscillator(timed_loads=(wave,)), 30.0, 40.0) == (0.0, 0.0)
 
 
 def test_no_step_crosses_a_corner_of_a_load() -> None:

@@ -278,6 +278,8 @@ def test_the_analyses_of_a_machine_are_its_methods() -> None:
     machine = two_stages(gear_pairs=pairs)
     assert machine.assembled is machine.assembled
     modes, limit = machine.modes(), 2.0 * math.pi * 900.0
+    with pytest.raises(RotorError, match="is torn"):
+        machine.campbell([0.0, 1e9], frequency_limit=limit)
     diagram = machine.campbell([100.0, 300.0], frequency_limit=limit)
     damped = np.sort(modes.eigenvalues.imag[(modes.eigenvalues.imag > 0.0) & (np.abs(modes.eigenvalues) < limit)])
     at_operation = np.sort(diagram.eigenvalues[1].imag)

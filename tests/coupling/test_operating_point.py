@@ -23,6 +23,7 @@ from coupling.machine.parts import Driving
 from coupling.statics.operating_point import CAUSES
 from coupling.statics.static_equilibrium import static_equilibrium
 from rotors import EquilibriumError, Pedestal, Rotor, RotorError, Segment
+from rotors.model.profile import StiffnessDiameter
 from rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
@@ -99,9 +100,11 @@ def test_machines_without_an_operating_point_are_refused() -> None:
         CouplingError, match=r"nothing holds the axial motion of shaft '(in|out)', and the loads drive it"
     ):
         spur().operating_point((0.0, 0.0, -9.81))
-    unaligned = [replace(pair, misalignment=None) for pair in spur().gear_pairs]
+    unloaded = spur(torque=0.0)
+    (pair,) = unloaded.gear_pairs
+    assert unloaded.at_operating_point().gear_pairs == (pair,)
     with pytest.raises(CouplingError, match="'pinion' -> 'wheel': no flanks carry a load without a torque, so no mis"):
-        spur(torque=0.0, gear_pairs=unaligned).at_operating_point()
+        unloaded.operating_point().flank_gaps([pair.label])
     machine = spur()
     missing = replace(machine, bearings=machine.bearings[1:])
     with pytest.raises(
@@ -446,11 +449,13 @@ def test_the_load_of_a_pair_is_that_of_flanks_with_its_gap() -> None:
 def test_the_common_face_carries_wherever_it_lies() -> None:
     """A wheel wider than its pinion is pressed where the pinion is, 8 mm off its own middle or not.
 
-    Its teeth go on far enough at either side to support those in mesh alike. Its shaft is thicker than its body, so
+    Its teeth go on far enough at either side to support those in mesh alike. Its shaft is stiffer than its body, so
     that the place of the body does not matter.
     """
     machine = spur(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
-    thick = replace(machine.shafts[1], rotor=Rotor("out", [Segment(0.16, 0.14, 0.0, STEEL)]))
+    moduli = STEEL.youngs_modulus, STEEL.shear_modulus
+    stiff = [StiffnessDiameter(0.0, 0.16, 0.14, 0.14, *moduli)]
+    thick = replace(machine.shafts[1], rotor=replace(machine.shafts[1].rotor, stiffness_diameters=stiff))
     wide = replace(machine.gears[1], gear=replace(machine.gears[1].gear, face_width=90e-3))
     centred, moved = (
         replace(

@@ -16,6 +16,8 @@ from coupling.machine.connectors import ContactConnector
 from coupling.machine.coupled_system import HarmonicLoad
 from coupling.periodic import periodic_response, response_curve
 from coupling.periodic.response import PeriodicResponse
+from gearwhine.output.quantity import RPM
+from gearwhine.solve.steady_state import SolvedSteady
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -174,3 +176,58 @@ def test_a_curve_keeps_no_motion_s_course_and_makes_it_again() -> None:
 def test_wrong_ranges() -> None:
     with pytest.raises(CouplingError, match="expected a range"):
         response_curve(deep, 0.6, 0.6)
+
+
+def test_a_range_that_the_first_branch_leaves_is_followed_from_its_other_end() -> None:
+    """From between the folds the branch turns back to where it begins; motions above the fold lie on another piece."""
+    whole = response_curve(deep, 0.6, 1.2, points=50)
+    high, low = whole.folds
+    between = 0.5 * (high.speed + low.speed)
+    curve = response_curve(deep, between, 1.2, points=50)
+    assert curve.endings == ("start", "start")
+    assert curve.gaps == ()
+    assert curve.ending == "end"
+    assert [fold.speed for fold in curve.folds] == pytest.approx([high.speed], abs=1e-7)
+    assert curve.speeds[curve.slices[1]].tolist() == sorted(curve.speeds[curve.slices[1]], reverse=True)
+    for speed in (0.5 * (between + high.speed), 0.95, 1.15):
+        found, expected = (sorted(float(one.rms_compression[0]) for one in at(speed)) for at in (curve.at, whole.at))
+        assert found == pytest.approx(expected, rel=1e-6)
+
+
+def with_undamped_mass(speed: float) -> CoupledSystem:
+    """Beside the teeth's mass there is one of frequency 3.5 that nothing damps, and that the teeth just move."""
+    mass = Component("mass", ("torsion",) * 2, np.diag([0.0, 3.5**2]), np.diag([0.1, 0.0]), np.zeros((2, 2)))
+    direction = np.array([1.0, 0.03])
+    teeth = ContactConnector("teeth", direction, SHALLOW, 0.0, speed / (2.0 * np.pi), np.empty((0, 3)))
+    return CoupledSystem((mass,), (0.0,), contacts=(teeth,), load=np.array([1.0, 0.0]))
+
+
+def test_resonances_that_nothing_damps_are_stepped_over_and_told() -> None:
+    """The second harmonic of a speed of 1.75 has the frequency 3.5, where the motion has no bound."""
+    curve = response_curve(with_undamped_mass, 1.55, 1.95, points=40)
+    assert curve.gaps
+    covered = 0.4 - sum(high - low for low, high in curve.gaps)
+    assert covered > 0.9 * 0.4
+    assert [low < 1.75 < high for low, high in curve.gaps] == [True]
+    assert "the motion grows without a top at one speed" in curve.account
+    assert curve.passes(1.6)
+    assert not curve.passes(1.75)
+    with pytest.raises(CouplingError, match=r"no motion at 1\.75"):
+        curve.at(1.75)
+    # No motion on the way up to it is left on the curve.
+    alone = response_curve(lambda speed: one_mass(speed, SHALLOW, 0.05), 1.55, 1.95, points=40)
+    assert curve.rms_compression.max() == pytest.approx(alone.rms_compression.max(), rel=0.05)
+    assert len(curve.speeds) < 300
+
+
+def test_what_is_not_followed_is_told() -> None:
+    curve = response_curve(deep, 0.6, 1.2, points=50, most_points=8)
+    ((low, high),) = curve.gaps
+    assert (low, high) == (pytest.approx(curve.speeds.max()), 1.2)
+    assert curve.ending == "points"
+    assert f"Nothing was followed between {low:.6g} and 1.2" in curve.account
+    solved = SolvedSteady(machine=None, motions=(), curve=curve)  # type: ignore[arg-type]
+    (warned,) = solved.branch_warnings()
+    assert warned["name"] == "branch range"
+    assert (warned["from_rpm"], warned["to_rpm"]) == pytest.approx((RPM * low, RPM * 1.2))
+    assert SolvedSteady(machine=None, motions=(), curve=response_curve(deep, 1.1, 1.2)).branch_warnings() == []  # type: ignore[arg-type]

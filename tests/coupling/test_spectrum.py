@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from coupling import amplitude_spectrum
+from coupling.signals.spectrum import whole_period_samples
 
 INTERVAL = 1e-3
 
@@ -82,3 +83,15 @@ def test_a_derivative_multiplies_lines() -> None:
     acceleration = amplitude_spectrum(-(w**2) * np.cos(w * times + 0.3), 1.0 / 500.0)
     assert acceleration.amplitude[20] / motion.amplitude[20] == pytest.approx(w**2, rel=1e-12)
     assert np.cos(acceleration.phase[20] - motion.phase[20]) == pytest.approx(-1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("count", "whole"), [(10_300, 10_000), (1_900, 1_000), (1_000, 1_000), (999, None)])
+def test_whole_periods_at_the_end_of_a_record(count: int, whole: int | None) -> None:
+    """A shaft of 1 Hz and its 28 teeth: whole seconds of 1000 samples; the lines of those samples are exact."""
+    assert whole_period_samples(count, INTERVAL, [1.0, 28.0]) == whole
+    if whole is not None:
+        times = INTERVAL * np.arange(count)
+        signal = 7.0 * np.sin(2.0 * np.pi * times) + 81.1 * np.cos(2.0 * np.pi * 28.0 * times + 0.3)
+        seconds = whole // 1000
+        amplitude = amplitude_spectrum(signal[-whole:], INTERVAL).amplitude
+        assert amplitude[[seconds, 28 * seconds]] == pytest.approx([7.0, 81.1], rel=1e-9)

@@ -77,11 +77,12 @@ def test_bearings_and_modes_add_up_to_the_line(grounded: CoupledMachine, seed: i
     w = 2.0 * np.pi * np.array(hertz)
     response = mesh_error_response(machine, w)
     forces = {}
-    for tie in machine.system.linear:
+    ties = machine.system.linear[: len(machine.bearings)]
+    for tie in ties:
         deflection = response.coordinates @ tie.directions
         forces[tie.name] = deflection @ tie.stiffness.T + (1j * w[:, None] * deflection) @ tie.damping.T
     found = housing_paths(machine, w, forces)
-    assert found.bearings == tuple(tie.name for tie in machine.system.linear)
+    assert found.bearings == tuple(tie.name for tie in ties)
     start = sum(part.size for part in machine.rotors)
     modal = -(w[:, None] ** 2) * response.coordinates[:, start : start + MODES]
     for sensor, line in response.sensor_acceleration.items():

@@ -32,6 +32,14 @@ def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
         "to_rpm": pytest.approx(3600.0),
         "seconds": pytest.approx(1.0),
         "revolutions": pytest.approx(35.0, rel=1e-6),
+        "train_inertia_kg_m2": summary["run"]["train_inertia_kg_m2"],
+        "accelerating_torque_n_m": summary["run"]["accelerating_torque_n_m"],
+    }
+    # Torque is inertia times angular acceleration: 3000 rpm in a second.
+    torque = summary["run"]["train_inertia_kg_m2"] * 100.0 * np.pi
+    assert summary["run"]["accelerating_torque_n_m"] == {
+        "least": pytest.approx(torque),
+        "largest": pytest.approx(torque),
     }
     units = {
         "run_speed": "rpm", "run_frequency": "Hz", "order_speed": "rpm", "order": "1", "run_order_number": "1",
@@ -41,8 +49,7 @@ def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     assert data.run_signal.values.tolist() == ["a -> b", "c -> d"]
     for speeds in (data.run_speed.values, data.order_speed.values):
         assert (np.diff(speeds) > 0.0).all()
-        assert 600.0 < speeds[0] < 1100.0
-        assert 3100.0 < speeds[-1] < 3600.0
+        assert speeds[[0, -1]] == pytest.approx([600.0, 3600.0], rel=0.01)
     ratio = abs(SPEEDS["middle"] / SPEEDS["input"])
     orders = {"1× a -> b": 23.0, "2× a -> b": 46.0, "1× c -> d": 21.0 * ratio, "1× input": 1.0}
     numbers = dict(zip(data.named_order.values.tolist(), data.run_order_number.values.tolist(), strict=True))
@@ -65,7 +72,8 @@ def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
         at = int(np.abs(data.order.values - own).argmin())
         exact = named.sel(named_order=f"1× {signal}").values
         if abs(float(data.order[at]) - own) < 1e-9:
-            assert table.isel(order=at).values == pytest.approx(exact, rel=1e-6)
+            # The line of a window is a mean over it, the cut is the amplitude at its middle.
+            assert np.median(table.isel(order=at).values / exact) == pytest.approx(1.0, abs=0.1)
     for told in summary["run_signature"]["orders"]:
         along = data.run_order_amplitude.sel(run_signal=told["signal"], named_order=told["name"])
         assert told["highest_amplitude"] == pytest.approx(float(along.max()), rel=1e-5)

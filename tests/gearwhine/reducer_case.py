@@ -15,19 +15,22 @@ def reducer(teeth: Sequence[int] = (21, 72, 19, 56), *, unbalanced: str = "") ->
         "poisson_ratio = 0.3",
         'density = "7850 kg/m^3"',
     ]
-    for name, place in (("input", -first), ("middle", 0.0), ("output", second)):
+    # The output shaft begins beyond the wheel b, which reaches as far as its axis.
+    shafts = (("input", -first, 0, 200), ("middle", 0.0, 0, 200), ("output", second, 80, 120))
+    for name, place, start, length in shafts:
         lines += [
             "[[rotor]]",
             f'name = "{name}"',
             f'axis = ["{place} mm", "0 mm"]',
+            f'start = "{start} mm"',
             'material = "steel"',
             "modes = 1",
             "damping_ratio = 0.01",
-            'segments = [{ length = "200 mm", diameter = "35 mm" }]',
+            f'segments = [{{ length = "{length} mm", diameter = "30 mm" }}]',
         ]
         if name == unbalanced:
             lines.append('unbalance = [{ at = "100 mm", moment = "2e-5 kg*m" }]')
-        for at in (20, 180):
+        for at in (20, length - 20):
             lines += [
                 "[[bearing]]",
                 f'name = "{name}-{at}"',
@@ -37,7 +40,7 @@ def reducer(teeth: Sequence[int] = (21, 72, 19, 56), *, unbalanced: str = "") ->
                 'damping = { xx = "2000 N*s/m", yy = "2000 N*s/m" }',
             ]
     for name, rotor, at, number in zip(
-        "abcd", ("input", "middle", "middle", "output"), (60, 60, 140, 140), teeth, strict=True
+        "abcd", ("input", "middle", "middle", "output"), (60, 60, 140, 60), teeth, strict=True
     ):
         lines += [
             "[[gear]]",

@@ -217,7 +217,7 @@ def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> No
     wrong = proofs = 0
     for name in ("meshes.errors", "housing.errors", "rotors.errors", "coupling.errors", "coupling.gears.errors"):
         for error in vars(import_module(name)).values():
-            if isinstance(error, type) and issubclass(error, Exception):
+            if isinstance(error, type) and issubclass(error, Exception) and error.__module__ == name:
                 code, message = explain(error("why"))
                 assert message == "why"
                 assert issubclass(error, ValueError if code == 2 else RuntimeError)

@@ -238,15 +238,26 @@ def test_mesh_stiffness_by_another_stiffness(solved: Solved) -> None:
     model = solved[2].model
     own = replace(model)
     (rates,) = model._gap_rates.values()
-    even = replace(rates, stiffness=np.ones(5), error=0.0 * rates.error, shuttling=0.0 * rates.shuttling)
+    contact = model.machine.system.contacts[0]
+    arms = np.append(1.0, model.machine.face(0, contact.contact).tangent(float(model.contact.force[0])).centre)  # type: ignore[index]
+    by_stiffness = np.tile(np.outer(arms, arms), (5, 1, 1))
+    even = replace(rates, stiffness=by_stiffness, error=0.0 * rates.error, shuttling=0.0 * rates.shuttling)
     vars(own)["_gap_rates"] = {0: even}
     lines, either = chosen(solved[2].lines), []
     for size in (1e-5, -1e-5):
-        there, contact = replace(model), model.contact
-        changed = replace(
-            contact, stiffness=(1.0 + size) * contact.stiffness, damping=np.sqrt(1.0 + size) * contact.damping
+        # The damping of the flanks' resistance to tilting is in proportion to that stiffness by c/k.
+        linear = [
+            one if one.of_contact is None else replace(one, damping=one.damping / np.sqrt(1.0 + size))
+            for one in model.machine.system.linear
+        ]
+        there = replace(
+            model, machine=replace(model.machine, system=replace(model.machine.system, linear=tuple(linear)))
         )
-        vars(there)["contact"] = changed
+        vars(there)["contact"] = replace(
+            model.contact,
+            stiffness=(1.0 + size) * model.contact.stiffness,
+            damping=np.sqrt(1.0 + size) * model.contact.damping,
+        )
         either.append(np.array([one.value for one in chosen(there.lines(LIMIT, 9))]))
     expected = (either[0] - either[1]) / (2e-5 * model.contact.stiffness[0])
     found = np.array([own._by_gap(one, 0) for one in lines])
@@ -277,7 +288,7 @@ def test_mesh_stiffness_by_the_gap(solved: Solved) -> None:
             ]
             either.append(period_mean(phases, np.concatenate(tangents)))
         expected.append((either[0] - either[1]) / (2.0 * step))
-        found.append(model._gap_rates[0].stiffness @ places**power)
+        found.append(model._gap_rates[0].stiffness[:, 0, 0] @ places**power)
     np.testing.assert_allclose(found, expected, atol=0.1 * abs(expected[0]))
 
 

@@ -366,3 +366,16 @@ def test_fast_bearings_are_warned_of_the_centrifugal_force_that_is_left_out() ->
         assert entry["centrifugal_force_n"] == pytest.approx(force, rel=1e-9)
         assert "n·d_m = 5.2e+05 mm/min (8000 rpm, pitch circle 65 mm)" in entry["message"]
         assert f"{force:.3g} N each" in entry["message"]
+
+
+def test_pitch_deviations_are_in_the_transmission_error_over_the_hunting_period() -> None:
+    """A pinion whose pitch runs out by ±14 µm has 28 µm of it, less the mean over the pairs in contact."""
+    teeth = 28
+    deviations = [f"{14.0 * np.cos(2.0 * np.pi * tooth / teeth):.6f} um" for tooth in range(teeth)]
+    study = gw.load("spur-pair", {"gear.0.errors.pitch": deviations})
+    (pair,) = study.operating_point().document["gear_pairs"]
+    over_hunting_period = pair["transmission_error_over_hunting_period_m"]
+    assert 0.9 * 28e-6 < over_hunting_period["peak_to_peak"] < 28e-6 + pair["transmission_error_m"]["peak_to_peak"]
+    assert over_hunting_period["mean"] == pytest.approx(pair["transmission_error_m"]["mean"], abs=2e-6)
+    (sound,) = gw.load("spur-pair").operating_point().document["gear_pairs"]
+    assert sound["transmission_error_over_hunting_period_m"] is None

@@ -12,10 +12,11 @@ import xarray as xr
 
 import gearwhine as gw
 from coupling.errors import EquilibriumNotFoundError
+from coupling.gears import loaded_transmission_error
+from gearwhine.analyses import machine as analyses
 from gearwhine.case import CaseError, dump_case, load_case, parse_case, swept_keys
 from gearwhine.cli import run_command
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
-from gearwhine.results.operating_point import sections
 from gearwhine.solve.machine import solve_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
@@ -259,24 +260,100 @@ def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
         parse_case(bare)
 
 
-def test_a_misalignment_left_out_is_found_where_bearing_loads_are() -> None:
-    """Where the case gives every load it is 0, and the commands say what the equilibrium finds in its place."""
-    bare = document()
-    del bare["gear_pair"][0]["misalignment"]
-    (pair,), (found,) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(document()), None)
+TWO_WAYS = {"stiffness": {"matrix": np.diag([2e8, 2e8, 1e8, 0.0, 0.0]).tolist()}}
+SPUR_DEFLECTION = 19.5e-6
+ACROSS = {"stiffness": {"xx": "2e8 N/m", "yy": "2e8 N/m"}}
+
+
+def typed(**pair: Any) -> dict[str, Any]:
+    """The overhung pair on bearings of typed stiffness."""
+    given = document()
+    for bearing in given["bearing"]:
+        bearing |= TWO_WAYS if bearing["name"].endswith("left") else ACROSS
+    given["gear_pair"] = [{"driver": "pinion", "driven": "wheel"} | pair]
+    return given
+
+
+@pytest.mark.parametrize("given", [document, typed], ids=["rolling", "typed"])
+def test_a_misalignment_left_out_is_that_of_the_equilibrium(given: Any) -> None:
+    """With typed bearings as with rolling ones: motion takes the flanks as the machine stands, and `check` says so."""
+    bare, named = given(), given()
+    bare["gear_pair"][0].pop("misalignment", None)
+    named["gear_pair"][0]["misalignment"] = "found"
+    (pair,), (found,) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(named), None)
     assert pair.pair.face_gap == found.pair.face_gap != ()
-    for bearing in bare["bearing"]:
-        bearing["load"] = FORCE if bearing["name"].endswith("left") else FORCE | {"z": "0 N"}
     study = gw.build(**bare)
-    (pair,) = solve_pairs(study.case, None)
-    assert (pair.pair.misalignment, pair.pair.face_gap) == (0.0, ())
     load = study.operating_point()
     (told,) = load.document["gear_pairs"]
-    assert (told["misalignment_taken_rad"], told["misalignment_taken_from"]) == (0.0, "default")
-    found_text = f"{1e6 * told['misalignment_rad']:.2f} µrad"
-    sentence = f"  pinion → wheel: misalignment taken as 0, as the case gives none (found: {found_text})"
-    assert sentence in [text for section in sections(load.document) for text in section.sentences]
+    assert told["misalignment_taken_from"] == "operating point"
+    assert told["misalignment_taken_rad"] == told["misalignment_rad"] != 0.0
     assert not [one for one in load.document["warnings"] if one["name"] == "misalignment"]
+    (checked,) = study.check().document["gear_pairs"]
+    assert (checked["misalignment_from"], checked["misalignment_rad"]) == ("operating point", None)
+
+
+def test_aligned_flanks_by_the_case_are_told_beside_what_is_found() -> None:
+    """Above a tenth of the teeth's deflection over the face it is a warning, of every analysis of the machine."""
+    study = gw.build(**typed(misalignment="0 rad"))
+    for result in (study.operating_point(), study.system()):
+        (entry,) = [one for one in result.document["warnings"] if one["name"] == "misalignment"]
+        assert entry["given_rad"] == 0.0
+    (pair,) = study.operating_point().document["gear_pairs"]
+    deflection = pair["force_n"] / pair["mean_stiffness_n_per_m"]
+    assert abs(entry["found_rad"]) * 20e-3 > 0.1 * deflection
+    near = entry["found_rad"] + 0.09 * deflection / 20e-3
+    nearly = gw.build(**typed(misalignment=near)).operating_point()
+    assert "misalignment" not in [one["name"] for one in nearly.document.get("warnings", [])]
+
+
+def test_the_library_takes_the_same_misalignment_as_the_case() -> None:
+    """A pair of `gw.Machine` without one is as the machine stands; apart from a machine its flanks are aligned."""
+    case = parse_case(typed())
+    _, (pair,), coupled = solve_machine(case)
+    machine = describe_machine(case)
+    bare = replace(machine, gear_pairs=[gw.GearPair("pinion", "wheel")])
+    (same,) = bare.loaded_pairs()
+    assert same.pair.face_gap == pair.pair.face_gap != ()
+    (expected,), (contact,) = coupled.system.contacts, bare.assembled.system.contacts
+    assert contact.contact.faces.gap == pytest.approx(expected.contact.faces.gap, rel=1e-9)
+    assert gw.GearPair("pinion", "wheel").face_slices(pair.geometry, 1).gap == pytest.approx(0.0)
+
+
+def test_a_gap_of_a_hundredth_of_the_teeth_deflection_is_none() -> None:
+    """The largest gap of spur teeth that motion leaves out moves no harmonic of their transmission error by 0.01 dB."""
+    aligned, tilted = (
+        solve_pairs(gw.load("spur-pair", {"gear_pair.0.misalignment": angle}).case, None)[0]
+        for angle in (0.0, 0.01 * SPUR_DEFLECTION / 6.35e-3)
+    )
+    deflection = aligned.static.force / aligned.static.mean_mesh_stiffness
+    assert deflection == pytest.approx(SPUR_DEFLECTION, rel=0.1)
+    phases = np.linspace(0.0, 1.0, 64, endpoint=False)
+    harmonics = [
+        np.abs(
+            np.fft.rfft(loaded_transmission_error(pair.carrying_flanks, pair.static.force, phases).transmission_error)
+        )
+        for pair in (aligned, tilted)
+    ]
+    assert np.abs(20.0 * np.log10(harmonics[1][1:5] / harmonics[0][1:5])).max() < 0.01
+
+
+def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
+    """One bearing across each shaft and none against tilting: no equilibrium, but a motion; and it says so."""
+    given = typed()
+    for gear in given["gear"]:
+        gear["helix_angle"] = "0 deg"
+    given["rotor"][1]["axis"] = ["72.5 mm", "0 m"]
+    given["bearing"] = [bearing | ACROSS for bearing in given["bearing"] if bearing["name"].endswith("left")]
+    case = parse_case(given)
+    load, (entry,) = find_load(case, None)
+    assert load is None
+    assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
+    (pair,) = solve_pairs(case, None)
+    assert (pair.pair.misalignment, pair.pair.face_gap) == (None, ())
+    with pytest.warns(UserWarning, match="flanks are taken as aligned, as the machine has no operating point: .*"):
+        _ = describe_machine(case).assembled
+    with pytest.raises(EquilibriumNotFoundError):
+        solve_pairs(parse_case(given | {"gear_pair": [given["gear_pair"][0] | {"misalignment": "found"}]}), None)
 
 
 def test_check_and_gears_say_which_misalignment_they_take(
@@ -289,11 +366,13 @@ def test_check_and_gears_say_which_misalignment_they_take(
     bare = document()
     for angle, command, expected in (
         ("found", "check", "misalignment left to the operating point; `gearwhine load` finds it"),
+        (None, "check", "misalignment left to the operating point; `gearwhine load` finds it"),
         ("0.2 mrad", "check", "misalignment of 200 µrad taken, as the case gives it\n"),
         ("found", "gears", "µrad and the curvature of the flank gap taken, as the operating point has them"),
         ("0.2 mrad", "gears", "Misalignment of 200 µrad taken, as the case gives it\n"),
     ):
-        bare["gear_pair"][0]["misalignment"] = angle
+        bare["gear_pair"][0].pop("misalignment", None)
+        bare["gear_pair"][0] |= {} if angle is None else {"misalignment": angle}
         file.write_text(dump_case(parse_case(bare)), encoding="utf-8")
         assert run_command([command, str(file), "-q", *["--verbose"] * (command == "check")]) == 0
         assert expected in capsys.readouterr().out
@@ -315,8 +394,6 @@ def test_check_and_gears_say_which_misalignment_they_take(
     )
     (pair,) = json.loads(capsys.readouterr().out)["pairs"]
     assert (pair["misalignment_from"], pair["misalignment_seats"]) == ("operating point", "rigid")
-    assert run_command(["check", "spur-pair", "-q", "-v"]) == 0
-    assert "misalignment taken as 0, as the case gives none; `gearwhine load` finds it" in capsys.readouterr().out
 
 
 def test_a_misalignment_is_an_angle_or_found() -> None:
@@ -354,3 +431,23 @@ def test_an_offset_loads_both_bearings_of_a_shaft_without_gears() -> None:
     assert 2.0 * deep + shaft == pytest.approx(20e-6, rel=1e-6)
     with pytest.raises(CaseError, match="a rolling bearing without preload has no stiffness"):
         parse_case(set_against_each_other())
+
+
+@pytest.mark.slow
+def test_gears_takes_the_housing_that_stands_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its best relief is then of the gap that `load` finds; without modes it is that of rigid seats, and it says so."""
+    monkeypatch.setattr("gearwhine.analyses.machine.solve_over_torques", lambda pairs, *_: pairs)
+    changes = {"housing.box.mesh_size": "60 mm", "gear.*.at": "40 mm"}
+    study = gw.load("small-gearbox", changes)
+    (rigid,) = study.gears().document["pairs"]
+    assert rigid["misalignment_seats"] == "rigid"
+    study.modes().write(tmp_path)
+    stood = analyses.gears(study.case, folder=tmp_path).document
+    kept = study.gears().document
+    (found,) = study.operating_point().document["gear_pairs"]
+    for document in (stood, kept):
+        (pair,) = document["pairs"]
+        assert pair["misalignment_seats"] == "housing"
+        assert pair["misalignment_rad"] == pytest.approx(found["misalignment_rad"], rel=1e-6)
+        assert "rigid seats" not in [entry["name"] for entry in document.get("warnings", ())]
+    assert abs(rigid["misalignment_rad"] - found["misalignment_rad"]) > 0.02 * abs(found["misalignment_rad"])

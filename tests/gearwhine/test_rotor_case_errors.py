@@ -127,9 +127,9 @@ ONE_WRONG = {
     "speeds of nothing": ("bearing.1.speeds", [1, 500], "bearing[1].speeds", "a list for each of these speeds"),
     "entry of a table": (
         "bearing.0.stiffness.xx",
-        [1, "0 N/m", 3],
+        [1, "0 N", 3],
         "bearing[0].stiffness.xx[1]",
-        "a stiffness above 0 N/m",
+        "a stiffness such as '1.2e8 N/m'",
     ),
     "early end": ("operation.speed", "4500 rpm", "bearing[0].speeds", "500 to 4500 rpm (it goes from 500 to 4000 rpm)"),
     "early end of a sweep": ("sweep", {"speed": ["0 rpm"]}, "bearing[0].speeds", "0 to 4000 rpm (it goes from 500"),

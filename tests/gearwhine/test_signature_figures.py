@@ -10,7 +10,7 @@ from coupling import SpeedProfile
 from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.gears.transmission_error import _name
-from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_waterfall
+from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_map
 from gearwhine.figures.machine.transient import (
     between_samples,
     draw_contributions,
@@ -30,24 +30,24 @@ def test_run_up(tmp_path: Path) -> None:
     hertz = 28.0 * 20.0 * rates
     swell = 1.0 / np.abs(600.0**2 - hertz**2 + 0.06j * 600.0 * hertz) * 600.0**2
     signal = swell * np.cos(2 * np.pi * 28.0 * 20.0 * turned) + 0.2 * np.cos(2 * np.pi * 20.0 * turned)
-    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2)
+    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2, follow=[28.0, 1.0])
     figure = draw_order_slices("Run-up", orders, {"mesh": 28.0, "shaft": 1.0}, unit="m/s²")
     mesh, shaft = figure.axes[0].lines
     top = np.asarray(mesh.get_xdata())[np.argmax(mesh.get_ydata())]
     assert top == pytest.approx(60.0 * 600.0 / 28.0, rel=0.03)
-    assert np.asarray(shaft.get_ydata()) == pytest.approx(0.2, rel=0.1)
+    assert np.asarray(shaft.get_ydata()) == pytest.approx(20.0 * np.log10(0.2 / np.sqrt(2.0) / 1e-6), abs=0.5)
     save(figure, tmp_path / "orders.png")
-    spectra = spectrogram(signal, interval, 1000, 2000)
+    spectra = spectrogram(signal, interval, 1000, 2000, to_the_ends=True).up_to(1200.0)
     speeds = 60.0 * 20.0 * turning.at(spectra.times)[1]
-    waterfall = draw_run_up_waterfall(
-        "Run-up", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0], housing_frequencies=np.array([600.0])
+    level_map = draw_run_up_map(
+        "Run-up", spectra, speeds, unit="m/s²", mesh_orders=[28.0], housing_frequencies=np.array([600.0])
     )
-    save(waterfall, tmp_path / "waterfall.png")
+    save(level_map, tmp_path / "map.png")
     # Of 28 × 10 to 30 Hz the first two harmonics leave the panel at its top or right end, numbered there.
-    labels = {text.get_text(): text for text in waterfall.axes[0].texts}
+    labels = {text.get_text(): text for text in level_map.axes[0].texts}
     assert {"1×", "2×", "4×"} <= set(labels)
-    axes = waterfall.axes[0]
-    (along,) = (text for text in waterfall.texts if "each row" in text.get_text())
+    axes = level_map.axes[0]
+    (along,) = (text for text in level_map.texts if "Run-up" in text.get_text())
     for number in (2, 4):
         # A number at the right end stands where the order passes the end of the frequencies.
         _, height = axes.transAxes.inverted().transform(
@@ -55,7 +55,7 @@ def test_run_up(tmp_path: Path) -> None:
         )
         rpm = axes.get_ylim()[0] + height * (axes.get_ylim()[1] - axes.get_ylim()[0])
         assert rpm == pytest.approx(60.0 * 1200.0 / (28.0 * number), rel=0.08), along
-    assert waterfall.axes[0].get_xlim()[1] == pytest.approx(1200.0)
+    assert level_map.axes[0].get_xlim()[1] == pytest.approx(1200.0)
 
 
 def test_an_order_below_the_axis_has_no_name_in_the_legend() -> None:
@@ -66,11 +66,13 @@ def test_an_order_below_the_axis_has_no_name_in_the_legend() -> None:
     signal = (
         np.cos(2 * np.pi * 28.0 * turns) + 1e-4 * np.cos(2 * np.pi * turns) + 1e-6 * np.cos(2 * np.pi * 9.0 * turns)
     )
-    orders = order_map(resample_by_angle(signal, times, turning, 20.0), turns=2)
-    orders = replace(
-        orders, amplitude=np.where(np.outer(orders.speeds, orders.orders) < 500.0, orders.amplitude, np.nan)
-    )
     names = {"mesh": 28.0, "shaft": 1.0, "faint": 9.0, "beyond": 60.0}
+    turned = resample_by_angle(signal, times, turning, 20.0)
+    orders = order_map(turned, turns=2, follow=list(names.values()))
+    followed = {
+        order: np.where(orders.speeds * order < 500.0, course, np.nan) for order, course in orders.followed.items()
+    }
+    orders = replace(orders, followed=followed)
     figure = draw_order_slices("Run-up", orders, names, unit="m/s²")
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["mesh", "shaft"]
@@ -78,7 +80,7 @@ def test_an_order_below_the_axis_has_no_name_in_the_legend() -> None:
     known = np.isfinite(np.asarray(mesh.get_ydata(), dtype=float))
     assert known.any()
     np.testing.assert_array_equal(known, 28.0 * orders.speeds < 500.0)
-    nothing = replace(orders, amplitude=np.full_like(orders.amplitude, np.nan))
+    nothing = replace(orders, followed={order: np.full_like(course, np.nan) for order, course in followed.items()})
     assert not draw_order_slices("Run-up", nothing, names, unit="m/s²").axes[0].lines
 
 
@@ -104,15 +106,15 @@ def test_a_run_that_settles_is_drawn_over_time(tmp_path: Path) -> None:
     (axes,) = figure.axes
     assert axes.get_xlabel() == "time [s]"
     np.testing.assert_allclose(np.asarray(axes.lines[0].get_xdata()), orders.times)
-    spectra = spectrogram(signal, 1e-4, 1000, 2000)
+    spectra = spectrogram(signal, 1e-4, 1000, 2000, to_the_ends=True).up_to(1200.0)
     speeds = 60.0 * 20.0 * turning.at(spectra.times)[1]
-    waterfall = draw_run_up_waterfall("Free run", spectra, speeds, unit="m/s²", limit=1200.0, mesh_orders=[28.0])
-    axes = waterfall.axes[0]
+    level_map = draw_run_up_map("Free run", spectra, speeds, unit="m/s²", mesh_orders=[28.0])
+    axes = level_map.axes[0]
     assert axes.get_ylabel() == "time [s]"
     # The mesh order follows the speed, and stands still with it.
     (mesh,) = (line for line in axes.lines if line.get_linestyle() == "--" and line.get_xdata()[-1] == 560.0)
     np.testing.assert_allclose(mesh.get_xdata(), 28.0 / 60.0 * speeds)
-    save(waterfall, tmp_path / "waterfall.png")
+    save(level_map, tmp_path / "map.png")
 
 
 def test_bars_are_the_shares(tmp_path: Path) -> None:

@@ -90,6 +90,8 @@ def test_names_stand_once_and_marks_whole_on_a_branch_of_two_pairs() -> None:
         speeds=speeds,
         stable=np.ones(5, dtype=bool),
         ending="end",
+        gaps=(),
+        slices=(slice(0, 5),),
         bifurcations=[SimpleNamespace(kind="fold", index=2)],
     )
     solved: Any = SimpleNamespace(

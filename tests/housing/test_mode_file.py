@@ -252,6 +252,7 @@ def test_every_field_of_a_mode_set_has_its_place_in_the_file() -> None:
     """Whoever adds a field must say how it stands in the file, or re-used modes would lack it."""
     assert {field.name for field in fields(ModeSet)} == {
         "frequencies", "shapes", "certificate", "residual_modes", "seconds", "backend", "shift", "threads",
+        "discretisation_errors",
     }  # fmt: skip
     assert {field.name for field in fields(Certificate)} == {
         "limit", "expected", "found", "max_residual", "max_overlap",

@@ -159,6 +159,6 @@ def test_concentric_roundings_of_any_radius_leave_the_wall_its_thickness() -> No
 
 
 def test_a_seat_cannot_take_the_name_of_a_patch() -> None:
-    with pytest.raises(GeometryError, match="a surface of the box itself"):
+    with pytest.raises(GeometryError, match="of a face or foot of the box"):
         _box(bores=(Bore("bolt-2-body", (0.0, 0.07, 0.12), 0.05),), cover=TOP)
     assert _box(bores=(Bore("bolt-9-body", (0.0, 0.07, 0.12), 0.05),), cover=TOP).bolts[-1].name == "bolt-8"

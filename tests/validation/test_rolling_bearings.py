@@ -26,7 +26,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +35,7 @@ import pytest
 
 from rotors.rolling_bearings import (
     BallRow,
+    FourPointRow,
     RollerRow,
     RollingBearing,
     RollingState,
@@ -272,6 +273,28 @@ def test_estimated_insides_have_the_printed_ratings(
     assert row.count == (count or row.count)
     published(CATALOGUE, f"static rating of {name}", static, rows * static_rating(row) / 1e3, "kN", rel=0.15)
     published(CATALOGUE, f"dynamic rating of {name}", dynamic, dynamic_rating(row, rows) / 1e3, "kN", rel=0.18)
+
+
+@pytest.mark.parametrize(
+    ("gamma", "balls", "self_aligning"),
+    [(0.02, 15.1, 2.0), (0.05, 15.7, 2.1), (0.10, 16.4, 2.4), (0.20, 14.0, 2.8)],
+)
+@pytest.mark.parametrize("angle", [0.0, math.radians(40.0)])
+def test_factors_of_the_static_rating(gamma: float, balls: float, self_aligning: float, angle: float) -> None:
+    """f₀ of ISO 76:2006, table 1, C₀ = f₀ i Z D² cos α, within its rounding: both rings are weighed."""
+    cosine, count, diameter = math.cos(angle), 3, 10e-3
+    row = BallRow(count, diameter, diameter * cosine / gamma, contact_angle=angle)
+    unit = 1e6 * count * diameter**2 * cosine
+    assert static_rating(row) / unit == pytest.approx(balls, abs=0.051)
+    # Closer grooves are not rated higher; wider ones are rated lower.
+    assert static_rating(replace(row, inner_groove=0.515, outer_groove=0.515)) == static_rating(row)
+    assert static_rating(replace(row, inner_groove=0.55, outer_groove=0.55)) < 0.8 * static_rating(row)
+    sphere = spherical_groove(diameter, row.pitch_diameter, angle)
+    aligning = replace(row, inner_groove=0.53, outer_groove=sphere)
+    assert static_rating(aligning) / unit == pytest.approx(self_aligning, abs=0.051)
+    if angle:
+        shared = {field.name: getattr(row, field.name) for field in fields(BallRow)}
+        assert static_rating(FourPointRow(**shared)) == pytest.approx(2.0 * static_rating(row))
 
 
 @pytest.mark.parametrize(

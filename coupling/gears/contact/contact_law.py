@@ -58,7 +58,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -195,8 +195,9 @@ class ToothContact:
 
     def __post_init__(self) -> None:
         """Check the values, the curves of the pairs, the pitch gaps and the indices of variants."""
-        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= 1.0):
-            raise GearError(f"tooth contact: contact_ratio must be at least 1, got {self.contact_ratio!r}")
+        least = 0.0 if self.enters_by_slices else 1.0  # the next pair of helical teeth enters at the other end
+        if not (math.isfinite(self.contact_ratio) and self.contact_ratio >= least):
+            raise GearError(f"tooth contact: contact_ratio must be at least {least:g}, got {self.contact_ratio!r}")
         if not (math.isfinite(self.damping) and self.damping >= 0.0):
             raise GearError(f"tooth contact: damping must be at least 0 N s/m, got {self.damping!r}")
         if not (math.isfinite(self.damping_depth) and self.damping_depth >= 0.0):
@@ -518,6 +519,22 @@ class ToothContact:
         return np.asarray(
             states.stiffness * np.maximum(0.0, after_shared[:, None] - states.deviation), dtype=np.float64
         )
+
+
+@lru_cache(maxsize=16)  # keyed by identity of the contact, whose table for the kernels is kept with the result
+def without_body_twist(contact: ToothContact, twist: float) -> ToothContact:
+    """Contact law of a pair whose bodies twist beside it: without that part of the shared compliance, `twist` [m/N].
+
+    The law of the pairs without what they share stays the same.
+    """
+    if twist == 0.0:
+        return contact
+    return replace(
+        contact,
+        stiffness=without_shared_compliance(ToothPairCurves(contact.stiffness, contact.deviation), twist).stiffness,
+        variants=tuple(without_shared_compliance(curves, twist) for curves in contact.variants),
+        shared_compliance=contact.shared_compliance - twist,
+    )
 
 
 def contact_flattening(model: StiffnessModel, geometry: GearPairGeometry) -> Flattening:

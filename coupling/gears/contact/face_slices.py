@@ -226,6 +226,12 @@ def lagrange(stations: FloatArray, z: FloatArray) -> FloatArray:
     return weights
 
 
+def mean_and_slope(stations: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean at places z (s,) of a polynomial through stations (j,), and slope of its best straight line, rows (j,)."""
+    by_stations = lagrange(stations, z)
+    return np.asarray(by_stations.mean(axis=0)), np.asarray(z @ by_stations / float(z @ z))
+
+
 def face_slices(
     geometry: GearPairGeometry,
     *,

@@ -27,6 +27,7 @@ a disc of the rotor. A disc without a bore reaches down to the axis; on a shaft 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -40,6 +41,8 @@ from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviati
 from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
 from housing.material import STEEL
 from housing.own_copies import keep_tuples
+from numerics.findings import Finding, refuse
+from numerics.materials import material_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -207,6 +210,12 @@ class Gear:
         _check_rack(self)
         _check_flank(self)
         _check_modifications(self)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Deviations larger than the teeth, and what is unlikely of sizes, deviations and material."""
+        material = material_findings(("gear", self.name), self.youngs_modulus, self.poisson_ratio, self.density)
+        return (*_deviation_findings(self), *_size_findings(self), *material)
 
     # ------------------------------------------------------- transverse plane
 
@@ -489,10 +498,10 @@ def _check_rack(gear: Gear) -> None:
             f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the rack's tip; "
             f"at most {full * 1e3:.4g} mm"
         )
-    if gear.rack_corner_arc.depth <= 0.0:
+    if gear.generating_shift > gear.dedendum:
         raise GearError(
-            f"{label}profile_shift {gear.profile_shift:g} lifts the rack's corner above the pitch line; "
-            f"at most {gear.dedendum - gear.rack_tip_radius / gear.module:.4g} here"
+            f"{label}profile_shift {gear.profile_shift:g} withdraws the rack's teeth beyond the pitch line on which "
+            f"they roll; at most {gear.dedendum + gear.profile_shift - gear.generating_shift:.4g} here"
         )
 
 
@@ -540,3 +549,49 @@ def _check_modifications(gear: Gear) -> None:
             )
     for fault in gear.faults:
         fault.require_fit(gear)
+    refuse(gear.findings, GearError)
+
+
+_LARGEST_DEVIATION = 0.25
+"""Deviation of a flank beyond which it is larger than the tooth can hold, in modules: the tip clearance of ISO 53."""
+_LARGE_DEVIATION = 0.05
+"""Deviation of a flank that is unlikely, in modules: relief has 0.01 to 0.03, errors of quality 12 have 0.03."""
+
+
+def _deviation_findings(gear: Gear) -> Iterator[Finding]:
+    """Yield modifications and errors of the flanks that are larger than the teeth, or unlikely."""
+    part = ("gear", gear.name)
+    deviations: list[tuple[str, float]] = [("eccentricity", gear.eccentricity)]
+    for attribute in ("tip_relief", "root_relief", "profile_deviation", "helix_deviation"):
+        of_flank = getattr(gear, attribute)
+        for name in ("amount", "slope", "form", "crowning", "end_relief"):
+            if of_flank is not None and hasattr(of_flank, name):
+                deviations.append((f"{attribute}.{name}", getattr(of_flank, name)))
+    if gear.pitch_deviations:
+        deviations.append(("pitch_deviations", max(gear.pitch_deviations, key=abs)))
+    for name, value in deviations:
+        if abs(value) > _LARGEST_DEVIATION * gear.module:
+            expected = f"at most a quarter of the module, {1e3 * _LARGEST_DEVIATION * gear.module:.4g} mm"
+            yield Finding(part, name, value, f"{expected}: a tooth has no room for more")
+        elif abs(value) > _LARGE_DEVIATION * gear.module:
+            expected = f"at most {1e3 * _LARGE_DEVIATION * gear.module:.4g} mm, a twentieth of the module"
+            yield Finding(part, name, value, f"{expected}, as gears have it", "warning")
+
+
+_PLAUSIBLE_WIDTHS = (1.0, 60.0)
+"""Face widths of gears, in modules."""
+_PLAUSIBLE_MODULES = (5e-5, 50e-3)
+"""Modules of gears, from watches to mills [m]."""
+
+
+def _size_findings(gear: Gear) -> Iterator[Finding]:
+    """Yield sizes that gears hardly have."""
+    part = ("gear", gear.name)
+    low, high = _PLAUSIBLE_MODULES
+    if not low <= gear.module <= high:
+        expected = f"a module of {1e3 * low:g} to {1e3 * high:g} mm, as gears have"
+        yield Finding(part, "module", gear.module, expected, "warning")
+    low, high = (each * gear.module for each in _PLAUSIBLE_WIDTHS)
+    if not low <= gear.face_width <= high:
+        expected = f"a face of 1 to 60 modules, {1e3 * low:.4g} to {1e3 * high:.4g} mm, as gears have"
+        yield Finding(part, "face_width", gear.face_width, expected, "warning")

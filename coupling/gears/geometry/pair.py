@@ -21,6 +21,7 @@ at the centre distance ``a = (rb_k + rb_i) / cos(w)``; from it follow profile sh
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -31,6 +32,7 @@ import numpy.typing as npt
 from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError, require_finite
 from coupling.gears.geometry.gear import Gear
 from coupling.gears.geometry.involute import inverse_involute, involute
+from numerics.findings import Finding
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -43,6 +45,9 @@ _DECAY_LENGTH = 1.25
 _SAME_WIDTH = 1e-9
 # One per cent of a module: as much as cutting thins a tooth for backlash.
 _ALLOWED_JAM = 0.01
+# Reach of a tip below the form circle, along the line of action in modules. The fillet leaves the involute as a tangent
+# of it, by less than the square of the reach over twice the fillet's radius of some 0.4 modules: 1e-4 modules.
+ALLOWED_REACH = 0.01
 
 
 def turning_sense(speed: float) -> int:
@@ -85,7 +90,7 @@ class GearPairGeometry:
         Contact below the involute's start on either gear, a tip in the other's root, or teeth thicker than their
         spaces.
     NoContactError
-        Contact ratio below one.
+        Total contact ratio below one, which of spur gears is the transverse one.
     """
 
     driver: Gear
@@ -99,6 +104,11 @@ class GearPairGeometry:
         _check_faces(self)
         _check_distance(self)
         _check_contact(self)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is unlikely of the pair: contact ratios."""
+        return tuple(_ratio_findings(self))
 
     # ---------------------------------------------------------- working values
 
@@ -417,17 +427,28 @@ def _check_distance(pair: GearPairGeometry) -> None:
         )
     if pair.normal_backlash < -_ALLOWED_JAM * pair.driver.module:
         raise InterferenceError(f"{pair.label}: the teeth jam {where}")
-    if pair.contact_ratio < 1.0:
+    if _loses_contact(pair):
         GearPairGeometry(pair.driver, pair.driven)  # raises for teeth that mesh at no distance
         raise NoContactError(f"{pair.label}: the teeth lose contact {where}")
 
 
+def _loses_contact(pair: GearPairGeometry) -> bool:
+    """Whether no teeth touch at some phase: a total contact ratio below one, or flanks that meet nowhere.
+
+    Helical teeth whose transverse contact ratio is below one carry all the time if the next pair enters at one end of
+    the face before the last one leaves at the other (ISO 21771: the total contact ratio is the sum of both).
+    """
+    return pair.path_length <= 0.0 or pair.total_contact_ratio < 1.0
+
+
 def _check_contact(pair: GearPairGeometry) -> None:
     """Raise where the contact ratio is below one, or a tip reaches below the other gear's flank or into its root."""
-    if pair.contact_ratio < 1.0:
+    if _loses_contact(pair):
+        kind = "total contact ratio" if pair.driver.helix_angle else "contact ratio"
+        remedy = "lengthen the teeth or widen the faces" if pair.driver.helix_angle else "lengthen the teeth"
         raise NoContactError(
-            f"{pair.label}: the contact ratio is {pair.contact_ratio:.4f}, below 1, without backlash at a centre "
-            f"distance of {pair.working_centre_distance * 1e3:.6g} mm; lengthen the teeth"
+            f"{pair.label}: the {kind} is {pair.total_contact_ratio:.4f}, below 1, without backlash at a centre "
+            f"distance of {pair.working_centre_distance * 1e3:.6g} mm; {remedy}"
         )
     last = pair.tangent_distance - pair.start_distance - pair.path_length
     for rooted, tip, lowest in ((pair.driver, pair.driven, pair.start_distance), (pair.driven, pair.driver, last)):
@@ -439,10 +460,27 @@ def _check_contact(pair: GearPairGeometry) -> None:
             )
 
 
+_MOST_IN_CONTACT = 20.0
+"""Total contact ratio beyond which a face is unlikely wide."""
+
+
+def _ratio_findings(pair: GearPairGeometry) -> Iterator[Finding]:
+    """Yield contact ratios that gears hardly have."""
+    part = ("gear pair", f"{pair.driver.name} -> {pair.driven.name}")
+    if pair.contact_ratio < 1.0:
+        expected = (
+            "1 or more: the teeth carry by their overlap alone, so that misalignment may take them out of contact"
+        )
+        yield Finding(part, "contact_ratio", pair.contact_ratio, expected, "warning")
+    if pair.total_contact_ratio > _MOST_IN_CONTACT:
+        expected = f"at most {_MOST_IN_CONTACT:g} pairs in contact at once"
+        yield Finding(part, "total_contact_ratio", pair.total_contact_ratio, expected, "warning")
+
+
 def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowest: float) -> None:
     """Raise where contact would begin `lowest` [m] past the tangent point, below the flank of `rooted`."""
     form = rooted.roll_angle(rooted.form_radius) * rooted.base_radius
-    if lowest >= form - 1e-9 * rooted.module:
+    if lowest >= form - ALLOWED_REACH * rooted.module:
         return
     start = (
         f"at a radius of {math.hypot(rooted.base_radius, lowest) * 1e3:.6g} mm"

@@ -54,6 +54,7 @@ FloatArray = npt.NDArray[np.float64]
 _PHASES = 48  # number of phases of a mesh period in the means
 _CONVERGED = 1e-13  # last step of the mean deflection over the deflection
 _ROUNDS = 60
+_NO_ARM = 1e-12  # distance of the stiffness centre from the middle of the face that is rounding [m]
 _TO_THE_END = np.array([15.0, -10.0, 3.0]) / 8.0
 """Parabola through values at 1/2, 3/2 and 5/2 slices from the end of the face, at the end."""
 
@@ -117,6 +118,43 @@ def face_load_factor(load: FaceLoad, even: FaceLoad) -> float:
     ratio = mean / np.where(reference > 0.0, reference, reference.mean()) * (reference.mean() / mean.mean())
     ends = [float(_TO_THE_END @ side[:3]) for side in (ratio, ratio[::-1]) if ratio.size >= 3]
     return max(float(ratio.max()), *ends)
+
+
+@dataclass(frozen=True, eq=False)
+class FaceTangent:
+    """Mean tangent of a mesh over its mean approach δ and y, the slope of the approach over the face and the tilt.
+
+    The mean over a mesh period of the slices' tangents, the shared compliance included, is condensed onto δ: with the
+    mean mesh stiffness κ, the loads by changes of the approach are
+
+        dF = κ (dδ + a dy),     dM = a dF + K dy,       κ = K_δδ,       a = K_yδ / κ,       K = K_yy - κ a aᵀ.
+
+    δ + a y is the approach at the stiffness centre: a force there tilts no flanks.
+
+    Attributes
+    ----------
+    mean_stiffness : float
+        κ [N/m].
+    centre : ndarray, shape (2,)
+        a [m]: place of the stiffness centre from the middle of the face, and from the pitch point times -h.
+    stiffness : ndarray, shape (2, 2)
+        K [N m/rad], symmetric and positive semidefinite.
+    moments : ndarray, shape (2,)
+        Mean loads M of slope and tilt at the state of linearisation [N m].
+    """
+
+    mean_stiffness: float
+    centre: FloatArray
+    stiffness: FloatArray
+    moments: FloatArray
+
+    def in_series(self, compliance: FloatArray) -> FaceTangent:
+        """Return the tangent with a compliance (3, 3) over mean approach, slope and tilt behind it."""
+        arms = np.append(1.0, self.centre)
+        whole: FloatArray = np.asarray(self.mean_stiffness * np.outer(arms, arms), dtype=np.float64)
+        whole[1:, 1:] += self.stiffness
+        whole = np.asarray(np.linalg.solve(np.eye(3) + whole @ compliance, whole), dtype=np.float64)
+        return _condensed(0.5 * (whole + whole.T), self.moments)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,6 +255,27 @@ class FaceContact:
     def touch(self) -> float:
         """Mean over the mesh period of the approach at which even flanks first touch [m]."""
         return self._mean_phases.first_touch(np.zeros(self.size))
+
+    @cached_property
+    def linear(self) -> FloatArray:
+        """Approaches that are linear over the face, by their mean, their slope and the tilt, shape (m, 3)."""
+        linear = np.zeros((self.size, 3))
+        linear[:-1, 0], linear[:-1, 1], linear[-1, 2] = 1.0, self.stations, 1.0
+        return linear
+
+    def tangent(self, load: FaceLoad) -> FaceTangent:
+        """Mean tangent about a load over the approach, its slope over the face and the tilt."""
+        moments = (load.loads @ self.linear).mean(axis=0)[1:]
+        return _face_tangent(self.linear.T @ load.tangents @ self.linear, self._contact.shared_compliance, moments)
+
+    @cached_property
+    def unloaded_tangent(self) -> FaceTangent:
+        """Mean tangent with all slices on the path of contact touching, as of the unloaded mean mesh stiffness."""
+        prepared = self._mean_phases
+        position = prepared.positions[prepared.owner, prepared.column][:, None] + self._faces.shift
+        on_path = (position >= 0.0) & (position < self._contact.contact_ratio)
+        tangents = self._tangents(prepared, prepared.meeting & on_path)
+        return _face_tangent(self.linear.T @ tangents @ self.linear, self._contact.shared_compliance, np.zeros(2))
 
     def stiffness_of(self, load: FaceLoad) -> FloatArray:
         """Mesh stiffness at the phases of a load, all slices approaching alike, shared compliance included [N/m]."""
@@ -384,6 +443,22 @@ class FaceContact:
     @cached_property
     def _mean_phases(self) -> _Prepared:
         return _Prepared(self, (np.arange(_PHASES) + 0.5) / _PHASES)
+
+
+def _face_tangent(tangents: FloatArray, shared: float, moments: FloatArray) -> FaceTangent:
+    """Mean of tangents (n, 3, 3) over mean approach, slope and tilt in series with a compliance, condensed."""
+    # Rank-one update of the inverse: the shared compliance yields to the force alone.
+    pull = tangents[:, :, 0]
+    whole = tangents - pull[:, :, None] * pull[:, None, :] * (shared / (1.0 + shared * pull[:, 0]))[:, None, None]
+    return _condensed(whole.mean(axis=0), moments)
+
+
+def _condensed(whole: FloatArray, moments: FloatArray) -> FaceTangent:
+    """Condense a tangent (3, 3) over mean approach, slope and tilt onto the mean approach."""
+    centre = whole[1:, 0] / whole[0, 0]
+    centre[np.abs(centre) < _NO_ARM] = 0.0
+    stiffness = whole[1:, 1:] - whole[0, 0] * np.outer(centre, centre)
+    return FaceTangent(float(whole[0, 0]), centre, 0.5 * (stiffness + stiffness.T), moments)
 
 
 class _Prepared:

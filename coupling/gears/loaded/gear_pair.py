@@ -1,17 +1,19 @@
 """Gear pair: its specification, and its mesh under the mean torque: contact law, mesh damping, transmission error.
 
-The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k and the equivalent mass m of the
-two gears rotating against each other: ``2 ζ sqrt(k m)``.
+The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k between the rims and the
+equivalent mass m of the two gears rotating against each other: ``2 ζ sqrt(k m)``. The twist of the gears' bodies, which
+lies between the rims and the shafts, has no part in k.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, tooth_contact
+from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, without_body_twist
 from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
@@ -23,9 +25,12 @@ from coupling.gears.stiffness.models import (
     GIVEN_SPRINGS,
     SquareStiffness,
     StiffnessModel,
+    require_known_model,
     stiffness_under_load,
+    twist_by_gear,
 )
 from housing.own_copies import keep_tuples
+from numerics.findings import Finding, Number, Numbers, Text, attribute_findings, refuse
 
 
 def equivalent_mass(
@@ -85,7 +90,7 @@ class GearPair:
     stiffness : StiffnessModel or str
         Model of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
     damping_ratio : float
-        Fraction of critical damping of the two gears rotating against each other.
+        Fraction of critical damping of the two rims rotating against each other.
     damping : float, optional
         Damping coefficient of the mesh [N s/m], in place of the ratio.
     backlash : float, optional
@@ -95,7 +100,8 @@ class GearPair:
         Coefficient of friction between the teeth.
     misalignment : float, optional
         Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
-        point, see :meth:`coupling.Machine.at_operating_point`.
+        point, see :meth:`coupling.Machine.at_operating_point`. Flanks of a pair apart from a machine, or in one
+        without such a point, are aligned then.
     face_gap : tuple of float
         Gap of the flanks over the face that comes with the misalignment [m], at the stations of
         :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
@@ -110,13 +116,30 @@ class GearPair:
     damping: float | None = None
     backlash: float | None = None
     friction: float = 0.0
-    misalignment: float | None = 0.0
+    misalignment: float | None = None
     corner_contact: bool | None = None
     face_gap: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies, and check every number."""
         keep_tuples(self, "face_gap")
+        rules = {
+            "driver": Text(),
+            "driven": Text(),
+            "damping_ratio": Number(at_least=0.0, below=1.0),
+            "damping": Number(at_least=0.0, optional=True, unit="N s/m"),
+            "backlash": Number(at_least=0.0, optional=True, unit="m"),
+            "friction": Number(at_least=0.0, at_most=0.5),
+            "misalignment": Number(at_least=-0.1, at_most=0.1, optional=True, unit="rad"),
+            "face_gap": Numbers(),
+        }
+        refuse(attribute_findings(("gear pair", f"{self.driver} -> {self.driven}"), self, **rules), GearError)
+        if isinstance(self.stiffness, str):
+            require_known_model(self.stiffness)
+
+    def findings(self, geometry: GearPairGeometry) -> tuple[Finding, ...]:
+        """Return what is impossible or unlikely of the pair with the geometry of its gears."""
+        return (*geometry.findings, *_mesh_findings(self, geometry))
 
     @property
     def label(self) -> str:
@@ -159,23 +182,14 @@ class GearPair:
         geometry : GearPairGeometry
         sense : int
             Sense of rotation of the driver about z: 1 or -1.
-
-        Raises
-        ------
-        GearError
-            Where the misalignment has still to be found at the operating point of a machine.
         """
-        if self.misalignment is None:
-            raise GearError(
-                f"{geometry.label}: its misalignment is left to the machine's operating point; expected an angle, or "
-                "`Machine.at_operating_point`"
-            )
+        misalignment = self.misalignment or 0.0
         bent = (geometry.driver.helix_deviation, geometry.driven.helix_deviation)
         straight = all(deviation is None or deviation.is_straight for deviation in bent)
-        even = self.misalignment == 0.0 and not any(self.face_gap)
+        even = misalignment == 0.0 and not any(self.face_gap)
         if geometry.driver.helix_angle == 0.0 and even and straight:
             return None
-        return face_slices(geometry, sense=sense, misalignment=self.misalignment, face_gap=self.face_gap)
+        return face_slices(geometry, sense=sense, misalignment=misalignment, face_gap=self.face_gap)
 
     def require_sound_faults(self, geometry: GearPairGeometry) -> None:
         """Refuse faults for which the mesh has no solution, before it is solved.
@@ -195,6 +209,88 @@ class GearPair:
             sparse = replace(geometry, driver=driver, driven=driven)
             contact = tooth_contact(sparse, SquareStiffness(1e8), corner_contact=self.has_corner_contact)
             hunting_period_mesh(contact, 1.0, points=4)
+
+
+_MOST_BACKLASH = 1.0
+"""Backlash beyond which the teeth hardly reach each other, in modules: a space is 1.57 wide."""
+_LARGE_BACKLASH = 0.15
+_LARGE_GAP = 0.1
+"""Gap of the flanks at the end of the face by misalignment that is unlikely, in modules."""
+_LARGE_DAMPING = 0.3
+
+
+def _mesh_findings(pair: GearPair, geometry: GearPairGeometry) -> Iterator[Finding]:
+    """Yield backlash, misalignment and damping that a mesh cannot have, or hardly."""
+    part, module = ("gear pair", f"{pair.driver} -> {pair.driven}"), geometry.driver.module
+    natural = geometry.designed_backlash or 0.0
+    if pair.backlash is not None and pair.backlash > _MOST_BACKLASH * module:
+        expected = f"less than the space between two teeth, at most one module, {1e3 * module:.4g} mm"
+        yield Finding(part, "backlash", pair.backlash, expected)
+    elif pair.backlash is not None and abs(pair.backlash - natural) > _LARGE_BACKLASH * module:
+        expected = (
+            f"about the {1e3 * natural:.4g} mm that the thickness of the teeth and the distance of the shafts leave"
+        )
+        yield Finding(part, "backlash", pair.backlash, expected, "warning")
+    gap = abs(pair.misalignment or 0.0) * geometry.face_width
+    if gap > _LARGE_GAP * module:
+        expected = f"a gap over the face of at most a tenth of the module; it is {1e3 * gap:.4g} mm"
+        yield Finding(part, "misalignment", pair.misalignment, expected, "warning")
+    if pair.damping_ratio > _LARGE_DAMPING:
+        expected = "at most 0.3: gear meshes have 0.02 to 0.17"
+        yield Finding(part, "damping_ratio", pair.damping_ratio, expected, "warning")
+
+
+_PRESSURE = 3e9
+"""Contact pressure beyond which hardened teeth yield [Pa]."""
+_BENDING = 2e9
+"""Nominal bending stress at the root beyond which any tooth breaks [Pa]."""
+_FORM_AND_NOTCH = 3.5
+"""Nominal root stress over F_t / (b m), form and stress correction factors of ISO 6336-3 together: 3 to 4.5."""
+_FAST, _BURSTS = 200.0, 600.0
+"""Pitch-line speed of the fastest turbo gears, and one at which any rim of steel bursts, ρ v² = 2.8 GPa [m/s]."""
+
+
+def operation_findings(geometry: GearPairGeometry, torque: float, speed: float) -> Iterator[Finding]:
+    """Yield a load that teeth do not bear, and a speed at which gears burst.
+
+    Hertzian pressure at the pitch point, p = √(w E* / (π R)), with the line load w on the lines of contact: of spur
+    gears of one pair, of helical ones of the mean length b ε_α / cos β_b.
+
+    Parameters
+    ----------
+    geometry : GearPairGeometry
+    torque : float
+        Mean torque on the driver [N m].
+    speed : float
+        Speed of the driver [rad/s].
+    """
+    part, (driver, driven) = (
+        ("gear pair", f"{geometry.driver.name} -> {geometry.driven.name}"),
+        (
+            geometry.driver,
+            geometry.driven,
+        ),
+    )
+    force, base_helix = abs(torque) / driver.base_radius, driver.base_helix_angle
+    length = geometry.face_width * (geometry.contact_ratio if base_helix else 1.0) / math.cos(base_helix)
+    radii = [radius * math.sin(geometry.working_pressure_angle) for radius in geometry.working_pitch_radii]
+    curvature = sum(math.cos(base_helix) / radius for radius in radii)
+    contact_modulus = 1.0 / sum((1.0 - gear.poisson_ratio**2) / gear.youngs_modulus for gear in (driver, driven))
+    pressure = math.sqrt(force / (math.cos(base_helix) * length) * contact_modulus * curvature / math.pi)
+    root = _FORM_AND_NOTCH * force / (geometry.face_width * driver.module)
+    if pressure > _PRESSURE or root > _BENDING:
+        expected = (
+            f"a load that teeth bear: {force:.4g} N press their flanks with {1e-9 * pressure:.3g} GPa and bend their "
+            f"roots with {1e-9 * root:.3g} GPa, where steel bears {1e-9 * _PRESSURE:g} and {1e-9 * _BENDING:g} at most"
+        )
+        yield Finding(part, "torque", float(torque), expected, "warning")
+    line_speed = abs(speed) * geometry.working_pitch_radii[0]
+    if line_speed > _BURSTS:
+        expected = f"a pitch-line speed at which no rim bursts, at most {_BURSTS:g} m/s; it is {line_speed:.4g} m/s"
+        yield Finding(part, "speed", float(speed), expected)
+    elif line_speed > _FAST:
+        expected = f"a pitch-line speed of at most {_FAST:g} m/s, as the fastest gears have; it is {line_speed:.4g} m/s"
+        yield Finding(part, "speed", float(speed), expected, "warning")
 
 
 @dataclass(frozen=True)
@@ -226,6 +322,15 @@ class LoadedGearPair:
     static: LoadedMesh
     hunting: LoadedMesh | None
     mesh_frequency: float | None
+
+    @property
+    def tilting_faces(self) -> FaceSlices:
+        """Slices of the face by which the flanks resist tilting: those of the contact, or of flanks that carry evenly.
+
+        A given spring lies evenly over the face.
+        """
+        even = face_slices(self.geometry)
+        return self.contact.faces or slices_of_teeth(even, self.model, self.geometry)
 
     @property
     def torque(self) -> float:
@@ -287,9 +392,14 @@ def load_gear_pair(
     static = loaded_transmission_error(carrying, force)
     hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
-    # mesh periods, which are not alike with pitch deviations or damaged teeth.
-    loaded = (hunting or static).mean_mesh_stiffness
-    mean_mesh_stiffness = loaded if force > 0.0 else contact.unloaded_mean_mesh_stiffness
+    # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims, so
+    # the twist of the bodies behind them has no part in it.
+    twist = sum(twist_by_gear(model, geometry))
+    mean_mesh_stiffness = (
+        (hunting or static).mean_stiffness_without(twist)
+        if force > 0.0
+        else without_body_twist(contact, twist).unloaded_mean_mesh_stiffness
+    )
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)
     frequency = None if speed is None else mesh_frequency(speed, geometry.driver.teeth)

@@ -86,7 +86,11 @@ class LoadedMesh:
     @property
     def mean_mesh_stiffness(self) -> float:
         """Mean mesh stiffness under the load: mean tangent stiffness over the whole periods of `phases` [N/m]."""
-        return period_mean(self.phases, self.tangent_stiffness)
+        return self.mean_stiffness_without(0.0)
+
+    def mean_stiffness_without(self, compliance: float) -> float:
+        """Mean mesh stiffness under the load without a compliance in series with the pairs, `compliance` [m/N]."""
+        return period_mean(self.phases, self.tangent_stiffness / (1.0 - compliance * self.tangent_stiffness))
 
 
 def mesh_period_phases(contact: ToothContact, points: int = 400, periods: int = 1) -> FloatArray:

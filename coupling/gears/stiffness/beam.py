@@ -27,6 +27,7 @@ from scipy.optimize import brentq
 
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.gear import Gear
+from coupling.gears.geometry.pair import ALLOWED_REACH
 from coupling.gears.geometry.profile import ProfilePoints, fillet_points, flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
@@ -177,8 +178,8 @@ def _on_fillet(gear: Gear, above: Callable[[float], float]) -> float:
 
 
 def _check_on_flank(gear: Gear, radius: FloatArray) -> None:
-    slack = 1e-9 * gear.module
-    low, high = gear.form_radius - slack, gear.tip_radius + slack
+    # A mating tip may reach a little below the form circle, where the fillet is as good as the involute.
+    low, high = gear.form_radius - ALLOWED_REACH * gear.module, gear.tip_radius + 1e-9 * gear.module
     if radius.size and not (np.all(radius >= low) and np.all(radius <= high)):
         raise GearError(
             f"gear {gear.name!r}: loads act on the flank, radii {low * 1e3:.6g} to {high * 1e3:.6g} mm, "

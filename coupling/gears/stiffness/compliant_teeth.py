@@ -42,7 +42,7 @@ from coupling.gears.stiffness.beam import PlaneState
 from coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneven_shares
 from coupling.gears.stiffness.hertz import hertz_compliance, line_contact
 from coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
-from coupling.gears.stiffness.ring_body import neighbour_compliance
+from coupling.gears.stiffness.ring_body import neighbour_compliance, twist_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -170,6 +170,22 @@ class CompliantTeeth(ABC):
         """
         return sum(self._shared_by_gear(geometry))
 
+    def twist_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
+        """Parts of `shared_compliance` that are the twist of the driver's and of the driven gear's body [m/N].
+
+        The twist lies between the shaft and the rim with its inertia (:mod:`coupling.gears.stiffness.body_twist`);
+        what else neighbouring teeth share lies between the rim and the teeth.
+        """
+        twists = []
+        for gear, shared in zip(geometry.carrying_gears, self._shared_by_gear(geometry), strict=True):
+            body = self.shared_body(gear)
+            if body is None or not body.twists or shared <= 0.0:
+                twists.append(0.0)
+                continue
+            constant = transverse_compliance(gear, _twist_anywhere)
+            twists.append(min(float(constant(np.zeros(()))), shared))
+        return twists[0], twists[1]
+
     def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
         """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
 
@@ -196,13 +212,14 @@ class CompliantTeeth(ABC):
 
     def _shared_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
         """Parts of the driver's and the driven gear's body in the shared compliance [m/N]."""
-        both = geometry.contact_ratio - 1.0
+        # Helical teeth with less than one pair in a plane share their bodies along the face: as at a ratio of one.
+        both = max(geometry.contact_ratio - 1.0, 0.0)
         driver, driven = map(self._neighbours, geometry.carrying_gears)
-        if driver is None or driven is None or both <= 0.0:
+        if driver is None or driven is None or (both == 0.0 and geometry.driver.helix_angle == 0.0):
             return 0.0, 0.0
         nodes, weights = np.polynomial.legendre.leggauss(_CROSS_NODES)
         behind = 0.5 * both * (1.0 + nodes)
-        ahead = behind + 1.0
+        ahead = np.minimum(behind + 1.0, geometry.contact_ratio)
         # The driver pushes against its own rotation, so that its next tooth in the sense of the load entered later.
         of_driver = driver(geometry.driver_radius(ahead), geometry.driver_radius(behind))
         of_driven = driven(geometry.driven_radius(behind), geometry.driven_radius(ahead))
@@ -273,3 +290,9 @@ class CompliantTeeth(ABC):
             return np.asarray(1.0 / (teeth(position) + self.contact_compliance(geometry, position)), dtype=np.float64)
 
         return piecewise.tabulated(chebyshev_interpolant(stiffness, length), length)
+
+
+def _twist_anywhere(spur: Gear) -> Compliance:
+    """Compliance by the twist of a spur gear's body, the same for a load at any radius."""
+    twist = twist_compliance(spur)
+    return lambda radius: np.full(np.shape(radius), twist)

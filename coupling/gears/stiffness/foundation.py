@@ -10,6 +10,9 @@ half angle ``theta`` on the root circle (their Eq. 12 and Table 1):
 
     X(h, theta) = A/theta^2 + B h^2 + C h/theta + D/theta + E h + F
 
+Beyond the fitted range, at a small bore in a large wheel (h > 7), the dent is that at h = 7 and the ring's twist
+grows as its closed form does.
+
 The ring is held at its bore, so the formula holds two things: the dent around the tooth, and the twist of
 the whole ring between bore and root circle, ``rb^2 (1/r_bore^2 - 1/r_root^2) / (4 pi G b)`` along the line
 of action, which grows as h^2 and is the reason why P does.  A gear in one piece with its shaft
@@ -120,15 +123,11 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
     Raises
     ------
     StiffnessModelError
-        For a ring whose root radius over bore radius h is outside 1.4 ... 7.
+        For a thin ring, see `require_thick_ring`.
     """
-    thickness = _thickness(gear)
-    if not THICKNESS_RANGE[0] <= thickness <= THICKNESS_RANGE[1]:
-        raise StiffnessModelError(
-            f"gear {gear.name!r}: root radius over bore (or rim) radius is {thickness:.3g}; Sainsot's body compliance "
-            f"covers {THICKNESS_RANGE[0]:g} to {THICKNESS_RANGE[1]:g}. Change the bore (0 for a gear in one "
-            "piece with its shaft), give a rim its web, or choose a model that takes any ring, as 'elastic-ring'"
-        )
+    require_thick_ring(gear)
+    ring = _thickness(gear)
+    thickness = min(ring, THICKNESS_RANGE[1])
     theta = root_section_angle(gear, root_section)
     terms = np.array([theta**-2, thickness**2, thickness / theta, 1.0 / theta, thickness, 1.0])
     quadratic, linear, constant, radial = _COEFFICIENTS @ terms
@@ -139,7 +138,26 @@ def foundation_compliance(gear: Gear, radius: FloatArray, root_section: RootSect
     flexibility = np.cos(beta) ** 2 * shape / (gear.youngs_modulus * gear.face_width)
     if held_radius(gear) is None:
         flexibility = flexibility - _ring_twist(gear, thickness)
+    elif ring > thickness:
+        flexibility = flexibility + _ring_twist(gear, ring) - _ring_twist(gear, thickness)
     return np.asarray(flexibility, dtype=np.float64)
+
+
+def require_thick_ring(gear: Gear) -> None:
+    """Refuse a ring so thin, root radius over bore radius h below 1.4, that it bends as a rim does.
+
+    Raises
+    ------
+    StiffnessModelError
+        With what to change.
+    """
+    thickness = _thickness(gear)
+    if thickness < THICKNESS_RANGE[0]:
+        raise StiffnessModelError(
+            f"gear {gear.name!r}: root radius over bore (or rim) radius is {thickness:.3g}; Sainsot's body compliance "
+            f"is of rings of at least {THICKNESS_RANGE[0]:g}. Change the bore (0 for a gear in one "
+            "piece with its shaft), give a rim its web, or choose a model that takes any ring, as 'elastic-ring'"
+        )
 
 
 def _ring_twist(gear: Gear, thickness: float) -> float:

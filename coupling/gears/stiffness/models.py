@@ -37,7 +37,8 @@ from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic
 from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.iso6336 import Iso6336Stiffness
+from coupling.gears.stiffness.foundation import require_thick_ring
+from coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
 from coupling.gears.stiffness.tooth_compliance import (
     CornellStiffness,
     ElasticRingStiffness,
@@ -69,6 +70,15 @@ class SharingModel(StiffnessModel, Protocol):
 def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> float:
     """Compliance that pairs of teeth in contact at once share [m/N]; 0 for a model that states stiffnesses alone."""
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
+
+
+def twist_by_gear(model: StiffnessModel | str, geometry: GearPairGeometry) -> tuple[float, float]:
+    """Parts of `shared_compliance` that are the twist of the driver's and of the driven gear's body [m/N].
+
+    It depends on no load, so a model may be given by its name.
+    """
+    named = stiffness_model(model) if isinstance(model, str) else model
+    return named.twist_by_gear(geometry) if isinstance(named, CompliantTeeth) else (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -197,12 +207,32 @@ def stiffness_model(name: str, **parameters: object) -> StiffnessModel:
     StiffnessModelError
         For an unknown name, or parameters that the model does not take or misses.
     """
-    if name not in STIFFNESS_MODELS:
-        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
+    require_known_model(name)
     try:
         return STIFFNESS_MODELS[name](**parameters)
     except TypeError as error:
         raise StiffnessModelError(f"stiffness model {name!r}: {error}") from error
+
+
+def require_known_model(name: str) -> None:
+    """Raise `StiffnessModelError` for a name that no model has."""
+    if name not in STIFFNESS_MODELS:
+        raise StiffnessModelError(f"unknown stiffness model {name!r}; expected one of {', '.join(STIFFNESS_MODELS)}")
+
+
+def require_model_fit(name: str, geometry: GearPairGeometry) -> None:
+    """Refuse gears that a model by name does not cover, before it is solved.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a thin ring under "potential-energy", or profile shifts beyond those of "iso6336".
+    """
+    if name == PotentialEnergyStiffness.name:
+        for gear in (geometry.driver, geometry.driven):
+            require_thick_ring(gear)
+    elif name == Iso6336Stiffness.name:
+        iso6336_stiffness(geometry)
 
 
 def stiffness_under_load(name: str, geometry: GearPairGeometry, force: float) -> StiffnessModel:

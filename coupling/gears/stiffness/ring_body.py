@@ -427,6 +427,18 @@ def neighbour_compliance(gear: Gear, state: PlaneState = "plane-stress", *, twis
     return compliance
 
 
+def twist_compliance(gear: Gear) -> float:
+    """Twist of a spur gear's body between the circle where it is held and the root circle [m/N].
+
+    Along the line of action, by the torque of a unit load alone: ``rb^2 sum (1/a^2 - 1/b^2) / (4 pi G w)`` over the
+    rings from a to b of width w. Zero for a gear in one piece with its shaft.
+    """
+    if held_radius(gear) is None:
+        return 0.0
+    torque = gear.base_radius / gear.root_circle_radius
+    return torque**2 * _whole_twist(body_rings(gear), gear.poisson_ratio) / (gear.youngs_modulus * gear.face_width)
+
+
 def _solved(gear: Gear, rings: tuple[Annulus, ...], state: PlaneState, twists: bool) -> BodyCompliance:
     """Work of a unit load on the root arc; `twists` keeps the twist of the whole body."""
     nu = gear.poisson_ratio

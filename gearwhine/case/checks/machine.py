@@ -16,10 +16,11 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
+from gearwhine.case.checks.keys_of_attributes import key_in_gear
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
-from gearwhine.case.model import Case, Draft
+from gearwhine.case.model import Case, Draft, loaded_rotors
 from gearwhine.case.operation import Operation, listed
 from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, TorsionProbe, TorsionSpring
 from gearwhine.case.speeds_and_torques import pair_torques
@@ -158,7 +159,6 @@ _RPM = 30.0 / pi
 def check_bearings(draft: Draft) -> Iterator[Finding]:
     """Yield tables that do not fit their speeds or end too early, pedestals in the housing, and loads that lack."""
     ratios = _ratios(draft)
-    operated, geared = (bool(draft.document.get(key)) for key in ("operation", "gear_pair"))
     bearings = [bearing for _, bearing in draft.bearings]
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
@@ -170,10 +170,18 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
         if bearing.speeds is not None and bearing.rotor in ratios:
             yield from _check_reach(draft, index, bearing, bearing.speeds, abs(float(ratios[bearing.rotor])))
         rolling = bearing.stiffness.rolling if isinstance(bearing.stiffness, RollingStiffness) else None
-        loaded = operated and operation_loads(bearing, bearings, geared=geared)
+        loaded = _operation_loads(draft, bearing, bearings)
         if rolling is not None and bearing.lacks_load and not rolling.pressed and not loaded:
             expected = "{ x, y, z }, the force of the shaft on it: a rolling bearing without preload has no stiffness"
             yield Finding(("bearing", index, "load"), expected, NOTHING)
+
+
+def _operation_loads(draft: Draft, bearing: Bearing, bearings: Sequence[Bearing]) -> bool:
+    """Whether the operation loads a bearing; one that cannot be read may."""
+    if draft.operation is None:
+        return bool(draft.document.get("operation"))
+    geared = bool(draft.document.get("gear_pair"))
+    return operation_loads(bearing, bearings, loaded_rotors(draft.names("rotor"), draft.operation, geared=geared))
 
 
 def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
@@ -245,7 +253,10 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         try:
             built.setdefault(gear.name, gear.build())
         except GearError as error:
-            yield Finding(("gear", index), f"a gear that can be made; {error}", UNSAID)
+            for finding in error.findings:
+                yield Finding(("gear", index, *key_in_gear(gear, finding.attribute)), finding.expected)
+            if not error.findings:
+                yield Finding(("gear", index), f"a gear that can be made; {error}", UNSAID)
     seen: dict[frozenset[str], int] = {}
     for index, pair in draft.gear_pairs:
         first = seen.setdefault(frozenset((pair.driver, pair.driven)), index)
@@ -273,10 +284,15 @@ def _check_pair(
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
     from coupling.gears import GearError, GearPairGeometry
+    from coupling.gears.errors import StiffnessModelError
+    from coupling.gears.stiffness.models import require_model_fit
     from coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
 
     try:
-        GearPairGeometry(*gears)
+        require_model_fit(pair.stiffness.model, GearPairGeometry(*gears))
+    except StiffnessModelError as error:
+        location = ("gear_pair", index, "stiffness", "model")
+        yield Finding(location, f"a model that covers these gears; {error}", pair.stiffness.model)
     except GearError as error:
         # The error is not one of the distance, which is that without backlash.
         yield Finding(("gear_pair", index), f"gears that can mesh; {error}", UNSAID)

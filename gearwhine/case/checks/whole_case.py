@@ -14,9 +14,11 @@ from gearwhine.case.checks.acoustics import check_acoustics
 from gearwhine.case.checks.housing import check_box, check_housing_form
 from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
 from gearwhine.case.checks.measured import check_measured
-from gearwhine.case.errors import NOTHING, Finding, Location, did_you_mean, key_of, look_up, show_value
-from gearwhine.case.model import Case, Draft
+from gearwhine.case.checks.plausible import case_warnings, library_findings
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean, key_of, look_up, show_value
+from gearwhine.case.model import Case, Draft, case_document
 from gearwhine.case.overrides import parse_key_path, place_in_list
+from numerics.names import twin_of
 
 if TYPE_CHECKING:
     from coupling.machine.axial_location import AxialLocation, AxialSupport
@@ -97,7 +99,8 @@ def _check_reference(entry: object, location: Location, kind: str, names: Iterab
     """Yield a finding where the name at the end of a location is not among the names there are."""
     name = look_up(entry, location[-1:])
     if isinstance(name, str) and name not in (names := tuple(names)):
-        yield Finding(location, _one_of(kind, names) + did_you_mean(name, names))
+        twin = f"; {kind} names look like it: {_CHARACTERS}" if twin_of(name, names) else did_you_mean(name, names)
+        yield Finding(location, _one_of(kind, names) + twin)
 
 
 def _one_of(kind: str, names: Iterable[str]) -> str:
@@ -106,14 +109,47 @@ def _one_of(kind: str, names: Iterable[str]) -> str:
 
 
 def _check_unique(draft: Draft) -> Iterator[Finding]:
-    """Yield the second and later uses of a name among entries of one kind."""
+    """Yield the second and later uses of a name among entries of one kind, and names that look like another one."""
     for keys in _NAMED:
         first: dict[str, int] = {}
         for index, entry in draft.raw_entries(*keys):
             name = entry.get("name")
-            if isinstance(name, str) and first.setdefault(name, index) != index:
+            if not isinstance(name, str):
+                continue
+            twin = twin_of(name, first)
+            if first.setdefault(name, index) != index:
                 first_use = key_of((*keys, first[name]))
                 yield Finding((*keys, index, "name"), f"a name of its own ({first_use} has this one)")
+            elif twin is not None:
+                first_use = key_of((*keys, first[twin]))
+                yield Finding(
+                    (*keys, index, "name"), f"a name that does not look like that of {first_use}: {_CHARACTERS}"
+                )
+    table = draft.document.get("material")
+    materials = [name for name in table if isinstance(name, str)] if isinstance(table, Mapping) else []
+    for place, name in enumerate(materials):
+        twin = twin_of(name, materials[:place])
+        if twin is not None:
+            yield Finding(
+                ("material", name), f"a name that does not look like that of another one: {_CHARACTERS}", UNSAID
+            )
+
+
+_CHARACTERS = "both are written with other characters, such as Cyrillic letters or accents apart from theirs"
+
+
+def _names_by_case(case: Case) -> Iterator[str]:
+    """Yield a sentence on names of one kind that differ in capitals alone."""
+    document = case_document(case)
+    for keys in (*_NAMED, ("material",)):
+        entries = look_up(document, keys)
+        if isinstance(entries, list):
+            entries = [entry["name"] for entry in entries if "name" in entry]
+        names = [] if entries is NOTHING else list(entries)
+        for place, name in enumerate(names):
+            alike = (other for other in names[:place] if other != name and other.casefold() == name.casefold())
+            if (twin := next(alike, None)) is not None:
+                yield f'{".".join(keys)}: the names "{twin}" and "{name}" differ in capitals alone'
 
 
 ORIGINS = ("published", "nominal", "found")
@@ -256,8 +292,10 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         if not has_own_bearings and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             warnings.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
     warnings += _seat_warnings(case)
+    warnings += _names_by_case(case)
     if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
         warnings += [text for location in axial_locations(case) for text in location.warnings]
+    warnings += case_warnings(case, library_findings(case), case_document(case))
     return tuple(warnings)
 
 

@@ -1,4 +1,4 @@
-"""Run-up and run-down figures: waterfall over speed, and order slices."""
+"""Run-up and run-down figures: level map over frequency and speed, order cuts and overall level."""
 
 from collections.abc import Iterator, Sequence
 
@@ -6,16 +6,16 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from coupling.signals import OrderMap, Spectrogram
+from coupling.signals import OrderMap, Spectrogram, decibels, peak_of_rms
 from gearwhine.case import Case, mesh_frequencies
-from gearwhine.figures.spectra import draw_waterfall
+from gearwhine.figures.spectra import draw_level_map
 from gearwhine.figures.style import (
     FOOT,
     HEAD,
+    INK,
     SERIES,
     legend_below,
     legend_height,
-    log_axis,
     name_in_legend,
     panel,
     sheet,
@@ -30,13 +30,15 @@ FloatArray = npt.NDArray[np.float64]
 _HEIGHT = 80.0  # height of the panel of order slices [mm of paper]
 _COLUMNS = 3  # columns of their legend
 _EVEN = 0.2  # least step of the speed between two spectra for an axis of speed, as a part of the mean step
-_DECADES = 5.0  # decades of amplitude that they show at most
+_FAINT_ORDER = 40.0  # decibels below the overall level at the same speed from which on an order is left out
+_LEVELS = 100.0  # decibels below the highest level that they show at most
+_TIME = "time [s]"
 
 
 def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
-    """Draw the waterfall and the orders of every signal of a run.
+    """Draw the level map and the orders of every signal of a run.
 
-    Yields ``run-up-waterfall-SIGNAL`` and ``run-up-orders-SIGNAL``, each with its figure.
+    Yields ``run-up-map-SIGNAL`` and ``run-up-orders-SIGNAL``, each with its figure.
     """
     assert case.operation is not None
     turns_per_second = abs(case.operation.speed) / (2.0 * np.pi)
@@ -46,21 +48,27 @@ def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> It
     pairs = [f"{pair.driver} → {pair.driven}" for pair in case.gear_pair]
     for stem, (name, spectra) in zip(file_stems(names), run.spectra.items(), strict=True):
         unit, signal_name, remark = run.units[name], arrowed(name), f"{case.title}; {run_words(case, run)}"
-        waterfall = draw_run_up_waterfall(
-            f"{signal_name}: spectra along the run",
+        level_map = draw_run_up_map(
+            f"{signal_name}: level over frequency and speed",
             spectra,
             run.speeds_rpm,
             note=remark,
             mesh_names=pairs,
             unit=unit,
-            limit=float(spectra.frequencies[-1]),
             mesh_orders=mesh_orders,
             housing_frequencies=modes,
         )
-        yield f"run-up-waterfall-{stem}", waterfall
+        yield f"run-up-map-{stem}", level_map
         if any(np.isnan(table).any() for table in run.orders[name].followed.values()):
             remark = f"{remark}; up to {run.limit:.0f} Hz, where the model is complete"
-        slices = draw_order_slices(f"{signal_name}: orders", run.orders[name], run.named, unit=unit, note=remark)
+        slices = draw_order_slices(
+            f"{signal_name}: orders",
+            run.orders[name],
+            run.named,
+            unit=unit,
+            note=remark,
+            overall=(spectra.times, run.overall[name]),
+        )
         yield f"run-up-orders-{stem}", slices
 
 
@@ -83,22 +91,21 @@ def _axis(speeds_rpm: FloatArray, times: FloatArray) -> tuple[FloatArray, str]:
     even = steps.size > 0 and np.abs(steps).min() >= _EVEN * np.abs(steps).mean()
     if even and (np.all(steps > 0.0) or np.all(steps < 0.0)):
         return speeds_rpm, "speed of the first driver [rpm]"
-    return times, "time [s]"
+    return times, _TIME
 
 
-def draw_run_up_waterfall(
+def draw_run_up_map(
     title: str,
     spectra: Spectrogram,
     speeds_rpm: FloatArray,
     *,
     unit: str,
-    limit: float,
     note: str = "",
     mesh_orders: Sequence[float] = (),
     mesh_names: Sequence[str] = (),
     housing_frequencies: FloatArray | None = None,
 ) -> Figure:
-    """Draw spectra along a run as rows over speed or time, as :func:`draw_waterfall` does those of a sweep.
+    """Draw the level of spectra along a run over frequency and speed, or time where the speed settles.
 
     Parameters
     ----------
@@ -110,37 +117,41 @@ def draw_run_up_waterfall(
         Speeds of the leading shaft in the middle of each stretch [rpm].
     unit : str
         Unit of the amplitudes.
-    limit : float
-        Limit of the frequency axis [Hz].
     note : str
-        Begin of the note below the title.
+        Note below the title.
     mesh_orders, mesh_names : sequence
         Orders of each gear pair in cycles each turn of the leading shaft, and names of the pairs.
     housing_frequencies : ndarray, shape (n,), optional
         Natural frequencies of the housing [Hz].
     """
-    inside = spectra.frequencies <= limit * (1.0 + 1e-9)
-    rows = len(speeds_rpm)
-    modes = np.empty(0) if housing_frequencies is None else housing_frequencies
     values, value_name = _axis(speeds_rpm, spectra.times)
-    return draw_waterfall(
+    return draw_level_map(
         title,
         values,
-        np.tile(spectra.frequencies[inside], (rows, 1)),
-        spectra.amplitude[:, inside],
+        spectra.frequencies,
+        spectra.amplitude,
         value_name=value_name,
         unit=unit,
         note=note,
         mesh_names=mesh_names,
         mesh_frequencies=np.outer(np.abs(speeds_rpm) / 60.0, mesh_orders) if mesh_orders else (),
-        housing_frequencies=np.tile(modes, (rows, 1)) if modes.size else (),
+        housing_frequencies=housing_frequencies,
     )
 
 
-def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, unit: str, note: str = "") -> Figure:
-    """Draw the amplitude of some orders over the speed of the leading shaft, or the time where it settles.
+def draw_order_slices(
+    title: str,
+    orders: OrderMap,
+    named: dict[str, float],
+    *,
+    unit: str,
+    note: str = "",
+    overall: tuple[FloatArray, FloatArray] | None = None,
+) -> Figure:
+    """Draw the level of some orders over the speed of the leading shaft, or the time where it settles.
 
-    Orders that nowhere reach the lower end of the axis are left out, and so is what is not known of one, its NaN.
+    Orders that nowhere reach the lower end of the axis, or 40 dB below the overall level, are left out, and so is what
+    is not known of one, its NaN.
 
     Parameters
     ----------
@@ -151,34 +162,44 @@ def draw_order_slices(title: str, orders: OrderMap, named: dict[str, float], *, 
     named : dict of str to float
         Orders by their names.
     unit : str
-        Unit of the amplitudes.
+        Unit of the amplitudes; levels are re a millionth of it.
     note : str
         Note below the title.
+    overall : (times, rms), ndarrays of shape (t,), optional
+        Overall rms at times of the run [s].
 
     Raises
     ------
     coupling.CouplingError
         Where an order is not a line of the map.
     """
-    courses = {name: orders.order_slice(order) for name, order in named.items()}
+    courses = {name: decibels(orders.order_slice(order)) for name, order in named.items()}
     known = {name: course[np.isfinite(course)] for name, course in courses.items()}
-    top = max((float(course.max(initial=0.0)) for course in known.values()), default=0.0)
-    bottom = top * 10.0**-_DECADES
-    visible = [name for name, course in known.items() if course.size and (course.max() > bottom or top == 0.0)]
-    below = legend_height(len(visible), _COLUMNS)
+    values, value_name = _axis(60.0 * orders.speeds, orders.times)
+    whole = np.empty(0) if overall is None else decibels(peak_of_rms(overall[1]))
+    top = max((float(course.max()) for course in (*known.values(), whole) if course.size), default=0.0)
+    bottom = top - _LEVELS
+    level = np.full(values.size, -np.inf) if overall is None else np.interp(orders.times, overall[0], whole)
+    visible = [
+        name
+        for name, course in courses.items()
+        if known[name].size and known[name].max() > bottom and np.nanmax(course - level) > -_FAINT_ORDER
+    ]
+    below = legend_height(len(visible) + bool(whole.size), _COLUMNS)
     figure = sheet(HEAD + _HEIGHT + FOOT + below, title, note)
     axes = panel(figure, FOOT + below, _HEIGHT)
-    values, value_name = _axis(60.0 * orders.speeds, orders.times)
     handles = []
     for number, name in enumerate(visible):
         style = "-" if number < len(SERIES) else (0, (4, 2))
         handles += axes.plot(
             values, courses[name], color=SERIES[number % len(SERIES)], ls=style, lw=1.2, label=name_in_legend(name, 40)
         )
+    if overall is not None:
+        at = overall[0] if value_name == _TIME else np.interp(overall[0], orders.times, values)
+        handles += axes.plot(at, whole, color=INK, lw=1.8, zorder=1.5, label="overall")
     axes.set_xlim(float(values.min()), float(values.max()))
-    axes.set(xlabel=value_name, ylabel=f"amplitude [{unit}, peak]")
-    if top > 0.0:
-        least = min(float(known[name].min()) for name in visible)
-        log_axis(axes, max(0.7 * least, bottom), 2.0 * top)
+    axes.set(xlabel=value_name, ylabel=f"level [dB re 1 µ{unit}]")
+    lowest = min((float(known[name].min()) for name in visible), default=bottom)
+    axes.set_ylim(max(lowest - 3.0, bottom), top + 5.0)
     legend_below(figure, handles, _COLUMNS)
     return figure

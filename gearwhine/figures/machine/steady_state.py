@@ -82,8 +82,11 @@ def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, 
     remarks.append(f"{speeds.min():.0f} to {speeds.max():.0f} rpm")
     if speeds.min() <= operation <= speeds.max():
         remarks.append("dash-dotted: speed of operation")
-    if curve.ending != "end":
-        remarks.append(f"left at {speeds[-1]:.4g} rpm")
+    if curve.gaps:
+        widest = max(curve.gaps, key=lambda gap: gap[1] - gap[0])
+        low, high = sorted(RPM * abs(end) for end in widest)
+        more = f" and {len(curve.gaps) - 1} more ranges" if len(curve.gaps) > 1 else ""
+        remarks.append(f"nothing between {low:.4g} and {high:.4g} rpm{more}")
     foot = FOOT + legend_height(1)
     figure = sheet(HEAD + len(quantities) * (_HEIGHT + _BETWEEN) - _BETWEEN + foot, title, "; ".join(remarks))
     # Panels with the same names have them once, in the uppermost.
@@ -118,10 +121,11 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
     for number, (name, values) in enumerate(lines.items()):
         color = SERIES[number % len(SERIES)]
         label = name_in_legend(name, 30)
-        for run, steady in stretches(curve.stable.tolist()):
-            style = "-" if steady else _UNSTABLE
-            axes.plot(speeds[run], values[run], color=color, lw=1.2, ls=style, label=label, zorder=3)
-            label = "_"
+        for piece in curve.slices:
+            for run, steady in stretches(curve.stable[piece].tolist()):
+                style = "-" if steady else _UNSTABLE
+                axes.plot(speeds[piece][run], values[piece][run], color=color, lw=1.2, ls=style, label=label, zorder=3)
+                label = "_"
         for event in curve.bifurcations:
             marker, tint, inside = _MARKS[event.kind]
             axes.plot(

@@ -5,6 +5,7 @@ triangles that are too large, and a floor above the soles, so that none of them 
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -95,7 +96,7 @@ def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
             chosen = np.array([nodes in wanted_facets for nodes in face_facets])
             if len(wanted_facets) > chosen.sum():
                 break
-            return type(face)(pick_facets(face.facets, chosen), face.area, face.center, face.normal)
+            return replace(face, facets=pick_facets(face.facets, chosen))
     raise CaseError([Problem(f"acoustics.faces[{place}]", name, "a flat surface, for Rayleigh's integral")])
 
 

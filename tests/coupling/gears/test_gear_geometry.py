@@ -93,7 +93,7 @@ def test_inverse_involute_refuses(value: float) -> None:
         ({"bore": 90e-3}, GearError, "bore .* must be smaller than the root circle"),
         ({"bore": -1e-3}, GearError, "bore must be at least 0"),
         ({"root_radius": 2e-3}, GearError, "does not fit the rack's tip; at most 1.498 mm"),
-        ({"profile_shift": 1.1}, GearError, "profile_shift"),
+        ({"profile_shift": 1.3}, GearError, "at most 1.25 here"),
         ({"addendum": 3.0, "dedendum": 1.25}, PointedToothError, "pointed below the tip circle"),
         ({"dedendum": 3.0}, PointedToothError, "rack's own teeth are pointed"),
         ({"teeth": 14}, UndercutError, "profile_shift of 0.1812 or more"),

@@ -13,6 +13,7 @@ from coupling.gears.geometry.profile import root_half_angle, tooth_outline
 from coupling.gears.stiffness.foundation import foundation_compliance, root_section_angle, within_fitted_range
 from coupling.gears.stiffness.hertz import hertz_compliance
 from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from coupling.gears.stiffness.models import stiffness_model
 
 ALPHA = math.radians(20.0)
 GEARS = [
@@ -103,13 +104,34 @@ def test_root_angle_readings() -> None:
         root_section_angle(gear, "other")  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("ratio", [1.39, 7.01])
-def test_body_outside_the_fitted_range_is_refused(ratio: float) -> None:
-    gear = GEARS[0]
-    ring = replace(gear, bore=2.0 * gear.root_circle_radius / ratio)
-    with pytest.raises(StiffnessModelError, match=r"covers 1.4 to 7"):
+def ring_of(ratio: float) -> Gear:
+    return replace(GEARS[0], bore=2.0 * GEARS[0].root_circle_radius / ratio)
+
+
+def test_thin_body_outside_the_fitted_range_is_refused() -> None:
+    ring = ring_of(1.39)
+    with pytest.raises(StiffnessModelError, match=r"rings of at least 1.4"):
         foundation_compliance(ring, np.array([ring.pitch_radius]))
     assert not within_fitted_range(ring, "trochoid")
+
+
+@pytest.mark.parametrize("ratio", [10.0, 20.0])
+def test_small_bore_in_a_large_wheel_adds_the_twist_of_the_exact_ring(ratio: float) -> None:
+    """From h = 7 to a smaller bore the body yields more by its twist, as the exact elastic ring does."""
+    pinion = GEARS[0]
+    compliance = {}
+    for model in ("potential-energy", "elastic-ring"):
+        teeth = (
+            stiffness_model(model).teeth_compliance(GearPairGeometry(pinion, replace(ring_of(h), name="wheel")))
+            for h in (7.0, ratio)
+        )
+        smallest, ring = (float(each(np.array([0.8]))[0]) for each in teeth)
+        compliance[model] = ring - smallest
+    assert compliance["potential-energy"] == pytest.approx(compliance["elastic-ring"], rel=0.02)
+    radius = np.array([pinion.pitch_radius])
+    within, beyond = (foundation_compliance(ring_of(h), radius)[0] for h in (7.0, 7.0 + 1e-6))
+    assert beyond == pytest.approx(within, rel=1e-6)  # no jump at the end of the range
+    assert not within_fitted_range(ring_of(ratio), "trochoid")
 
 
 def test_a_rim_alone_is_a_ring_held_at_its_inside() -> None:

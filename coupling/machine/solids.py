@@ -1,0 +1,441 @@
+"""Placed solids of revolution: parts of a machine that stand in each other, in a wall, or off their shaft.
+
+Every part is a ring about an axis along z: a length of shaft, a gear's rim, web and teeth, a disc, the rolling elements
+of a bearing. Two parts overlap where their lengths do and their circles do; a shaft in the bore of a gear does not. A
+bearing whose size is not known is a short ring around its shaft.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from coupling.gears import Gear
+from coupling.machine.loads import ShaftForce
+from coupling.machine.mounted_parts import MountedBearing
+from coupling.machine.parts import Shaft, ShaftGear
+from numerics.findings import Finding, Part
+from rotors import Rotor, Segment
+from rotors.rolling_bearings import RollingBearing
+
+_SLACK = 5e-5
+"""Overlap of two parts up to which they just touch [m]."""
+_SAME_AXIS = 1e-6
+_SHORT = 1e-4
+"""Width of a bearing of unknown size, and height of its ring [m]."""
+
+
+@dataclass(frozen=True)
+class PlacedSolid:
+    """A ring of a part at its place in the machine.
+
+    Attributes
+    ----------
+    part : tuple of str
+        Kind and name of the part.
+    attribute : str
+        Attribute that places it.
+    shaft : str
+        Shaft that it turns with, or around.
+    axis : tuple of float
+        x and y of its axis [m].
+    left, right : float
+        Ends along z [m].
+    inner, outer : float
+        Radii [m].
+    """
+
+    part: Part
+    attribute: str
+    shaft: str
+    axis: tuple[float, float]
+    left: float
+    right: float
+    inner: float
+    outer: float
+
+    @property
+    def label(self) -> str:
+        """Kind and name of the part."""
+        return " ".join((self.part[0], f'"{self.part[1]}"'))
+
+
+def overlap(one: PlacedSolid, other: PlacedSolid) -> float:
+    """Return the length along z over which two rings stand in each other [m]; 0 where they do not."""
+    length = min(one.right, other.right) - max(one.left, other.left)
+    if length <= _SLACK:
+        return 0.0
+    apart = math.hypot(one.axis[0] - other.axis[0], one.axis[1] - other.axis[1])
+    if apart <= _SAME_AXIS:
+        return length if min(one.outer, other.outer) - max(one.inner, other.inner) > _SLACK else 0.0
+    beside = apart >= one.outer + other.outer - _SLACK
+    within = apart + other.outer <= one.inner + _SLACK or apart + one.outer <= other.inner + _SLACK
+    return 0.0 if beside or within else length
+
+
+def shaft_solids(rotor: Rotor, axis: tuple[float, float], start: float) -> Iterator[PlacedSolid]:
+    """Yield the lengths of a shaft, cones as thick as their thin end, and its discs of known size."""
+    for left, right, inner, outer in _shaft_lengths(rotor):
+        yield PlacedSolid(
+            ("shaft", rotor.name), "segments", rotor.name, axis, start + left, start + right, inner, outer
+        )
+    for number, disc in enumerate(rotor.discs):
+        if disc.size is not None:
+            width, outer, inner = disc.size
+            middle, part = start + disc.at, ("shaft", rotor.name)
+            yield PlacedSolid(
+                part,
+                f"discs.{number}.at",
+                rotor.name,
+                axis,
+                middle - 0.5 * width,
+                middle + 0.5 * width,
+                0.5 * inner,
+                0.5 * outer,
+            )
+
+
+def _shaft_lengths(rotor: Rotor) -> Iterator[tuple[float, float, float, float]]:
+    joints = rotor.joints.tolist()
+    for part, left, right in zip(rotor.segments, joints[:-1], joints[1:], strict=True):
+        if isinstance(part, Segment):
+            (outer, inner), (right_outer, right_inner) = part.end_diameters
+            yield left, right, 0.5 * max(inner, right_inner), 0.5 * min(outer, right_outer)
+
+
+def gear_solids(gear: Gear, shaft: str, axis: tuple[float, float], middle: float) -> Iterator[PlacedSolid]:
+    """Yield the rings of a gear's blank, the outermost out to the tip circle; its middle at z = ``middle`` [m]."""
+    rings = gear.blank_rings
+    for ring in rings:
+        outer = gear.tip_radius if ring is rings[0] else ring.outer_radius
+        half = 0.5 * ring.width
+        yield PlacedSolid(
+            ("gear", gear.name), "at", shaft, axis, middle - half, middle + half, ring.inner_radius, outer
+        )
+
+
+def bearing_solid(
+    name: str, rotor: Rotor, axis: tuple[float, float], start: float, at: float, rolling: RollingBearing | None
+) -> PlacedSolid:
+    """Return the ring of a bearing: its rolling elements, or a short one around the shaft."""
+    radius = 0.5 * rotor.outer_diameter(at, at) if 0.0 <= at <= rotor.length else 0.0
+    left, right, inner, outer = -0.5 * _SHORT, 0.5 * _SHORT, radius, radius + _SHORT
+    if rolling is not None:
+        left, right, inner, outer = rolling.envelope
+    middle = start + at
+    return PlacedSolid(("bearing", name), "at", rotor.name, axis, middle + left, middle + right, inner, outer)
+
+
+def overlap_findings(
+    solids: Sequence[PlacedSolid],
+    meshing: Iterable[frozenset[str]] = (),
+    radial: Iterable[str] = (),
+    stand_ins: Iterable[str] = (),
+) -> Iterator[Finding]:
+    """Yield parts that stand in each other, each two of them once.
+
+    Parameters
+    ----------
+    solids : sequence of PlacedSolid
+    meshing : iterable of frozenset
+        Names of two gears in mesh, whose teeth stand in each other's spaces.
+    radial : iterable of str
+        Bearings that hold the shaft across its axis: two of them have no room at one place; one beside a thrust bearing
+        or damper has.
+    stand_ins : iterable of str
+        Gears whose body a disc at their place stands for.
+    """
+    pairs, holding, replaced = set(meshing), set(radial), set(stand_ins)
+    found: set[frozenset[tuple[Part, str]]] = set()
+    ordered = sorted(enumerate(solids), key=lambda item: item[1].left)
+    for place, (number, one) in enumerate(ordered):
+        for later, other in ordered[place + 1 :]:
+            if other.left >= one.right:
+                break
+            first, second = (one, other) if number < later else (other, one)
+            key = frozenset(((first.part, first.attribute), (second.part, second.attribute)))
+            if key in found or not _foreign(first, second, pairs, holding, replaced):
+                continue
+            length = overlap(first, second)
+            if length > 0.0:
+                found.add(key)
+                yield _overlapping(first, second, length)
+
+
+def _foreign(
+    first: PlacedSolid,
+    second: PlacedSolid,
+    meshing: set[frozenset[str]],
+    radial: set[str],
+    replaced: set[str],
+) -> bool:
+    """Whether two solids are of parts that must be clear of each other."""
+    kinds, names = (first.part[0], second.part[0]), (first.part[1], second.part[1])
+    discs = [solid.attribute.startswith("discs") for solid in (first, second)]
+    if first.part == second.part and first.attribute == second.attribute:
+        return False
+    if first.shaft == second.shaft:
+        if "shaft" in kinds and not any(discs):
+            return False  # parts on their own shaft, see :func:`fit_findings`
+        if kinds == ("bearing", "bearing"):
+            return set(names) <= radial
+        if any(discs):
+            # A disc may stand for a gear or a journal of a published model.
+            others = [name for name, disc in zip(names, discs, strict=True) if not disc]
+            return "gear" in kinds and not set(others) & replaced
+        return True
+    if first.axis == second.axis == (0.0, 0.0):
+        return False  # shafts whose axes nobody gave
+    if kinds == ("gear", "gear"):
+        return frozenset(names) not in meshing
+    return kinds != ("bearing", "bearing") and not _is_short(first, second)
+
+
+def _is_short(*solids: PlacedSolid) -> bool:
+    return any(solid.part[0] == "bearing" and solid.right - solid.left <= 1.5 * _SHORT for solid in solids)
+
+
+def _overlapping(first: PlacedSolid, second: PlacedSolid, length: float) -> Finding:
+    """Return the finding of two solids, at the one that is moved more easily: gears, discs, bearings, shafts."""
+    order = {"gear": 0, "bearing": 1, "shaft": 2}
+    rank = [order[solid.part[0]] - 0.5 * solid.attribute.startswith("discs") for solid in (first, second)]
+    at, other = (first, second) if rank[0] < rank[1] else (second, first)
+    kind = "a disc" if at.attribute.startswith("discs") else f"a {at.part[0]}"
+    on = f" on {other.label}" if other.attribute.startswith("discs") else ""
+    name = f"the disc{on}" if on else other.label
+    low, high = max(at.left, other.left), min(at.right, other.right)
+    middles = (
+        f"they overlap over {_mm(length)} from z = {_mm(low)} to {_mm(high)}"
+        if length > 1.5 * _SHORT
+        else f"both are at z = {_mm(0.5 * (low + high))}"
+    )
+    apart = math.hypot(at.axis[0] - other.axis[0], at.axis[1] - other.axis[1])
+    radii = (
+        f", with radii of {_mm(at.outer)} and {_mm(other.outer)} and axes {_mm(apart)} apart"
+        if apart > _SAME_AXIS
+        else ""
+    )
+    return Finding(at.part, at.attribute, None, f"{kind} clear of {name}; {middles}{radii}")
+
+
+_HANGS_OFF = 0.05
+"""Part of a gear's face beyond the end of its shaft that is unlikely."""
+
+
+def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
+    """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft."""
+    part, half = ("gear", gear.name), 0.5 * gear.face_width
+    for left, right, _, outer in _shaft_lengths(rotor):
+        over = min(right, at + half) - max(left, at - half)
+        if over > max(_SLACK, 1e-3 * gear.face_width) and outer >= gear.root_circle_radius:
+            expected = (
+                f"a gear whose teeth stand on its shaft; that has a diameter of {_mm(2.0 * outer)} there, the root "
+                f"circle {_mm(2.0 * gear.root_circle_radius)}"
+            )
+            yield Finding(part, "at", None, expected)
+            break
+    if gear.face_width > rotor.length:
+        expected = f"a face narrower than the shaft that carries it is long, {_mm(rotor.length)}"
+        yield Finding(part, "face_width", gear.face_width, expected)
+        return
+    beyond = max(half - at, at + half - rotor.length)
+    if beyond > _HANGS_OFF * gear.face_width:
+        expected = f"a place at which the shaft carries the face; {_mm(beyond)} of it hang off the end"
+        yield Finding(part, "at", float(at), expected, "warning")
+
+
+def bearing_findings(
+    name: str, rotor: Rotor, at: float, rolling: RollingBearing | None, seat_diameter: float | None
+) -> Iterator[Finding]:
+    """Yield a shaft that does not go through its bearing or the bore that this sits in."""
+    part = ("bearing", name)
+    if rolling is not None:
+        left, right, inner, _ = rolling.envelope
+        thinnest = min(
+            (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0
+        )
+        if thinnest >= 2.0 * inner - _SLACK:
+            expected = f"rolling elements around the shaft, {_mm(thinnest)} thick there; they leave {_mm(2.0 * inner)}"
+            yield Finding(part, "rolling", None, expected)
+    if seat_diameter is not None:
+        thick = min(
+            (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a <= at + _SLACK and b >= at - _SLACK),
+            default=0.0,
+        )
+        if thick >= seat_diameter - _SLACK:
+            expected = f"a seat with room for the shaft, {_mm(thick)} thick there; its bore is {_mm(seat_diameter)}"
+            yield Finding(part, "seat", None, expected)
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A wall of a box with its bores along z.
+
+    Attributes
+    ----------
+    name : str
+        Face of the box.
+    low, high : tuple of float
+        Corners of least and of greatest x, y, z [m].
+    bores : sequence of tuple
+        Circles (x, y, radius) through it [m].
+    """
+
+    name: str
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    bores: Sequence[tuple[float, float, float]] = ()
+
+
+def wall_findings(solids: Iterable[PlacedSolid], walls: Sequence[Wall]) -> Iterator[Finding]:
+    """Yield parts that stand in a wall; a shaft through a wall without a bore is a warning, as of a hole left out."""
+    found: set[tuple[Part, str]] = set()
+    for solid in solids:
+        for wall in walls:
+            if (solid.part, wall.name) in found or solid.part[0] == "bearing" or not _in_wall(solid, wall):
+                continue
+            found.add((solid.part, wall.name))
+            low, high = max(solid.left, wall.low[2]), min(solid.right, wall.high[2])
+            where = f"a radius of {_mm(solid.outer)} about x = {_mm(solid.axis[0])}, y = {_mm(solid.axis[1])}"
+            expected = (
+                f"a place clear of the {wall.name} wall of the housing; with {where} it stands in it from "
+                f"z = {_mm(low)} to {_mm(high)}"
+            )
+            through = solid.part[0] == "shaft" and solid.attribute == "segments" and wall.name in ("back", "front")
+            aside = not any(_about(solid, bore) for bore in wall.bores)
+            yield Finding(solid.part, solid.attribute, None, expected, "warning" if through and aside else "error")
+
+
+def _about(solid: PlacedSolid, bore: tuple[float, float, float]) -> bool:
+    return math.hypot(solid.axis[0] - bore[0], solid.axis[1] - bore[1]) <= bore[2]
+
+
+def _in_wall(solid: PlacedSolid, wall: Wall) -> bool:
+    """Whether a ring and a wall have room in common; one that is within a bore has not."""
+    if min(solid.right, wall.high[2]) - max(solid.left, wall.low[2]) <= _SLACK:
+        return False
+    x, y = solid.axis
+    nearest = math.hypot(max(wall.low[0] - x, 0.0, x - wall.high[0]), max(wall.low[1] - y, 0.0, y - wall.high[1]))
+    farthest = math.hypot(max(x - wall.low[0], wall.high[0] - x), max(y - wall.low[1], wall.high[1] - y))
+    if nearest >= solid.outer - _SLACK or farthest <= solid.inner + _SLACK:
+        return False
+    return not any(math.hypot(x - a, y - b) + solid.outer <= radius + _SLACK for a, b, radius in wall.bores)
+
+
+def placed_solids(
+    shafts: Sequence[Shaft], gears: Sequence[ShaftGear], bearings: Sequence[MountedBearing]
+) -> list[PlacedSolid]:
+    """Return the rings of all parts of a machine."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    solids = [solid for shaft in shafts for solid in shaft_solids(shaft.rotor, shaft.axis, shaft.start)]
+    for mounted in gears:
+        shaft = by_name[mounted.shaft]
+        solids += gear_solids(mounted.gear, shaft.name, shaft.axis, shaft.start + mounted.at)
+    for held in bearings:
+        shaft, bearing = by_name[held.rotor], held.bearing
+        solids.append(bearing_solid(bearing.name, shaft.rotor, shaft.axis, shaft.start, bearing.at, held.elements))
+    return solids
+
+
+def machine_findings(
+    shafts: Sequence[Shaft],
+    gears: Sequence[ShaftGear],
+    bearings: Sequence[MountedBearing],
+    meshing: Iterable[frozenset[str]],
+    seat_diameters: Mapping[str, float] | None = None,
+) -> Iterator[Finding]:
+    """Yield what is wrong or unlikely of the places of a machine's parts.
+
+    Parameters
+    ----------
+    shafts, gears, bearings : sequence
+        Parts of the machine.
+    meshing : iterable of frozenset
+        Names of two gears in mesh.
+    seat_diameters : mapping of str to float, optional
+        Diameters of the bores of seats [m], of shafts that are drawn with their journals: these go through bearings
+        and seats. Without it a shaft may stand for one whose journals are left out.
+    """
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for shaft in shafts:
+        yield from shaft_findings(shaft)
+    for mounted in gears:
+        shaft = by_name[mounted.shaft]
+        yield from fit_findings(mounted.gear, shaft.rotor, mounted.at)
+    for held in bearings:
+        shaft, bearing = by_name[held.rotor], held.bearing
+        if seat_diameters is None:
+            continue
+        seat = seat_diameters.get(held.seat) if held.seat is not None else None
+        yield from bearing_findings(bearing.name, shaft.rotor, bearing.at, held.elements, seat)
+    radial = [
+        held.bearing.name
+        for held in bearings
+        if held.elements is not None or (held.bearing.stiffness[..., :2, :2] > 0.0).any()
+    ]
+    stand_ins = [mounted.name for mounted in gears if mounted.inertia is not None]
+    yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins)
+
+
+_MOST_DAMPED = 0.2
+_LARGEST_ECCENTRICITY = 0.1
+"""Eccentricity of a rotor's mass over its radius that is unlikely."""
+
+
+def shaft_findings(shaft: Shaft) -> Iterator[Finding]:
+    """Yield discs wider than their shaft, unbalance of a mass off the rotor, and damping that no shaft has."""
+    part, rotor = ("shaft", shaft.name), shaft.rotor
+    for number, disc in enumerate(rotor.discs):
+        if disc.size is not None and disc.size[0] > rotor.length:
+            expected = f"a disc narrower than its shaft is long, {_mm(rotor.length)}"
+            yield Finding(part, f"discs.{number}.width", disc.size[0], expected)
+        for finding in disc.findings:
+            yield replace(finding, part=part, attribute=f"discs.{number}.{finding.attribute}")
+    if shaft.damping_ratio > _MOST_DAMPED:
+        expected = "at most 0.2: shafts and their fits have 0.001 to 0.02"
+        yield Finding(part, "damping_ratio", shaft.damping_ratio, expected, "warning")
+
+
+_SHEARED = 1e9
+"""Mean shear stress of a section that no steel bears [Pa]."""
+
+
+def force_findings(force: ShaftForce, rotor: Rotor, place: int) -> Iterator[Finding]:
+    """Yield a force that shears its shaft off; ``place`` is its place among the forces."""
+    areas = [math.pi * (outer**2 - inner**2) for *_, inner, outer in _shaft_lengths(rotor)]
+    size = math.hypot(*force.force)
+    if areas and size > _SHEARED * max(areas):
+        expected = f"a force that the shaft bears; {size:.4g} N shear it with {1e-9 * size / max(areas):.3g} GPa"
+        yield Finding(("force", force.rotor), f"force.{place}", None, expected, "warning")
+
+
+def unbalance_findings(shaft: Shaft, rotor: Rotor, tip_radius: float) -> Iterator[Finding]:
+    """Yield unbalances whose eccentricity is beyond the rotor, or large for it.
+
+    Parameters
+    ----------
+    shaft : Shaft
+    rotor : Rotor
+        Its rotor with the gears.
+    tip_radius : float
+        Largest tip radius of the gears [m]; 0 without gears.
+    """
+    radii = [outer for *_, outer in _shaft_lengths(rotor)] + [0.5 * disc.size[1] for disc in rotor.discs if disc.size]
+    mass, radius = rotor.mass, max([tip_radius, *radii])
+    if any(disc.size is None and disc.mass > 0.0 for disc in shaft.rotor.discs):
+        radius = max(radius, rotor.length)  # of a disc by its inertia the radius is not known
+    for number, unbalance in enumerate(shaft.unbalances):
+        off = abs(unbalance.moment) / mass
+        if off <= _LARGEST_ECCENTRICITY * radius:
+            continue
+        expected = (
+            f"a moment whose eccentricity is within the rotor; it moves {mass:.4g} kg by {_mm(off)}, of a radius of "
+            f"{_mm(radius)}"
+        )
+        severity = "error" if off > radius else "warning"
+        yield Finding(("shaft", shaft.name), f"unbalance.{number}.moment", unbalance.moment, expected, severity)
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.5g} mm"

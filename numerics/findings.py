@@ -1,0 +1,174 @@
+"""Findings: what a part finds wrong or unlikely with itself, and the error that carries those that forbid it.
+
+A part yields its findings; its constructor raises those that are errors, all at once, by :func:`refuse`. Warnings stay
+on the object, for whoever shows them. A door, such as the case file, maps part and attribute to its own words.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Literal, TypeVar
+
+Severity = Literal["error", "warning"]
+Part = tuple[str, str]
+"""Kind and name of a part, such as ``("gear", "pinion")``."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something wrong or unlikely about a part.
+
+    Attributes
+    ----------
+    part : tuple of str
+        Kind and name of the part; the name is empty where there is one of the kind.
+    attribute : str
+        Attribute of the part, with dots to one inside it: ``tip_relief.amount``; empty for the part as a whole.
+    value
+        Value of the attribute in SI; None where no single value is at fault.
+    expected : str
+        Expected value, to be read after "expected".
+    severity : {"error", "warning"}
+        An error forbids the part; a warning is of something allowed and unlikely.
+    """
+
+    part: Part
+    attribute: str
+    value: object = field(hash=False)
+    expected: str
+    severity: Severity = "error"
+
+    @property
+    def label(self) -> str:
+        """Kind and name of the part, and the attribute."""
+        kind, name = self.part
+        of = f"{kind} {name!r}" if name else kind
+        return f"{of}: {self.attribute}" if self.attribute else of
+
+    def __str__(self) -> str:
+        """Return part, attribute, value and expectation as a sentence."""
+        if self.value is None:
+            return f"{self.label}: expected {self.expected}"
+        return f"{self.label} is {_shown(self.value)}; expected {self.expected}"
+
+
+def _shown(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+class RefusedPartError(ValueError):
+    """A part that cannot be.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+        Everything that forbids the part; empty where the message alone says it.
+    """
+
+    findings: tuple[Finding, ...] = ()
+
+
+def refuse(findings: Iterable[Finding], error: type[RefusedPartError]) -> None:
+    """Raise an error with all findings that are errors, if there are any."""
+    forbidding = tuple(finding for finding in findings if finding.severity == "error")
+    if forbidding:
+        refusal = error("\n".join(map(str, forbidding)))
+        refusal.findings = forbidding
+        raise refusal
+
+
+@dataclass(frozen=True)
+class Number:
+    """Rule of a finite number within limits, of which the ends of `above` and `below` are excluded."""
+
+    above: float = -math.inf
+    at_least: float = -math.inf
+    below: float = math.inf
+    at_most: float = math.inf
+    optional: bool = False
+    unit: str = ""
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        limits = [f"above {self.above:g}"] * (self.above > -math.inf)
+        limits += [f"of at least {self.at_least:g}"] * (self.at_least > -math.inf)
+        limits += [f"below {self.below:g}"] * (self.below < math.inf)
+        limits += [f"of at most {self.at_most:g}"] * (self.at_most < math.inf)
+        words = " ".join(word for word in ("a finite number", " and ".join(limits), self.unit) if word)
+        return f"{words}, or None" if self.optional else words
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is such a number."""
+        if value is None:
+            return self.optional
+        if isinstance(value, bool) or not isinstance(value, numbers.Real):
+            return False
+        number = float(value)
+        within = self.at_least <= number <= self.at_most and self.above < number < self.below
+        return math.isfinite(number) and within
+
+
+@dataclass(frozen=True)
+class Text:
+    """Rule of a text that is not empty."""
+
+    optional: bool = False
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return "a name, or None" if self.optional else "a name"
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is such a text."""
+        return self.optional if value is None else isinstance(value, str) and bool(value)
+
+
+@dataclass(frozen=True)
+class Instance:
+    """Rule of an object of a type, such as a part where a part is expected."""
+
+    kind: type | tuple[type, ...]
+    expected: str
+    optional: bool = False
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is such an object."""
+        return self.optional if value is None else isinstance(value, self.kind)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Rule of a row of numbers of some length; None for any length."""
+
+    count: int | None = None
+    each: Number = Number()
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return f"{'' if self.count is None else f'{self.count} '}numbers, each {self.each.expected}"
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is such a row."""
+        if isinstance(value, str) or not isinstance(value, Iterable):
+            return False
+        row = list(value)
+        return (self.count is None or len(row) == self.count) and all(map(self.each.accepts, row))
+
+
+Rule = Number | Text | Instance | Numbers
+AnyOwner = TypeVar("AnyOwner")
+
+
+def attribute_findings(part: Part, owner: object, **rules: Rule) -> Iterator[Finding]:
+    """Yield a finding for each attribute of an object that breaks its rule."""
+    for attribute, rule in rules.items():
+        value = getattr(owner, attribute)
+        if not rule.accepts(value):
+            yield Finding(part, attribute, value if value is not None else "None", rule.expected)

@@ -1,0 +1,44 @@
+"""Names that look alike: what a reader sees of a name, whatever characters it is made of."""
+
+import unicodedata
+from collections.abc import Iterable
+
+# Cyrillic and Greek letters with the look of Latin ones (Unicode TS 39, confusables), most of them capital.
+_LOOKS = dict(
+    zip(
+        "АВЕЗКМНОРСТХУІЈЅаеорсухіјѕԁһӏґвкмнтΑΒΕΖΗΙΚΜΝΟΡΤΥΧαικνορυχγ",
+        "ABE3KMHOPCTXYIJSaeopcyxijsdhlrbkmhtABEZHIKMNOPTYXaiknopuxy",
+        strict=True,
+    )
+)
+
+
+def look_of(name: str) -> str:
+    """Return what a reader sees of a name: letters of other scripts as the Latin ones that they look like.
+
+    Composed and decomposed forms are one (NFKC), characters without a width are left out, and dashes and blanks of any
+    kind are the plain ones.
+    """
+    text = unicodedata.normalize("NFKC", name)
+    seen = []
+    for character in text:
+        category = unicodedata.category(character)
+        if category in ("Cf", "Cc"):
+            continue
+        if category == "Pd":
+            character = "-"
+        elif category == "Zs":
+            character = " "
+        seen.append(_LOOKS.get(character, character))
+    return " ".join("".join(seen).split())
+
+
+def has_hidden_characters(name: str) -> bool:
+    """Whether a name has characters that nobody sees: without a width, of control, or that no script has."""
+    return any(unicodedata.category(character) in ("Cf", "Cc", "Co", "Cn", "Zl", "Zp") for character in name)
+
+
+def twin_of(name: str, names: Iterable[str]) -> str | None:
+    """Return another name that looks the same as this one; None where there is none."""
+    look = look_of(name)
+    return next((other for other in names if other != name and look_of(other) == look), None)

@@ -1,0 +1,172 @@
+"""No machine that cannot be, or hardly is, passes without a word: it is refused by key, or warned of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from broken_cases import broken
+from odd_but_sound import bundled, changed
+from semantic_nonsense import NONSENSE
+
+from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from coupling.gears import Gear
+from coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.case import CaseError, parse_case
+from gearwhine.case.checks.whole_case import warnings_of
+from gearwhine.case.load import bundled_names, load_case
+from housing import Support
+from housing.material import STEEL, Material
+from rotors import Bearing, Disc, Rotor, Segment
+from rotors.rolling_bearings import BallRow, RollerRow, paired
+
+
+def test_there_are_a_hundred() -> None:
+    assert len(NONSENSE) >= 100
+
+
+@pytest.mark.parametrize("name", NONSENSE)
+def test_nonsense_is_not_silent(name: str) -> None:
+    try:
+        case = parse_case(NONSENSE[name], source="case.toml")
+    except CaseError as error:
+        for problem in error.problems:
+            assert problem.source == "case.toml"
+            assert problem.key != "the case"
+            assert problem.expected
+        return
+    warnings = warnings_of(case)
+    assert warnings
+    assert all(": " in text for text in warnings)
+
+
+@pytest.mark.parametrize("name", bundled_names())
+def test_bundled_cases_are_neither_refused_nor_doubted(name: str) -> None:
+    assert not [text for text in load_case(name).warnings if "'unusual' accepts it" in text]
+
+
+def test_what_is_unusual_can_be_meant() -> None:
+    light = changed("steel-box", ("material.steel.density", "30 kg/m^3"))
+    (text,) = [text for text in warnings_of(parse_case(light)) if "density" in text]
+    assert text.startswith("material.steel.density: expected a density of 300 to 23000 kg/m^3")
+    for path in ("material.steel.density", "material.*", "material.steel"):
+        assert not [text for text in warnings_of(parse_case(light | {"unusual": [path]})) if "density" in text]
+    assert [text for text in warnings_of(parse_case(light | {"unusual": ["material.brass"]})) if "density" in text]
+    thick = changed("spur-pair", *((f"rotor.{i}.segments.0.diameter", "95 mm") for i in (0, 1)))
+    with pytest.raises(CaseError, match="a shaft clear of shaft"):  # what cannot be is not accepted
+        parse_case(thick | {"unusual": ["*"]})
+
+
+def test_all_impossible_places_are_told_at_once() -> None:
+    document = changed("spur-pair", ("gear.0.at", "20 mm"), ("gear.1.at", "180 mm"), ("gear_pair", []))
+    document.pop("operation")
+    document.pop("transient")
+    with pytest.raises(CaseError) as caught:
+        parse_case(document, source="case.toml")
+    assert [problem.key for problem in caught.value.problems] == ["gear[0].at", "gear[1].at"]
+
+
+ROTOR = Rotor("in", [Segment(0.2, 0.03, 0.0, STEEL)])
+GEAR = Gear("pinion", 28, 3.175e-3, math.radians(20.0), 6.35e-3)
+LOOSE = {"name": "b", "at": 0.02, "stiffness": 1e8 * np.eye(2), "damping": np.zeros((2, 2))}
+
+
+def spur(**changes: Any) -> Machine:
+    shafts = [Shaft(ROTOR), Shaft(replace(ROTOR, name="out"), axis=(88.9e-3, 0.0))]
+    bearings = [
+        MountedBearing(Bearing.isotropic(f"{shaft} {at}", at, 1e8), shaft, None)
+        for shaft in ("in", "out")
+        for at in (0.02, 0.18)
+    ]
+    gears = [ShaftGear(GEAR, "in", 0.1), ShaftGear(replace(GEAR, name="wheel"), "out", 0.1)]
+    parts = {"gears": gears, "gear_pairs": [GearPair("pinion", "wheel")], "speed": 100.0, "torque": 50.0}
+    return Machine(shafts, bearings, **(parts | changes))
+
+
+IN_PYTHON: dict[str, tuple[Callable[[], object], str]] = {
+    "negative backlash": (lambda: GearPair("p", "w", backlash=-1e-4), "gear pair 'p -> w': backlash is -0.0001"),
+    "infinite backlash": (lambda: GearPair("p", "w", backlash=math.inf), "backlash is inf"),
+    "negative damping": (lambda: GearPair("p", "w", damping=-1.0), "damping is -1"),
+    "damping that is none": (lambda: GearPair("p", "w", damping_ratio=math.nan), "damping_ratio is nan"),
+    "friction as a word": (lambda: GearPair("p", "w", friction="oil"), "friction is 'oil'"),  # type: ignore[arg-type]
+    "no such model": (lambda: GearPair("p", "w", "stiff"), "unknown stiffness model 'stiff'"),
+    "misalignment in degrees": (lambda: GearPair("p", "w", misalignment=3.0), "misalignment is 3"),
+    "gear pair of numbers": (lambda: GearPair(1, 2), "driver is 1"),  # type: ignore[arg-type]
+    "speed that is none": (lambda: spur(speed=math.nan), "machine: speed is nan"),
+    "infinite speed": (lambda: spur(speed=math.inf), "machine: speed is inf"),
+    "torque as a word": (lambda: spur(torque="much"), "machine: torque is 'much'"),
+    "gear in place of a mounted one": (lambda: spur(gears=[GEAR]), "machine: gears.0"),
+    "housing as a name": (lambda: spur(housing="box"), "machine: housing is 'box'"),
+    "bursting gears": (lambda: spur(speed=5e4), "expected a pitch-line speed at which no rim bursts"),
+    "gear on a bearing": (
+        lambda: spur(gears=[ShaftGear(GEAR, "in", 0.02), ShaftGear(replace(GEAR, name="wheel"), "out", 0.02)]),
+        "gear 'pinion': at: expected a gear clear of bearing \"in 0.02\"",
+    ),
+    "backlash of a tooth": (lambda: spur(gear_pairs=[GearPair("pinion", "wheel", backlash=0.01)]), "backlash is 0.01"),
+    "shaft as a number": (lambda: Shaft(3), "rotor is 3"),  # type: ignore[arg-type]
+    "shaft nowhere": (lambda: Shaft(ROTOR, start=math.nan), "shaft 'in': start is nan"),
+    "axis of one number": (lambda: Shaft(ROTOR, axis=(1.0,)), "shaft 'in': axis"),  # type: ignore[arg-type]
+    "shaft damped by -1": (lambda: Shaft(ROTOR, damping_ratio=-1.0), "damping_ratio is -1"),
+    "gear at NaN": (lambda: ShaftGear(GEAR, "in", math.nan), "gear 'pinion': at is nan"),
+    "inertia of no body": (lambda: ShaftGear(GEAR, "in", 0.1, (1.0, 1.0, 0.1)), "inertia is 1; expected at most twice"),
+    "seat as a number": (
+        lambda: MountedBearing(Bearing(**LOOSE), "in", 7),  # type: ignore[arg-type]
+        "bearing 'b': seat is 7",
+    ),
+    "stiffness in place of a bearing": (lambda: MountedBearing(1e8, "in", None), "bearing is"),  # type: ignore[arg-type]
+    "stiffness that is none": (
+        lambda: Bearing("b", 0.0, np.full((2, 2), math.nan), np.zeros((2, 2))),
+        "bearing 'b' stiffness",
+    ),
+    "output of NaN": (lambda: Output("out", math.nan), "output 'out': torque is nan"),
+    "force as a number": (lambda: ShaftForce("in", 0.1, 5.0), "force 'in': force is 5"),  # type: ignore[arg-type]
+    "force of two numbers": (lambda: ShaftForce("in", 0.1, (5.0, 1.0)), "force"),  # type: ignore[arg-type]
+    "disc of no body": (lambda: Disc(0.1, 1.0, 1.0, 0.1), "expected at most twice the diametral_inertia"),
+    "relief of a tooth": (
+        lambda: replace(GEAR, eccentricity=2e-3),
+        "gear 'pinion': eccentricity is 0.002; expected at most a quarter of the module",
+    ),
+    "rollers of a metre": (lambda: RollerRow(9, 8e-3, 1.0, 46e-3), "roller length is 1.0"),
+    "rows in each other": (lambda: paired(BallRow(9, 8e-3, 46e-3, 0.4), "back to back", 2e-3), "distance of two rows"),
+    "support by a word": (lambda: Support("foot", surface="bottom", fixed="xyz"), "support 'foot': fixed is 'xyz'"),  # type: ignore[arg-type]
+    "support by a number": (lambda: Support("foot", surface="bottom", stiffness=1e8), "support 'foot': stiffness"),  # type: ignore[arg-type]
+    "material of NaN": (lambda: Material(math.nan, 0.3, 7850.0), "material: youngs_modulus is nan"),
+    "material of 207 Pa": (lambda: Material(207.0, 0.3, 7850.0), "at least 1 kPa"),
+    "density as text": (lambda: Material(207e9, 0.3, "7850"), "density is '7850'"),  # type: ignore[arg-type]
+}
+
+
+@pytest.mark.parametrize("name", IN_PYTHON)
+def test_constructors_refuse_with_part_attribute_and_value(name: str) -> None:
+    make, words = IN_PYTHON[name]
+    with pytest.raises(ValueError) as caught:  # its words are compared below
+        make()
+    assert words in str(caught.value)
+
+
+def test_findings_carry_part_attribute_value_and_expectation() -> None:
+    with pytest.raises(ValueError, match="backlash") as caught:
+        GearPair("p", "w", backlash=-1e-4, friction=2.0)
+    found = caught.value.findings  # type: ignore[attr-defined]
+    assert [(one.part, one.attribute, one.value) for one in found] == [
+        (("gear pair", "p -> w"), "backlash", -1e-4),
+        (("gear pair", "p -> w"), "friction", 2.0),
+    ]
+    assert all(one.severity == "error" for one in found)
+
+
+def test_a_machine_doubts_its_load() -> None:
+    assert not [text for text in spur().warnings if "teeth bear" in text]
+    (text,) = [text for text in spur(torque=7e3).warnings if "teeth bear" in text]
+    assert "press their flanks with" in text
+
+
+def test_one_error_for_a_wrong_segment() -> None:
+    document = broken(("rotor.0.segments.0.diameter", "thick"), sound=bundled("spur-pair"))
+    with pytest.raises(CaseError) as caught:
+        parse_case(document)
+    assert [problem.key for problem in caught.value.problems] == ["rotor[0].segments[0].diameter"]

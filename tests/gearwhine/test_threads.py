@@ -1,0 +1,127 @@
+"""Studies in several threads: the interpreter does not crash, and each thread's numbers are those of one thread."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+_HEAD = """
+import threading
+from concurrent.futures import ThreadPoolExecutor
+import gearwhine as gw
+
+COARSE = {"housing.box.mesh_size": "45 mm", "housing.frequency_limit": "2 kHz", "measured": "", "provenance": ""}
+
+def first_modes(wall):
+    study = gw.load("small-gearbox", COARSE | {"housing.box.wall": wall})
+    return study.modes().dataset["housing_frequency"].values[:3].tolist()
+
+def in_a_thread_that_ends(wall):
+    found = []
+    thread = threading.Thread(target=lambda: found.append(first_modes(wall)))
+    thread.start()
+    thread.join()
+    return found[0]
+"""
+_AT_ONCE = """
+with ThreadPoolExecutor(2) as pool:
+    together = list(pool.map(first_modes, ("10 mm", "12 mm")))
+assert together == [first_modes("10 mm"), first_modes("12 mm")], together
+"""
+_ONE_AFTER_ANOTHER = """
+thin, thick = in_a_thread_that_ends("10 mm"), in_a_thread_that_ends("12 mm")
+assert [first_modes("10 mm"), first_modes("12 mm")] == [thin, thick]
+"""
+_ONE_STUDY = """
+study = gw.load("small-gearbox", COARSE)
+with ThreadPoolExecutor(2) as pool:
+    housings = list(pool.map(lambda _: study.housing, range(4)))
+assert all(housing is housings[0] for housing in housings)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("work", [_AT_ONCE, _ONE_AFTER_ANOTHER, _ONE_STUDY])
+def test_studies_in_threads_work_as_in_one(work: str) -> None:
+    # A process of its own: what is tested is who loads the libraries first.
+    done = _python(_HEAD + work)
+    assert done.returncode == 0, done.stderr[-500:]
+
+
+@pytest.mark.slow
+def test_a_session_waits_for_that_of_another_thread() -> None:
+    done = _python(
+        """
+import threading
+from meshes.gmsh_meshing import gmsh_session
+order, opened, ended = [], threading.Event(), threading.Event()
+
+def other():
+    opened.wait()
+    with gmsh_session("second") as gmsh:
+        order.append(gmsh.model.list())
+
+thread = threading.Thread(target=other)
+thread.start()
+with gmsh_session("first") as gmsh:
+    opened.set()
+    thread.join(0.3)
+    order.append(gmsh.model.list())
+thread.join()
+assert order == [["", "first"], ["", "second"]], order
+"""
+    )
+    assert done.returncode == 0, done.stderr[-500:]
+
+
+@pytest.mark.slow
+def test_a_session_of_other_code_is_refused_and_keeps_its_models() -> None:
+    done = _python(
+        """
+import gmsh
+from meshes.errors import MesherUnavailableError
+from meshes.gmsh_meshing import gmsh_session
+gmsh.initialize()
+gmsh.model.add("mine")
+try:
+    with gmsh_session("ours"):
+        raise AssertionError("not refused")
+except MesherUnavailableError as error:
+    assert "gmsh.finalize()" in str(error), error
+assert "mine" in gmsh.model.list()
+"""
+    )
+    assert done.returncode == 0, done.stderr[-500:]
+
+
+@pytest.mark.slow
+def test_the_sparse_solver_outlives_the_thread_that_needed_it_first() -> None:
+    done = _python(
+        """
+import threading
+import numpy as np
+from scipy import sparse
+from housing.fem.factorization import Factorizer
+
+def solve(found):
+    matrix = sparse.diags_array([-1.0, 4.0, -1.0], offsets=[-1, 0, 1], shape=(300, 300), format="csr")
+    found.append(Factorizer(backend="rslab").factor(matrix).solve(matrix @ np.arange(300.0)))
+
+for _ in range(3):
+    found = []
+    thread = threading.Thread(target=solve, args=(found,))
+    thread.start()
+    thread.join()
+    assert np.allclose(found[0], np.arange(300.0))
+solve(found)
+"""
+    )
+    assert done.returncode == 0, done.stderr[-500:]
+
+
+def _python(script: str) -> subprocess.CompletedProcess[str]:
+    root = str(Path(__file__).parents[2])
+    environment = os.environ | {"PYTHONPATH": root}
+    return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=environment, timeout=300)
