@@ -162,7 +162,25 @@ class Numbers:
         return (self.count is None or len(row) == self.count) and all(map(self.each.accepts, row))
 
 
-Rule = Number | Text | Instance | Numbers
+@dataclass(frozen=True)
+class Flags:
+    """Rule of a row of true or false of some length."""
+
+    count: int
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return f"{self.count} of true or false"
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is such a row."""
+        if isinstance(value, str) or not isinstance(value, Iterable):
+            return False
+        return [flag in (True, False) for flag in value] == [True] * self.count
+
+
+Rule = Number | Text | Instance | Numbers | Flags
 AnyOwner = TypeVar("AnyOwner")
 
 

@@ -26,7 +26,7 @@ from coupling.gears.geometry.profile import meshing_rotations
 from coupling.machine.coordinates import trains
 from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
 from coupling.machine.mounted_parts import GearMesh
-from numerics.findings import Number, Text, attribute_findings, refuse
+from numerics.findings import Number, Rule, Text, attribute_findings, refuse
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -100,7 +100,7 @@ class Output:
     def __post_init__(self) -> None:
         """Check that torque and place are numbers."""
         place = Number(at_least=0.0, optional=True, unit="m")
-        rules = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
+        rules: dict[str, Rule] = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
         refuse(attribute_findings(("output", str(self.shaft)), self, **rules), CouplingError)
 
 

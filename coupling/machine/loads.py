@@ -13,7 +13,7 @@ import numpy.typing as npt
 from coupling.errors import CouplingError
 from coupling.machine.base_motion import BaseMotion
 from housing.own_copies import keep_arrays, keep_tuples
-from numerics.findings import Number, Numbers, Text, attribute_findings, refuse
+from numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class ShaftForce:
     def __post_init__(self) -> None:
         """Keep own copies, and check place and force."""
         keep_tuples(self, "force")
-        rules = {"rotor": Text(), "at": Number(at_least=0.0, unit="m"), "force": Numbers(3)}
+        rules: dict[str, Rule] = {"rotor": Text(), "at": Number(at_least=0.0, unit="m"), "force": Numbers(3)}
         refuse(attribute_findings(("force", str(self.rotor)), self, **rules), CouplingError)
 
 

@@ -14,7 +14,7 @@ from coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from coupling.machine.face_compliance import FaceCompliance
 from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from housing.own_copies import keep_arrays
-from numerics.findings import Instance, Text, attribute_findings, refuse
+from numerics.findings import Instance, Rule, Text, attribute_findings, refuse
 from rotors import Bearing
 from rotors.errors import require_finite
 from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
@@ -57,7 +57,7 @@ class MountedBearing:
         """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
         refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
-        rules = {
+        rules: dict[str, Rule] = {
             "rotor": Text(),
             "seat": Text(optional=True),
             "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),

@@ -65,7 +65,7 @@ class Shaft:
         keep_tuples(self, "axis", "unbalances")
         kind = Instance(Rotor, "a rotor")
         refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
-        rules = {
+        rules: dict[str, Rule] = {
             "axis": Numbers(2),
             "start": Number(unit="m"),
             "damping_ratio": Number(at_least=0.0, below=1.0),

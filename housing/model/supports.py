@@ -3,7 +3,7 @@
 The grounding check finds the rigid motions that the supports leave free, and the stiffness of each support.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from housing.model.patches import Patch, rigid_motions, spread
 from housing.own_copies import keep_tuples
 from meshes import Mesh
 from meshes.elements import Facets, facet_nodes
-from numerics.findings import Finding, Numbers, Text, attribute_findings, refuse
+from numerics.findings import Flags, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,10 +53,8 @@ class Support:
 
     def __post_init__(self) -> None:
         """Check that the support is given in exactly one way and holds something, and its amounts."""
-        part, label = ("support", str(self.name)), "three of true or false, for x, y and z"
-        if isinstance(self.fixed, str) or not isinstance(self.fixed, Iterable) or len(tuple(self.fixed)) != 3:
-            refuse([Finding(part, "fixed", self.fixed, label)], HousingError)
-        refuse(attribute_findings(part, self, name=Text(), stiffness=Numbers(3), damping=Numbers(3)), HousingError)
+        rules: dict[str, Rule] = {"name": Text(), "fixed": Flags(3), "stiffness": Numbers(3), "damping": Numbers(3)}
+        refuse(attribute_findings(("support", str(self.name)), self, **rules), HousingError)
         keep_tuples(self, "box", "fixed", "stiffness", "damping", "plane")
         if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")

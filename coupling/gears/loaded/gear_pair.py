@@ -30,7 +30,7 @@ from coupling.gears.stiffness.models import (
     stiffness_under_load,
 )
 from housing.own_copies import keep_tuples
-from numerics.findings import Finding, Number, Numbers, Text, attribute_findings, refuse
+from numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 
 
 def equivalent_mass(
@@ -123,7 +123,7 @@ class GearPair:
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
         keep_tuples(self, "face_gap")
-        rules = {
+        rules: dict[str, Rule] = {
             "driver": Text(),
             "driven": Text(),
             "damping_ratio": Number(at_least=0.0, below=1.0),
