@@ -552,8 +552,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     sides = ((mesh.driver, mesh.geometry.driver, line.driver), (mesh.driven, mesh.geometry.driven, line.driven))
     for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
-        motions = rotor.motions(at)
-        compression = flank.turning(rotor.rim_rotation(mounted.name, at)) + flank.across(motions) + flank.axial(motions)
+        section, rim = rotor.motions(at), rotor.rim_section(mounted.name, at)
+        compression = flank.turning(rim[5]) + flank.across(rim) + flank.axial(section)
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

@@ -19,11 +19,13 @@ import numpy.typing as npt
 from coupling.assembly import CoupledMachine, assemble_machine
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.gears import Gear, GearError, GearPairGeometry
-from coupling.gears.contact.contact_law import without_body_twist
+from coupling.gears.contact.contact_law import law_between_rims
 from coupling.gears.contact.face_slices import face_stations
 from coupling.gears.geometry.pair import turning_sense
 from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
-from coupling.gears.stiffness.models import twist_by_gear
+from coupling.gears.stiffness.beam import PlaneState
+from coupling.gears.stiffness.models import rim_compliances
+from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
 from coupling.linear.campbell import SystemCampbell, system_campbell
 from coupling.linear.complex_modes import CoupledModes, coupled_modes
 from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
@@ -32,7 +34,7 @@ from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.machine.face_compliance import face_compliance
-from coupling.machine.gear_bodies import GearBody, gear_body, stiffest
+from coupling.machine.gear_bodies import GearBody, rim_spring, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -68,7 +70,6 @@ from coupling.statics.operating_point_search import solve_operating_point
 from coupling.statics.static_model import (
     StaticGear,
     StaticPair,
-    StaticRim,
     StaticShaftPart,
     static_bearing,
     static_pair,
@@ -249,30 +250,30 @@ class Machine:
 
     @cached_property
     def gear_bodies(self) -> tuple[GearBody, ...]:
-        """Bodies of the gears whose rims turn against their hubs in motion, see :mod:`coupling.machine.gear_bodies`."""
-        twists: dict[str, list[tuple[float, float]]] = {}
+        """Bodies of the gears whose rims move on their hubs in motion, see :mod:`coupling.machine.gear_bodies`."""
+        compliances: dict[str, list[tuple[float, float]]] = {}
+        states: dict[str, PlaneState] = {}
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):
-            for name, gear, twist in zip(
-                (pair.driver, pair.driven),
-                (geometry.driver, geometry.driven),
-                twist_by_gear(pair.stiffness, geometry),
-                strict=True,
+            of_rims = rim_compliances(pair.stiffness, geometry)
+            for name, gear, rim in zip(
+                (pair.driver, pair.driven), (geometry.driver, geometry.driven), of_rims, strict=True
             ):
-                twists.setdefault(name, []).append((gear.base_radius, twist))
+                compliances.setdefault(name, []).append((rim.twist / gear.base_radius**2, rim.shift))
+                states[name] = rim.state
         bodies = []
         for mounted in self.gears:
+            of_gear = compliances.get(mounted.name, [])
+            twisting, shifting = stiffest([twist for twist, _ in of_gear]), stiffest([shift for _, shift in of_gear])
+            if twisting == shifting == np.inf:
+                continue
             shaft = self.shaft(mounted.shaft)
             limit = 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
-            if self._pair_count(mounted.name) > 1:
-                limit = np.inf
-            body = gear_body(
-                mounted.gear,
-                mounted.at,
-                gear_inertia_on_shaft(mounted, shaft.rotor),
-                stiffest(twists.get(mounted.name, [])),
-                limit,
-            )
-            bodies += [] if body is None else [body]
+            limit = limit if len(of_gear) == 1 else np.inf
+            mass, polar = gear_inertia_on_shaft(mounted, shaft.rotor)
+            twist = rim_spring(twisting, polar, rotation_shares(mounted.gear), limit)
+            shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
+            if twist is not None or shift is not None:
+                bodies.append(GearBody(mounted.name, mounted.at, twist, shift))
         return tuple(bodies)
 
     @property
@@ -403,8 +404,8 @@ class Machine:
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
             rotation = turning_sense(self.speeds[driver.shaft])
             gears = self._static_gears((driver, driven), geometry)
-            twist = _twist_of_bodies(pair, geometry, rims)
-            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, twist))
+            behind = _behind_rims(pair, geometry, rims)
+            pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, behind))
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
@@ -414,7 +415,7 @@ class Machine:
                 self.constant_torques,
                 gravity,
                 self.forces,
-                [StaticRim(rim.gear, rim.stiffness) for rim in rims.values()] if pairs else (),
+                list(rims.values()) if pairs else (),
             )
         except EquilibriumNotFoundError as error:
             of_location = (text for location in self.axial_locations for text in location.warnings)
@@ -783,17 +784,26 @@ class Machine:
             width = loaded.geometry.face_width
             missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
             gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
-        friction, faces = loaded.pair.friction, loaded.tilting_faces
         bodies = {body.gear: body for part in components for body in part.bodies}
-        twist = _twist_of_bodies(loaded.pair, loaded.geometry, bodies)
-        contact = without_body_twist(loaded.contact, twist)
-        return GearMesh(*gears, loaded.geometry, contact, loaded.backlash, friction, body_twist=twist, faces=faces)
+        behind = _behind_rims(loaded.pair, loaded.geometry, bodies)
+        contact = law_between_rims(loaded.contact, behind)
+        driver, driven = gears
+        return GearMesh(
+            driver,
+            driven,
+            loaded.geometry,
+            contact,
+            loaded.backlash,
+            loaded.pair.friction,
+            behind_rims=behind,
+            faces=loaded.tilting_faces,
+        )
 
 
-def _twist_of_bodies(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:
-    """Twist of those bodies of a pair whose rims are coordinates, along the line of action [m/N]."""
+def _behind_rims(pair: GearPair, geometry: GearPairGeometry, bodies: Mapping[str, GearBody]) -> float:
+    """Compliance of those rims of a pair on their hubs that are coordinates, along the line of action [m/N]."""
     gears = zip((pair.driver, pair.driven), (geometry.driver, geometry.driven), strict=True)
-    return sum(gear.base_radius**2 / bodies[name].stiffness for name, gear in gears if name in bodies)
+    return sum(bodies[name].compliance(gear.base_radius) for name, gear in gears if name in bodies)
 
 
 def _dashpots(rotor: Rotor) -> list[ShaftDashpots]:

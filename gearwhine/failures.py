@@ -5,6 +5,14 @@ class PartlyFailedError(RuntimeError):
     """Some of the work failed; finished parts are on file, and the message gives the number of missing ones."""
 
 
+class DamagedResultsError(ValueError):
+    """A file of a results folder is not as a run wrote it; the message names it."""
+
+
+class ForeignFileError(ValueError):
+    """A file that no run made, or that the case reads, would be replaced; the message names it."""
+
+
 class WorkersError(RuntimeError):
     """The workers of a sweep did not start, or are gone for good."""
 
@@ -36,7 +44,9 @@ def explain(error: Exception) -> tuple[int, str | None]:
         subject = "what is asked for" if by_option else "the case"
         head = f"{subject} cannot be used as it stands" if count == 1 else f"{count} problems in {subject}"
         return 2, head + ":\n" + "\n".join(f"  {problem}" for problem in error.problems)
-    if isinstance(error, CouplingError | GearError | HousingError | GeometryError | RotorError):
+    if isinstance(error, CouplingError | DamagedResultsError | GearError | HousingError | GeometryError | RotorError):
+        return 2, str(error)
+    if isinstance(error, ForeignFileError):
         return 2, str(error)
     proofs = (
         ContactAccuracyError,

@@ -123,6 +123,7 @@ _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
 _WORST_JACOBIAN = 0.05  # least Jacobian of an element over its mean, below which it counts as folded
 _HALVINGS = 3
+_COARSE = 1.5  # size of the elements of a first mesh over the thickness of the walls
 _REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
 
 MOST_ELEMENTS = 3e6
@@ -131,7 +132,7 @@ MOST_ELEMENTS = 3e6
 _STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
-def check_mesh_request(mesh_size: float, order: int) -> None:
+def check_mesh_request(mesh_size: float | None, order: int) -> None:
     """Check element size and order.
 
     Raises
@@ -139,7 +140,7 @@ def check_mesh_request(mesh_size: float, order: int) -> None:
     GeometryError
         For a size that is not positive, or an order other than 1 and 2.
     """
-    if not mesh_size > 0.0 or order not in (1, 2):
+    if (mesh_size is not None and not mesh_size > 0.0) or order not in (1, 2):
         raise GeometryError(f"mesh size {mesh_size} m must be positive and order {order} be 1 or 2")
 
 
@@ -180,6 +181,17 @@ def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
             f"elements of {length_text(mesh_size)} would be about {number:.1g} in number, more than any solver takes "
             f"({MOST_ELEMENTS:.0g}); expected at least {length_text(least)}"
         )
+
+
+def coarse_size(volume: float, area: float, extent: float) -> float:
+    """Size of elements for a first mesh of walls, by their mean thickness, twice the volume over the surface [m].
+
+    Parameters
+    ----------
+    volume, area, extent : float
+        Volume and surface of the solid, and its longest side [m³, m², m].
+    """
+    return min(_COARSE * 2.0 * volume / area, extent / 3.0)
 
 
 def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:

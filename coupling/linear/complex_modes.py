@@ -323,7 +323,7 @@ def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatA
     for number, component in enumerate(system.components):
         end = start + component.size
         if isinstance(component, RotorComponent):
-            m = component.modal.lateral.count
+            m = component.plane_size
             x, y = vectors[:, start : start + m], vectors[:, start + m : start + 2 * m]
             forward = means @ (np.abs(x + 1j * y) ** 2).sum(axis=1)
             backward = means @ (np.abs(x - 1j * y) ** 2).sum(axis=1)

@@ -26,7 +26,7 @@ from scipy import linalg
 
 from coupling.errors import CouplingError
 from coupling.gears import LoadedMesh, ToothContact
-from coupling.gears.contact.contact_law import without_body_twist
+from coupling.gears.contact.contact_law import law_between_rims
 from coupling.linear.mesh_harmonics import MeshHarmonicModel
 
 FloatArray = npt.NDArray[np.float64]
@@ -88,9 +88,9 @@ class SensorLevel:
             :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
-        # The machine has the twist of the gears' bodies beside its contacts.
-        twist = model.machine.meshes[self.mesh].body_twist
-        stiffness, contact = mesh.mean_stiffness_without(twist), without_body_twist(contact, twist)
+        # The machine has the rims on their hubs beside its contacts.
+        behind = model.machine.meshes[self.mesh].behind_rims
+        stiffness, contact = mesh.mean_stiffness_without(behind), law_between_rims(contact, behind)
         error = model.transmission_error(number, mesh, hunting_period=1, count=max(self.weights))
         shuttling = model.shuttling_loads(number, contact, force)
         before, damping = float(model.contact.stiffness[number]), float(model.contact.damping[number])

@@ -151,8 +151,10 @@ def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
     participation = rotor.modal.participation
     if participation is None:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
-    m, (x, y) = rotor.modal.lateral.count, np.subtract(rotor.axis, point[:2])
-    shift, tilt = rotor.plane_basis.T @ participation.displacement, rotor.plane_basis.T @ participation.tilt
+    m, (x, y) = rotor.plane_size, np.subtract(rotor.axis, point[:2])
+    carried = np.array([(body.shift.coupling_inertia, body.at) for body in rotor.bodies if body.shift]).reshape(-1, 2)
+    shift = rotor.plane_basis.T @ np.concatenate([participation.displacement, carried[:, 0]])
+    tilt = rotor.plane_basis.T @ np.concatenate([participation.tilt, carried.prod(axis=1)])
     tilt = tilt + (rotor.start - point[2]) * shift
     whole = np.zeros((rotor.size, 6))
     whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
@@ -170,8 +172,8 @@ def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> Flo
     for component, speed in zip(components, speeds, strict=True):
         whole = np.zeros((component.size, 6))
         if isinstance(component, RotorComponent) and component.modal.participation is not None:
-            m = component.modal.lateral.count
-            moment = speed * component.plane_basis.T @ component.modal.participation.spin
+            m, spin = component.plane_size, component.modal.participation.spin
+            moment = speed * component.plane_basis[: spin.size].T @ spin
             whole[:m, 3], whole[m : 2 * m, 4] = moment, moment
         rows.append(whole)
     return np.vstack(rows)

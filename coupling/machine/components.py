@@ -19,7 +19,7 @@ import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError
-from coupling.machine.gear_bodies import GearBody
+from coupling.machine.gear_bodies import GearBody, RimSpring
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
 from rotors.modes.lateral import LateralModes
@@ -101,7 +101,7 @@ class HousingComponent(Component):
 class RotorComponent(Component):
     """A rotor: lateral modes in the x and in the y plane, torsional modes, motion along its axis, in this order.
 
-    The torsional modes are those of the shaft with the twist of its gears' bodies, see :func:`rotor_component`.
+    The modes are those of the shaft with the rims of its gears on their hubs, see :func:`rotor_component`.
 
     Attributes
     ----------
@@ -109,15 +109,16 @@ class RotorComponent(Component):
         Modes of the rotor: planar modes on averaged supports as the basis in both planes, and free torsional modes.
     start : float
         z of the rotor's left end [m].
-    plane_basis : ndarray, shape (m, m)
-        The plane's coordinates in terms of the planar modes, orthogonal: shift, tilt and bending of the free shaft.
+    plane_basis : ndarray, shape (m + s, m + s)
+        The m planar modes of ``modal`` and the shifts of s rims on their hubs, in terms of a plane's coordinates:
+        shift, tilt and bending of the free shaft. Without rims it is orthogonal.
     torsion_basis : ndarray, shape (t + g, t + g)
-        The t torsional coordinates of ``modal`` and the rotations of the rims against their hubs, in terms of the
-        component's torsional coordinates.
+        The t torsional modes of ``modal`` and the rotations of g rims against their hubs, in terms of the component's
+        torsional coordinates.
     axis : tuple of float
         x and y of the shaft's line [m].
     bodies : tuple of GearBody
-        The g gears whose rims turn against their hubs.
+        Gears whose rims move on their hubs.
     """
 
     modal: ModalRotor
@@ -145,8 +146,8 @@ class RotorComponent(Component):
         if at not in self._sections:
             motions, m, t = self.modal.motions(at), self.modal.lateral.count, self.modal.torsional.count
             rows = np.zeros((6, self.size))
-            for plane in (slice(0, m), slice(m, 2 * m)):
-                rows[:5, plane] = motions[:, plane] @ self.plane_basis
+            for modes, own in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
+                rows[:5, own] = motions[:, modes] @ self.plane_basis[:m]
             rows[:5, self._torsion.stop :] = motions[:, 2 * m + t :]
             rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
             self._sections[at] = rows
@@ -154,23 +155,42 @@ class RotorComponent(Component):
         return self._sections[at]
 
     @property
+    def plane_size(self) -> int:
+        """Number of coordinates of a plane, m + s."""
+        return len(self.plane_basis)
+
+    @property
+    def _planes(self) -> tuple[slice, slice]:
+        """Coordinates of the x and of the y plane."""
+        return slice(0, self.plane_size), slice(self.plane_size, 2 * self.plane_size)
+
+    @property
     def _torsion(self) -> slice:
         """The torsional coordinates."""
-        first = 2 * self.modal.lateral.count
+        first = 2 * self.plane_size
         return slice(first, first + len(self.torsion_basis))
 
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,), not to be written to."""
         return np.asarray(self._section(at)[5])
 
-    def rim_rotation(self, gear: str, at: float) -> FloatArray:
-        """Rotation about z of the teeth of a gear over a section at a distance from the left end [m], shape (n,)."""
-        rotation = self.rotation(at)
-        for number, body in enumerate(self.bodies):
-            if body.gear == gear:
-                rotation = rotation.copy()
-                rotation[self._torsion] += self.torsion_basis[self.modal.torsional.count + number]
-        return rotation
+    def rim_section(self, gear: str, at: float) -> FloatArray:
+        """Motion of the teeth of a gear over a section at a distance from the left end [m], shape (6, n).
+
+        Along x, y, z and about them: that of the section with the rim's rotation and shift on its hub.
+        """
+        body = next((body for body in self.bodies if body.gear == gear), None)
+        if body is None:
+            return self._section(at)
+        rows = self._section(at).copy()
+        if body.twist is not None:
+            number = [one.gear for one in self.bodies if one.twist is not None].index(gear)
+            rows[5, self._torsion] += self.torsion_basis[self.modal.torsional.count + number]
+        if body.shift is not None:
+            number = [one.gear for one in self.bodies if one.shift is not None].index(gear)
+            for row, own in zip(rows, self._planes, strict=False):
+                row[own] += self.plane_basis[self.modal.lateral.count + number]
+        return rows
 
     @cached_property
     def turning(self) -> FloatArray:
@@ -180,7 +200,7 @@ class RotorComponent(Component):
         and its square the rotor's polar inertia [kg m²]; not to be written to.
         """
         row = np.zeros(self.size)
-        row[2 * self.modal.lateral.count] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
+        row[2 * self.plane_size] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
         row.setflags(write=False)
         return row
 
@@ -325,14 +345,16 @@ def rotor_component(
     not on a motion of the shaft as a whole. The gyroscopic coupling of the planes is +G in the x rows and -G in the y
     rows, G_ij = ∫ φ'_i dI_p φ'_j, so that C + ΩG gives the terms G_v of Eqs. 1 and 2.
 
-    The rims of gears turn against their hubs by φ, as coordinates beside those of the shaft's torsional modes q. With
-    the modes' rotations τ at the hubs, their frequencies ω and the bodies' k, S and J_r
-    (:mod:`coupling.gears.stiffness.body_twist`), whose inertia J the modes of the shaft contain,
+    The rims of gears move on their hubs by φ, as coordinates beside those of the shaft's modes q. With the modes'
+    motions τ of the hubs, their stiffness K, and the springs k and inertias S and J_r of the rims
+    (:mod:`coupling.gears.stiffness.rim_on_hub`), whose whole inertia the modes of the shaft contain,
 
-        [I, τᵀ S; S τ, J_r] [q''; φ''] + [diag(ω²), 0; 0, k] [q; φ] = f.
+        [I, τᵀ S; S τ, J_r] [q''; φ''] + [K, 0; 0, k] [q; φ] = f.
 
-    The component's torsional coordinates are the natural modes of this, the rigid rotation of all first. The shaft's
-    damping ratio is theirs.
+    The component's coordinates are the natural modes of this: in torsion, the rigid rotation of all first, and alike in
+    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Of a shaft with rims the
+    coordinates above its own highest mode are of the kind ``residual``, as attachment modes of the housing are: hubs
+    between shaft and rims vibrate there, and no step in time is refined for them.
 
     An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
     shaft's tilt has negative stiffness: what holds the shaft is its bearings.
@@ -341,8 +363,8 @@ def rotor_component(
     ----------
     name : str
     modal : ModalRotor
-        m planar, t torsional and a axial modes, vectors included. With g bodies of gears the component has
-        2 m + t + g + a coordinates.
+        m planar, t torsional and a axial modes, vectors included. With s shifts and g rotations of rims the component
+        has 2 (m + s) + t + g + a coordinates.
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
@@ -350,25 +372,30 @@ def rotor_component(
     axis : tuple of float
         x and y of the shaft's line [m], which matter where the base turns.
     bodies : sequence of GearBody
-        Gears on the rotor whose rims turn against their hubs.
+        Gears on the rotor whose rims move on their hubs.
     """
     lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
-    twisting, torsion_basis = _with_bodies(modal, bodies)
-    # Beyond the shaft's own coordinates the hubs vibrate against their rims: static, as the attachment modes are.
-    resolved = float(modal.torsional.frequencies.max(initial=0.0)) if bodies else np.inf
-    m, n = lateral.count, modal.size + len(bodies)
-    plane_basis, plane_stiffness, bending = _free_plane(lateral)
-    stiffness = np.diag(np.concatenate([np.zeros(2 * m), twisting**2, along**2]))
-    stiffness[:m, :m] = stiffness[m : 2 * m, m : 2 * m] = plane_stiffness
+    twisting, torsion_basis = _torsion_with_rims(modal, bodies)
+    plane_basis, plane_stiffness, bending = _free_plane(lateral, bodies)
+    m, size = lateral.count, len(plane_basis)
+    n = 2 * size + len(twisting) + len(along)
+    stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2]))
+    stiffness[:size, :size] = stiffness[size : 2 * size, size : 2 * size] = plane_stiffness
     # Zeros for motions as a whole: they strain no material, though an axial force may resist the tilt or drive it.
     damped = np.concatenate([bending, bending, twisting, along])
     gyroscopic = np.zeros((n, n))
-    gyroscopic[: 2 * m, : 2 * m] = gyroscopic_matrix(plane_basis.T @ lateral.polar_inertia_matrix @ plane_basis)
+    gyroscopic[: 2 * size, : 2 * size] = gyroscopic_matrix(
+        plane_basis[:m].T @ lateral.polar_inertia_matrix @ plane_basis[:m]
+    )
+    # Modes of the shaft are certified up to these; what lies above is static, hubs between shaft and rims among it.
+    own, own_bending = (
+        float(modes.frequencies[: modes.certificate.found].max(initial=0.0)) if bodies else np.inf
+        for modes in (modal.torsional, lateral)
+    )
+    plane_kinds = _kinds("rotor", bending, own_bending)
     return RotorComponent(
         name=name,
-        kinds=("rotor",) * (2 * m)
-        + tuple("torsion" if one <= resolved else "residual" for one in twisting.tolist())
-        + ("axial",) * len(along),
+        kinds=(*plane_kinds, *plane_kinds, *_kinds("torsion", twisting, own), *("axial",) * len(along)),
         stiffness=stiffness,
         damping=np.diag(2.0 * damping_ratio * damped),
         gyroscopic=gyroscopic,
@@ -381,25 +408,60 @@ def rotor_component(
     )
 
 
-def _with_bodies(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:
-    """Natural frequencies (t + g,) [rad/s] and modes (t + g, t + g) of the shaft's torsion with its gears' bodies."""
-    t, g = modal.torsional.count, len(bodies)
-    if not bodies:
-        return modal.torsional.frequencies, np.eye(t)
-    stiffness = np.diag([*modal.torsional.frequencies**2, *(body.stiffness for body in bodies)])
-    mass = np.diag([*np.ones(t), *(body.rim_inertia for body in bodies)])
-    coupling = modal.torsional.evaluate([body.at for body in bodies]) * [body.coupling_inertia for body in bodies]
-    mass[:t, t:], mass[t:, :t] = coupling, coupling.T
-    # The first coordinate is the rotation of all as one body: the other modes are orthogonal to it.
-    whole = mass[0, 1:]
-    values, vectors = linalg.eigh(stiffness[1:, 1:], mass[1:, 1:] - np.outer(whole, whole))
-    basis = np.zeros((t + g, t + g))
-    basis[0, 0], basis[0, 1:], basis[1:, 1:] = 1.0, -whole @ vectors, vectors
-    return np.concatenate([modal.torsional.frequencies[:1], np.sqrt(values)]), basis
+_ROUNDED = 1.0 + 1e-9  # by which a frequency may exceed the highest of the shaft and be one of its own
 
 
-def _free_plane(lateral: LateralModes) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Orthogonal basis of a plane's free shaft (m, m), stiffness there (m, m) [1/s²], bending frequencies (m,) [rad/s].
+def _kinds(kind: str, frequencies: FloatArray, highest: float) -> tuple[str, ...]:
+    """Kinds of coordinates by their frequencies: above the highest mode of the shaft they are residual."""
+    return tuple(kind if one <= _ROUNDED * highest else "residual" for one in frequencies.tolist())
+
+
+def _torsion_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (t + g,) [rad/s] and modes (t + g, t + g) of the shaft's torsion with rims on their hubs."""
+    t, frequencies = modal.torsional.count, modal.torsional.frequencies
+    rims = [(body.at, body.twist) for body in bodies if body.twist is not None]
+    if not rims:
+        return frequencies, np.eye(t)
+    basis, stiffness = _with_rims(np.diag(frequencies**2), modal.torsional.evaluate([at for at, _ in rims]), rims)
+    # The first coordinate is the rotation of all as one body.
+    values, vectors = np.linalg.eigh(stiffness[1:, 1:])
+    basis[:, 1:] = basis[:, 1:] @ vectors
+    return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
+
+
+def _with_rims(
+    stiffness: FloatArray, hubs: FloatArray, rims: Sequence[tuple[float, RimSpring]]
+) -> tuple[FloatArray, FloatArray]:
+    """Join rims on hubs to mass-normalised coordinates q of a shaft, as mass-normalised coordinates p.
+
+    With q + τ S φ = p₁ and Lᵀ φ = p₂, L Lᵀ = J_r - S τᵀ τ S, the inertia is the identity, and motions of all as one
+    body, in which φ = 0, are the same in q and in p₁.
+
+    Parameters
+    ----------
+    stiffness : ndarray, shape (m, m)
+        K of the shaft [1/s²].
+    hubs : ndarray, shape (m, g)
+        Motion τ of the hubs by the coordinates.
+    rims : sequence of (float, RimSpring)
+        Stations and springs of the g rims.
+
+    Returns
+    -------
+    basis, stiffness : ndarray, shape (m + g, m + g)
+        The coordinates q and the rims' motions φ in terms of p, and K in terms of p.
+    """
+    m, springs = len(stiffness), [spring for _, spring in rims]
+    carried = hubs * [spring.coupling_inertia for spring in springs]
+    factor = np.linalg.cholesky(np.diag([spring.rim_inertia for spring in springs]) - carried.T @ carried)
+    rim = np.linalg.inv(factor).T
+    basis = np.block([[np.eye(m), -carried @ rim], [np.zeros((len(springs), m)), rim]])
+    whole = linalg.block_diag(stiffness, np.diag([spring.stiffness for spring in springs]))
+    return basis, basis.T @ whole @ basis
+
+
+def _free_plane(lateral: LateralModes, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Basis of a plane's free shaft with rims (m + s, m + s), stiffness there [1/s²], bending frequencies [rad/s].
 
     The frequencies are zero for the motions of the shaft as a whole, the first columns of the basis. These are
     known, and so is it that nothing resists them: among the eigenvalues of the stiffness their zeros cannot be told
@@ -407,6 +469,11 @@ def _free_plane(lateral: LateralModes) -> tuple[FloatArray, FloatArray, FloatArr
     """
     whole, free = lateral.rigid_motions, lateral.free_stiffness
     count, unresisted = whole.shape[1], lateral.unresisted_motions
+    rims = [(body.at, body.shift) for body in bodies if body.shift is not None]
+    joined = np.eye(lateral.count)
+    if rims:
+        joined, free = _with_rims(free, lateral.evaluate([at for at, _ in rims])[0], rims)
+        whole = np.vstack([whole, np.zeros((len(rims), count))])
     beside = np.linalg.qr(whole, mode="complete")[0][:, count:]
     values, vectors = np.linalg.eigh(beside.T @ free @ beside)
     basis = np.hstack([whole, beside @ vectors])
@@ -414,4 +481,4 @@ def _free_plane(lateral: LateralModes) -> tuple[FloatArray, FloatArray, FloatArr
     resisted[:, :unresisted] = resisted[:unresisted] = 0.0
     stiffness = np.diag(np.concatenate([np.zeros(count), values]))
     stiffness[:, :count], stiffness[:count] = resisted, resisted.T
-    return basis, stiffness, np.concatenate([np.zeros(count), np.sqrt(np.maximum(values, 0.0))])
+    return joined @ basis, stiffness, np.concatenate([np.zeros(count), np.sqrt(np.maximum(values, 0.0))])

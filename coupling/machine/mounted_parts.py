@@ -160,8 +160,8 @@ class GearMesh:
         Gap between the back flanks along their line of action [m]; None where they can never meet.
     friction : float
         Coefficient of friction between the teeth, from 0 to 0.5.
-    body_twist : float
-        Twist of the gears' bodies against their shafts, along the line of action [m/N], in series with the contact.
+    behind_rims : float
+        Compliance of the rims on their hubs along the line of action [m/N], in series with the contact.
     faces : FaceSlices, optional
         Slices by which flanks that carry evenly resist tilting, see :mod:`coupling.machine.mesh_face`. By default those
         of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
@@ -173,7 +173,7 @@ class GearMesh:
     contact: ToothContact
     backlash: float | None = None
     friction: float = 0.0
-    body_twist: float = 0.0
+    behind_rims: float = 0.0
     faces: FaceSlices | None = None
 
     @property

@@ -284,15 +284,19 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
     return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
-def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> float:
-    """Polar inertia of a gear's body beside that of its shaft [kg m²]: of its disc, or of the discs in its place."""
-    own = gear_disc(gear, rotor).polar_inertia
-    return own if own > 0.0 else _inertia_of_discs(gear, rotor)
+def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float]:
+    """Mass [kg] and polar inertia [kg m²] of a gear's body beside those of its shaft: of its disc, or others there."""
+    disc = gear_disc(gear, rotor)
+    own = (disc.mass, disc.polar_inertia)
+    if any(own):
+        return own
+    there = _discs_at(gear, rotor)
+    return sum(one.mass for one in there), sum(one.polar_inertia for one in there)
 
 
-def _inertia_of_discs(gear: ShaftGear, rotor: Rotor) -> float:
-    """Polar inertia of the rotor's discs at a gear's station [kg m²]."""
-    return sum(disc.polar_inertia for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length)
+def _discs_at(gear: ShaftGear, rotor: Rotor) -> list[Disc]:
+    """Discs of the rotor at a gear's station."""
+    return [disc for disc in rotor.discs if abs(disc.at - gear.at) < _SAME_STATION * rotor.length]
 
 
 def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]) -> float:
@@ -309,7 +313,7 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     gears : sequence of ShaftGear
         All gears on the rotor.
     """
-    inertia = gear.body_inertia[1] + _inertia_of_discs(gear, rotor)
+    inertia = gear.body_inertia[1] + sum(disc.polar_inertia for disc in _discs_at(gear, rotor))
     if inertia == 0.0:
         inertia = rotor_with_gears(rotor, gears).polar_inertia
     return inertia if inertia > 0.0 else gear.gear.polar_inertia

@@ -257,7 +257,8 @@ def bearing_findings(
         )
         if thinnest >= 2.0 * inner - _SLACK:
             expected = f"rolling elements around the shaft, {_mm(thinnest)} thick there; they leave {_mm(2.0 * inner)}"
-            yield Finding(part, "rolling", None, expected)
+            within = thinnest >= min(row.pitch_diameter for row in rolling.rows) - _SLACK
+            yield Finding(part, "rolling", None, expected, "error" if within else "warning")
     if seat_diameter is not None:
         thick = min(
             (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a <= at + _SLACK and b >= at - _SLACK),
@@ -411,7 +412,7 @@ def force_findings(force: ShaftForce, rotor: Rotor, place: int) -> Iterator[Find
 
 
 def unbalance_findings(shaft: Shaft, rotor: Rotor, tip_radius: float) -> Iterator[Finding]:
-    """Yield unbalances whose eccentricity is beyond the rotor, or large for it.
+    """Yield unbalances whose eccentricity is large for the rotor.
 
     Parameters
     ----------
@@ -433,8 +434,7 @@ def unbalance_findings(shaft: Shaft, rotor: Rotor, tip_radius: float) -> Iterato
             f"a moment whose eccentricity is within the rotor; it moves {mass:.4g} kg by {_mm(off)}, of a radius of "
             f"{_mm(radius)}"
         )
-        severity = "error" if off > radius else "warning"
-        yield Finding(("shaft", shaft.name), f"unbalance.{number}.moment", unbalance.moment, expected, severity)
+        yield Finding(("shaft", shaft.name), f"unbalance.{number}.moment", unbalance.moment, expected, "warning")
 
 
 def _mm(length: float) -> str:

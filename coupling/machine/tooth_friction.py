@@ -59,8 +59,8 @@ def sliding_flanks(
         name = mounted.rotor
         rotor = coordinates.rotor(name)
         begin, end = line.sense * gear.base_radius * roll(np.array([0.0, 1.0]))
-        moved = side * (across[0] * rotor.direction(at, 0) + across[1] * rotor.direction(at, 1))
-        rotation = rotor.rim_rotation(mounted.name, at)
+        rim = rotor.rim_section(mounted.name, at)
+        moved, rotation = side * (across @ rim[:2]), rim[5]
         directions += coordinates.rows(name, np.array([moved + begin * rotation, (end - begin) * rotation])).T
         nominal += coordinates.speeds[name] * np.array([begin, end - begin])
     return Sliding(friction, directions, nominal)

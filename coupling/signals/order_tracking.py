@@ -240,7 +240,7 @@ def order_map(
     return OrderMap(
         times=turned.times[middles],
         speeds=turned.speeds[middles],
-        orders=np.fft.rfftfreq(length, 1.0 / turned.per_turn),
+        orders=np.asarray(np.fft.rfftfreq(length, 1.0 / turned.per_turn), dtype=np.float64),
         amplitude=cut_spectra(turned.values, middles, length, window)[0],
         window=window,
         followed={order: np.array([cut[number] for cut in cuts]) for number, order in enumerate(follow)},

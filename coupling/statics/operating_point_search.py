@@ -13,6 +13,7 @@ from scipy import linalg
 
 from coupling.errors import CouplingError, EquilibriumNotFoundError
 from coupling.machine.components import HousingComponent
+from coupling.machine.gear_bodies import GearBody
 from coupling.machine.loads import ShaftForce, Torque
 from coupling.machine.mounted_parts import MountedBearing
 from coupling.statics.connector_equilibrium import ConnectedStructure
@@ -30,7 +31,6 @@ from coupling.statics.static_model import (
     RollingElementLaw,
     StaticBearing,
     StaticPair,
-    StaticRim,
     StaticShaftPart,
 )
 from rotors.rolling_bearings import RollingState, rolling_state
@@ -56,7 +56,7 @@ def solve_operating_point(
     torques: Sequence[Torque],
     gravity: Sequence[float] | None = None,
     forces: Sequence[ShaftForce] = (),
-    rims: Sequence[StaticRim] = (),
+    rims: Sequence[GearBody] = (),
 ) -> OperatingPoint:
     """Find the static equilibrium of a machine.
 
@@ -72,8 +72,8 @@ def solve_operating_point(
         Acceleration of free fall along x, y, z [m/s²].
     forces : sequence of ShaftForce
         Constant ones.
-    rims : sequence of StaticRim
-        Rims of gears that several pairs share.
+    rims : sequence of GearBody
+        Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact.
 
     Raises
     ------
@@ -95,8 +95,8 @@ class _StaticModel:
         First coordinate of each shaft: six of each of its nodes, along and about x, y, z.
     housing_first, pedestal_first : int, dict of str to int
         First coordinate of the housing's modes, and of each pedestal's motion along x and y.
-    rim_at : dict of str to int
-        Coordinate of each rim's rotation against its hub, by gear; the last ones.
+    rims : dict of str to ndarray, shape (6, n)
+        Motion of each rim on its hub along and about x, y, z by all coordinates, by gear; they are the last ones.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
@@ -122,7 +122,7 @@ class _StaticModel:
         torques: Sequence[Torque],
         gravity: Sequence[float] | None,
         forces: Sequence[ShaftForce],
-        rims: Sequence[StaticRim],
+        rims: Sequence[GearBody],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
         self.gravity = None if gravity is None else tuple(gravity)
@@ -140,11 +140,19 @@ class _StaticModel:
         }
         self.pedestal_first = {name: size + 2 * n for n, name in enumerate(pedestals)}
         size += 2 * len(pedestals)
-        self.rim_at = {rim.gear: size + n for n, rim in enumerate(rims)}
-        self.size = size + len(rims)
+        springs = [
+            (rim.gear, axis, spring.stiffness)
+            for rim in rims
+            for spring, axes in ((rim.shift, (0, 1)), (rim.twist, (5,)))
+            if spring is not None
+            for axis in axes
+        ]
+        self.size = size + len(springs)
         self.stiffness = self._linear_stiffness()
-        for rim in rims:
-            self.stiffness[self.rim_at[rim.gear], self.rim_at[rim.gear]] = rim.stiffness
+        self.rims = {rim.gear: np.zeros((6, self.size)) for rim in rims}
+        for number, (gear, axis, stiffness) in enumerate(springs, size):
+            self.stiffness[number, number] = stiffness
+            self.rims[gear][axis, number] = 1.0
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -241,10 +249,9 @@ class _StaticModel:
                 rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
                 twist[number] += turned
             rows[-1] += flank.tilting(middle)
-            if gear.name in self.rim_at:
-                rim = np.zeros(self.size)
-                rim[self.rim_at[gear.name]] = 1.0
-                rows[:-1] += flank.turning(rim)
+            if gear.name in self.rims:
+                rim = self.rims[gear.name]
+                rows[:-1] += flank.across(rim) + flank.turning(rim[5])
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -488,9 +495,9 @@ class _StaticModel:
         by_cause["bodies"] = twist
         touched = approach - pair.clearance * contact.uniform
         force = pair.between_rims.at(touched).force
-        # The twist of bodies is a part of the approach by the complete contact.
-        twisted_rims = pair.rim_twist * force * contact.uniform
-        approach, touched = approach + twisted_rims, touched + twisted_rims
+        # The rims on their hubs are a part of the approach by the complete contact.
+        behind = pair.behind_rims * force * contact.uniform
+        approach, touched = approach + behind, touched + behind
         # The force of an idle pair is rounding below the residual of the balance.
         force = force if force > RESIDUAL_BOUND * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)

@@ -111,8 +111,8 @@ def deflection_slope(point: OperatingPoint, load: BearingLoad) -> FloatArray:
 def _face_gradients(pair: PairLoad) -> FloatArray:
     """Gradients of K_Hβ and peak-to-peak transmission error by the approach, by central differences, (2, m)."""
     contact = pair.pair.contact
-    # Coordinates of the static machine move the flanks against each other without the twist of shared rims.
-    approach = pair.approach - (pair.pair.clearance + pair.pair.rim_twist * pair.force) * contact.uniform
+    # Coordinates of the static machine move the flanks against each other without that of shared rims on their hubs.
+    approach = pair.approach - (pair.pair.clearance + pair.pair.behind_rims * pair.force) * contact.uniform
 
     def outcomes(approach: FloatArray) -> FloatArray:
         shape = approach - contact.uniform * float(contact.face_mean @ approach)

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling.gears import GearPairGeometry, tooth_contact
-from coupling.gears.contact.contact_law import without_body_twist
+from coupling.gears.contact.contact_law import law_between_rims
 from coupling.gears.contact.face_slices import face_slices, face_stations
 from coupling.gears.loaded.face_load import FaceContact
 from coupling.gears.loaded.gear_pair import GearPair
@@ -157,23 +157,6 @@ class StaticGear:
 
 
 @dataclass(frozen=True, eq=False)
-class StaticRim:
-    """The rim of a gear that several pairs share: the rotation against its hub is a coordinate.
-
-    Of one pair alone the twist of the body is in series with the contact, which contains it.
-
-    Attributes
-    ----------
-    gear : str
-    stiffness : float
-        Torsional stiffness between hub and rim [N m].
-    """
-
-    gear: str
-    stiffness: float
-
-
-@dataclass(frozen=True, eq=False)
 class StaticPair:
     """A gear pair in the static model.
 
@@ -183,7 +166,7 @@ class StaticPair:
     driver, driven : StaticGear
     geometry : GearPairGeometry
     contact : FaceContact
-        Contact of the loaded flanks, with the twist of the gears' bodies.
+        Contact of the loaded flanks, with all that the gears' bodies yield.
     clearance : float
         Gap of these flanks without load [m]: 0, or the backlash where the back flanks carry.
     line : LineOfAction
@@ -191,9 +174,9 @@ class StaticPair:
     nominal : float
         Mean mesh stiffness for the search [N/m].
     between_rims : FaceContact
-        Contact without the twist of bodies whose rims are coordinates of the static machine.
-    rim_twist : float
-        That twist, along the line of action [m/N].
+        Contact without what lies behind rims that are coordinates of the static machine.
+    behind_rims : float
+        Compliance of these rims on their hubs along the line of action [m/N].
     """
 
     label: str
@@ -205,7 +188,7 @@ class StaticPair:
     line: LineOfAction
     nominal: float
     between_rims: FaceContact
-    rim_twist: float = 0.0
+    behind_rims: float = 0.0
 
     @property
     def push(self) -> tuple[float, float]:
@@ -225,7 +208,7 @@ def static_pair(
     axes: tuple[tuple[float, float], tuple[float, float]],
     rotation: int,
     torque: float,
-    rim_twist: float = 0.0,
+    behind_rims: float = 0.0,
 ) -> StaticPair:
     """Make a gear pair of the static model, of sound teeth, on the flanks that its mean torque loads.
 
@@ -241,8 +224,8 @@ def static_pair(
         Sense of rotation of the driver about z: 1 or -1.
     torque : float
         Torque that the pair takes from its driver [N m], positive where power flows to the driven gear.
-    rim_twist : float
-        Twist of the gears' bodies whose rims are coordinates of the static machine, along the line of action [m/N].
+    behind_rims : float
+        Compliance of rims that are coordinates of the static machine, along the line of action [m/N].
     """
     force = abs(torque) / geometry.driver.base_radius
     tooth_stiffness = pair.stiffness
@@ -260,7 +243,7 @@ def static_pair(
     loaded_contact = contact.back_flanks if backwards else contact
     over_face = (geometry, face_stations(geometry.face_width), line.axial)
     whole = FaceContact(loaded_contact, *over_face)
-    between_rims = without_body_twist(loaded_contact, rim_twist)
+    between_rims = law_between_rims(loaded_contact, behind_rims)
     return StaticPair(
         label=pair.label,
         driver=gears[0],
@@ -270,6 +253,6 @@ def static_pair(
         clearance=(backlash or 0.0) if backwards else 0.0,
         line=line,
         nominal=between_rims.unloaded_mean_mesh_stiffness,
-        between_rims=whole if rim_twist == 0.0 else FaceContact(between_rims, *over_face),
-        rim_twist=rim_twist,
+        between_rims=whole if behind_rims == 0.0 else FaceContact(between_rims, *over_face),
+        behind_rims=behind_rims,
     )

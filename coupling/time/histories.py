@@ -223,7 +223,7 @@ def transient_outputs(machine: CoupledMachine) -> TransientOutputs:
     moved = [np.zeros((0, system.size))]
     for gear in _gears(machine):
         rotor = next(rotor for rotor in machine.rotors if rotor.name == gear.rotor)
-        rows = np.vstack([rotor.motions(gear.at)[:2], rotor.rim_rotation(gear.name, gear.at)])
+        rows = rotor.rim_section(gear.name, gear.at)[[0, 1, 5]]
         moved.append(machine.rows(rotor.name, rows))
     deflections = np.vstack([moved[0], *(connector.directions.T for connector in _bearings(machine))])
     return TransientOutputs(
@@ -355,9 +355,10 @@ def modal_rows(machine: CoupledMachine, rotor: str) -> ModalRows:
     planar, twisting = lateral.certificate.found, torsional.certificate.found
     identity = np.eye(part.size)
     x, y = (
-        part.plane_basis[:planar] @ identity[plane * lateral.count : (plane + 1) * lateral.count] for plane in (0, 1)
+        part.plane_basis[:planar] @ identity[plane * part.plane_size : (plane + 1) * part.plane_size]
+        for plane in (0, 1)
     )
-    torsion = identity[2 * lateral.count : 2 * lateral.count + twisting]
+    torsion = identity[2 * part.plane_size : 2 * part.plane_size + twisting]
     return ModalRows(*(machine.rows(rotor, rows) for rows in (x, y, torsion)))
 
 

@@ -359,8 +359,8 @@ class Integration:
                     f"the teeth of {contact.name} are pressed together by {1e3 * compression:.3g} mm between "
                     f"t = {begin:.6g} s and {now:.6g} s, where teeth can follow "
                     f"{1e3 * contact.compression_limit:.3g} mm at most (a quarter of the module); expected loads "
-                    "that the teeth carry and a machine that is stable: look for negative damping ratios among the "
-                    "coupled modes (gearwhine system)"
+                    "that the teeth carry: look at the torque first (gearwhine check, gearwhine gears); a machine that "
+                    "is not stable comes here too, by negative damping ratios of coupled modes (gearwhine system)"
                 )
 
     def limit(self, number: int, state: Checkpoint) -> float:

@@ -222,8 +222,11 @@ class EnergyBalance:
 
     @property
     def error(self) -> float:
-        """Error of the balance, as a part of the scale."""
-        return abs(self.change - self.loads + self.lost - self.teeth) / self.scale if self.scale > 0.0 else 0.0
+        """Error of the balance, as a part of the scale; infinite where a part is no number."""
+        missing = abs(self.change - self.loads + self.lost - self.teeth)
+        if not np.isfinite([missing, self.scale]).all():
+            return float("inf")
+        return missing / self.scale if self.scale > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -340,7 +343,7 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
 def _balance(change: float, totals: FloatArray, stored: float) -> EnergyBalance:
     loads, lost, teeth, motion, friction = (float(value) for value in totals)
     # Free vibration exchanges energy between motion and springs without any work or loss.
-    scale = max(abs(loads), abs(lost), abs(teeth), stored, motion)
+    scale = float(np.max(np.abs([loads, lost, teeth, stored, motion])))
     return EnergyBalance(change, loads, lost, teeth, scale, friction)
 
 

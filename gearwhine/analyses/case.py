@@ -65,7 +65,7 @@ def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
     if existing:
         expected = "a place where no file of that name stands yet"
         raise CaseError([Problem("examples copy", target, expected) for target in existing])
-    with staging(folder) as place:
+    with staging(folder, listed=False) as place:  # the copies are the user's
         for source in sources:
             (place / source.name).write_bytes(source.read_bytes())
     return {"folder": str(folder), "files": [source.name for source in sources]}
@@ -92,6 +92,7 @@ def write_report(
     CaseError
         Where the folder holds no results, or a summary cannot be read.
     """
+    from gearwhine.output.own_files import require_own
     from gearwhine.output.report import Contents, report_page
     from gearwhine.results import chapters_of
     from gearwhine.results.first_page import first_page
@@ -102,6 +103,7 @@ def write_report(
 
         progress("modelling the shapes that move")
         name, shapes = "report-interactive.html", moving_shapes(folder)
+    require_own(folder, [name])
     page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
     with staging(folder) as place:
         (place / name).write_text(page, encoding="utf-8")

@@ -54,6 +54,9 @@ class Acoustics(Table):
     """Highest frequency of the sound. Default: the frequency below which the housing's modes are complete."""
     close_holes: PositiveLength | None = None
     """Diameter of the largest hole of the housing that is capped. Default: a tenth more than the widest seat."""
+    caps: Literal["move", "rest"] = "move"
+    """Motion of what closes holes: `move` with the rim, as covers, seals and the outer rings of bearings do, which are
+    fastened to it or pressed in; or `rest`, for the method `boundary-elements` or `erp`."""
     floor: Length | None = None
     """Height y of a hard floor, which mirrors the sound. The housing stands on it or above it; soles in it do not
     radiate. Default: none."""

@@ -153,8 +153,8 @@ class Box(Table):
         Discriminator(_scalar_or_table),
     ]
     """Wall thickness: one for all walls, or one for each face."""
-    mesh_size: PositiveLength
-    """Edge length of the elements."""
+    mesh_size: PositiveLength | None = None
+    """Edge length of the elements. One of this and the housing's `accuracy`."""
     feet: Feet | None = None
     """Four blocks under the corners."""
     ribs: tuple[Rib, ...] = Field(default=(), max_length=MOST_PARTS)

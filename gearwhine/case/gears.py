@@ -517,7 +517,7 @@ class GearPair(Table):
     """Tooth stiffness model."""
     damping_ratio: DampingRatio = 0.05
     """Damping ratio of the mesh. The literature has 0.03 to 0.17 by measurements of spur gears (Kasuba and Evans 1981,
-    Wang and Cheng 1981), less for teeth that are lightly lubricated. Whether motions jump over speed depends on it."""
+    Wang and Cheng 1981). Whether motions jump over speed depends on it."""
     damping: DampingFromZero | None = None
     """Damping coefficient along the line of action, in place of `damping_ratio`."""
     corner_contact: StrictBool | None = None

@@ -163,10 +163,10 @@ class CadFile(Turned):
 
     file: CaseFile
     """STEP, IGES or BREP file (`.step`, `.stp`, `.iges`, `.igs`, `.brep`), relative to the case file."""
-    mesh_size: PositiveLength
-    """Edge length of the elements."""
+    mesh_size: PositiveLength | None = None
+    """Edge length of the elements. One of this and the housing's `accuracy`."""
     seat_mesh_size: PositiveLength | None = None
-    """Smaller edge length around the seats. Default: `mesh_size`."""
+    """Smaller edge length around the seats, beside a `mesh_size`. Default: `mesh_size`."""
     unit: Literal["m", "mm", "cm", "in"] | None = None
     """Unit of the file's numbers, where it states none or an implausible one. Default: the file's, else mm."""
     glue: bool = True
@@ -174,7 +174,7 @@ class CadFile(Turned):
 
     @model_validator(mode="after")
     def _finer_at_seats(self) -> CadFile:
-        if self.seat_mesh_size is not None and self.seat_mesh_size > self.mesh_size:
+        if self.seat_mesh_size is not None and self.mesh_size is not None and self.seat_mesh_size > self.mesh_size:
             raise wrong(f"at most the mesh_size of {self.mesh_size:g} m", "seat_mesh_size")
         return self
 
@@ -228,6 +228,15 @@ class Seat(Table):
         from housing import Seat as BuiltSeat
 
         return BuiltSeat(self.name, self.center)
+
+
+class Face(Table):
+    """`[[housing.face]]`: a name for a flat face of a CAD or mesh file, by a point on it [m]."""
+
+    name: Name
+    """Name of the face, as of a surface of the file: for supports, `still` faces, results."""
+    at: Point
+    """Point on the face."""
 
 
 class Support(Patch):
@@ -326,6 +335,9 @@ class Housing(Table):
     """Every mode below this frequency is found. One of this and `modes`."""
     modes: Annotated[int, Whole(1, 5000)] | None = None
     """Number of lowest modes to find. One of this and `frequency_limit`."""
+    accuracy: Annotated[float, Quantity(units.RATIO, at_least=1e-3, at_most=0.2)] | None = None
+    """Largest estimated error of a mode's frequency by the mesh, such as "1 %", in place of the `mesh_size` of box or
+    cad: elements are made smaller until every mode's `discretisation_error` is below it."""
     solver: Literal["lanczos", "eigsh"] = "lanczos"
     """Eigensolver of the modes: block Lanczos, or scipy's ARPACK ("eigsh"); both have the same certificate."""
     box: Box | None = None
@@ -336,6 +348,8 @@ class Housing(Table):
     """Housing from a mesh file. Exactly one of `box`, `cad` and `mesh`."""
     seat: tuple[Seat, ...] = Field(default=(), max_length=1000)
     """Bearing seats, `[[housing.seat]]`."""
+    face: tuple[Face, ...] = Field(default=(), max_length=1000)
+    """Names of flat faces of a CAD or mesh file, `[[housing.face]]`."""
     support: tuple[Support, ...] = Field(default=(), max_length=1000)
     """Supports, `[[housing.support]]`."""
     mount: tuple[Mount, ...] = Field(default=(), max_length=1000)
@@ -356,6 +370,12 @@ class Housing(Table):
             for key in value:
                 _check_frequency_key(key)
         return value
+
+    def meshed_by(self, mesh_size: float) -> Housing:
+        """Return the housing with a size of elements [m], in place of an accuracy."""
+        key = "box" if self.box is not None else "cad"
+        source = getattr(self, key).model_copy(update={"mesh_size": mesh_size})
+        return self.model_copy(update={"accuracy": None, key: source})
 
     @property
     def mesh_size(self) -> float | None:

@@ -74,9 +74,12 @@ _PLAIN_WORDS = {
 
 def findings_of(error: ValidationError) -> Iterator[Finding]:
     """Yield a finding for each error that validating a document as a `Case` has met."""
-    for detail in error.errors(include_url=False):
+    details = error.errors(include_url=False)
+    for detail in details:
         if detail["type"] == "default_factory_not_called":
             continue  # a default that follows from a key which is itself at fault
+        if detail["type"] == "too_short" and any(_is_inside(other["loc"], detail["loc"]) for other in details):
+            continue  # entries that are themselves at fault are not counted
         context = detail.get("ctx", {})
         # Steps that begin with "~" tell which form of a key was meant; they are not in the file.
         steps = [step for step in detail["loc"] if not str(step).startswith("~") and step != "[key]"]
@@ -87,6 +90,11 @@ def findings_of(error: ValidationError) -> Iterator[Finding]:
             yield Finding(location, _unknown_key(str(location[-1]), _meaning_of(location[:-1])[0]))
         else:
             yield Finding(location, _expected(detail, context), note=context.get("note", ""))
+
+
+def _is_inside(location: tuple[int | str, ...], outer: tuple[int | str, ...]) -> bool:
+    """Whether a location is below another one."""
+    return len(location) > len(outer) and location[: len(outer)] == outer
 
 
 def _expected(detail: ErrorDetails, context: dict[str, Any]) -> str:
@@ -171,6 +179,10 @@ def _describe(meaning: tuple[Any, ...], location: Location) -> str:
 DEEPEST = 32
 """Tables and lists within each other beyond which a case is refused."""
 
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"[ \t]*+|'[^'\n]*+'[ \t]*+)\.(?:[ \t]*+(?=["']))?"""
+_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}){{{DEEPEST}}}", re.MULTILINE)
+"""A dotted key of more tables within each other than any case has."""
+
 LARGEST_FILE = 20_000_000
 """Bytes beyond which a file is not taken for a case."""
 
@@ -217,6 +229,15 @@ class CaseSource:
     name: str = ""
     changes: tuple[str, ...] = ()
     files: InputFiles = field(default_factory=InputFiles)
+
+    @property
+    def input_paths(self) -> list[Path]:
+        """Every file that is read: the case, the files that it names, and those that are read with them."""
+        from meshes.formats.companions import companion_files
+
+        named = [Path(path) for path in self.files.contents]
+        companions = [companion for path in named for companion in companion_files(path)]
+        return [*([self.folder / self.name] if self.name else []), *named, *companions]
 
     def changed(self, changes: Sequence[str] = ()) -> LoadedCase:
         """Make the case with further changes, and check it.
@@ -351,6 +372,8 @@ def _parse(content: bytes, source: str) -> dict[str, Any]:
         line = content.count(b"\n", 0, error.start) + 1
         raise CaseError([Problem(f"line {line}", content[error.start], "text in UTF-8", source=source)]) from None
     try:
+        if _DEEP_KEY.search(text):  # which the parser takes half a minute for
+            raise _too_deep(source)
         document = tomllib.loads(text)
         _check_depth(document, source)
         return document

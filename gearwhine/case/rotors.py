@@ -20,6 +20,7 @@ from pydantic import (
     Tag,
     ValidationError,
     ValidationInfo,
+    field_validator,
     model_serializer,
     model_validator,
 )
@@ -110,6 +111,13 @@ class Segment(Table):
     """Shear coefficient. Default: that of the rotor."""
     axial_force: Force | None = None
     """Static axial force, tension positive. Default: that of the rotor."""
+
+    @field_validator("diameter", "bore", mode="before")
+    @classmethod
+    def _one_end(cls, value: Any, info: ValidationInfo) -> Any:
+        if isinstance(value, (list, tuple)):
+            raise wrong(f"one length, at the left end; that of a cone's right end is 'right_{info.field_name}'")
+        return value
 
     @model_validator(mode="after")
     def _hollow(self) -> Segment:

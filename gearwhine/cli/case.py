@@ -39,7 +39,7 @@ def run(
         folder = results_folder(case, common)
         return run_into(loaded_case, folder, fresh=fresh, pictures=pictures, progress=progress).document
 
-    on_case(case, common, work, shown_by(sections, timed=True))
+    on_case(case, common, work, shown_by(sections, timed=True), "run")
 
 
 def check(
@@ -58,7 +58,7 @@ def check(
     def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.check(loaded_case, progress=progress), common.output, progress)
 
-    on_case(case, common, work, shown_by(sections if verbose else summary))
+    on_case(case, common, work, shown_by(sections if verbose else summary), "check")
 
 
 def examples(
@@ -122,6 +122,7 @@ def _on_results(
             common,
             lambda loaded_case, progress: work(results_folder(results, common), loaded_case, progress),
             show,
+            "report",
         )
         return
     if common.output is not None:

@@ -2,6 +2,7 @@
 
 import io
 import sys
+import warnings
 
 from cyclopts import App, CycloptsError
 
@@ -46,8 +47,17 @@ def run_command(arguments: list[str]) -> int:
 
     Only an unexpected exception leaves a traceback.
     """
-    with interruptible():
+    with interruptible(), warnings.catch_warnings():
+        warnings.showwarning = _show_warning
         return _run_command(arguments)
+
+
+def _show_warning(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    """Show a warning of a library as a sentence, without the line of its source."""
+    if issubclass(category, (DeprecationWarning, PendingDeprecationWarning, ResourceWarning)):
+        return
+    lost = "a number left the range of the arithmetic, so that results near it may be doubtful: "
+    sys.stderr.write(f"warning: {lost if issubclass(category, RuntimeWarning) else ''}{message}\n")
 
 
 def _run_command(arguments: list[str]) -> int:

@@ -66,6 +66,7 @@ CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a b
 
 _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
 _LONGEST_SHOWN = 60
+_ALWAYS_WRITING = ("mesh", "render", "run", "survey", "sweep", "update")  # commands that need no --output to write
 _RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".vtu")
 
 
@@ -74,9 +75,21 @@ def on_case(
     common: Common,
     work: Callable[["Case", "Progress"], dict[str, Any]],
     show: Callable[[dict[str, Any]], None],
+    command: str,
+    *,
+    writes: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Read the case, do the work under a progress display, hand the result over and return it."""
-    return on_loaded(name, common, lambda loaded, progress: work(loaded.case, progress), show)
+    """Read the case, do the work under a progress display, hand the result over and return it.
+
+    Parameters
+    ----------
+    name, common, work, show
+    command : str
+        Name of the command.
+    writes : sequence of str
+        Names of files that it writes beside those of :data:`gearwhine.output.own_files.OUTPUTS`.
+    """
+    return on_loaded(name, common, lambda loaded, progress: work(loaded.case, progress), show, command, writes=writes)
 
 
 def on_loaded(
@@ -84,6 +97,9 @@ def on_loaded(
     common: Common,
     work: Callable[["LoadedCase", "Progress"], dict[str, Any]],
     show: Callable[[dict[str, Any]], None],
+    command: str,
+    *,
+    writes: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Do work on a case as :func:`on_case`; it is handed over with the source that it is made of."""
     from gearwhine.case import load_case
@@ -93,6 +109,9 @@ def on_loaded(
     loaded = load_case(name, common.settings)
     if common.output is not None:
         _check_folder(common.output)
+    folder = _default_folder(name) if common.output is None and command in _ALWAYS_WRITING else common.output
+    if folder is not None:
+        _check_files(command, folder, loaded, writes)
     for warning in loaded.warnings:
         sys.stderr.write(f"warning: {warning}\n")
     with shown(quiet=common.quiet) as progress:
@@ -114,7 +133,7 @@ def written(result: "Result[Any]", folder: Path | None, progress: "Progress") ->
 
 def results_folder(case: str, common: Common) -> Path:
     """Return the folder for a command that always writes, once it is known to take files."""
-    folder = common.output if common.output is not None else Path(f"{Path(case).stem}-results")
+    folder = common.output if common.output is not None else _default_folder(case)
     _check_folder(folder)
     return folder
 
@@ -127,6 +146,24 @@ def hand_over(document: dict[str, Any], common: Common, show: Callable[[dict[str
         sys.stdout.write(json_text(finite(document)) + "\n")
     else:
         show(document)
+
+
+def _default_folder(case: str) -> Path:
+    return Path(f"{Path(case).stem}-results")
+
+
+def _check_files(command: str, folder: Path, loaded: "LoadedCase", writes: Sequence[str]) -> None:
+    """Refuse a folder in which results would replace files of the user, before the work begins."""
+    from gearwhine.case import CaseError, Problem
+    from gearwhine.failures import ForeignFileError
+    from gearwhine.output.own_files import require_free
+
+    try:
+        require_free(command, folder, loaded.source.input_paths, writes)
+    except ForeignFileError as error:
+        raise CaseError(
+            [Problem("--output", str(folder), f"another folder, or these files elsewhere: {error}")]
+        ) from error
 
 
 def _check_folder(folder: Path) -> None:

@@ -29,7 +29,7 @@ def mesh(
         folder = results_folder(case, common)
         return written(analyses.mesh(loaded_case, suffix=format, progress=progress), folder, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "mesh", writes=(f"mesh.{format}", "mesh.h5"))
 
 
 def modes(
@@ -55,7 +55,7 @@ def modes(
         result = analyses.modes(loaded_case, detail=detail, folder=common.output, fresh=fresh, progress=progress)
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(detailed_sections if detail else sections))
+    on_case(case, common, work, shown_by(detailed_sections if detail else sections), "modes")
 
 
 def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
@@ -68,7 +68,7 @@ def compare(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN
         result = analyses.compare(loaded_case, folder=common.output, fresh=fresh, progress=progress)
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "compare")
 
 
 def survey(
@@ -93,7 +93,7 @@ def survey(
         )
         return written(result, folder, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "survey")
 
 
 def update(
@@ -127,7 +127,7 @@ def update(
             analyses.update(loaded_case, null=null, held_back=held_back, progress=progress), folder, progress
         )
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "update")
 
 
 def render(
@@ -194,4 +194,4 @@ def render(
         )
         return written(result, folder, progress)
 
-    on_case(case, common, work, show_files)
+    on_case(case, common, work, show_files, "render")

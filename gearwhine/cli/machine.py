@@ -38,7 +38,7 @@ def rotors(
         folder = results_folder(case, common) if write_ross else common.output
         return written(analyses.rotors(loaded_case, write_ross=write_ross, progress=progress), folder, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "rotors")
 
 
 def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
@@ -50,7 +50,7 @@ def gears(case: CaseName, *, common: Common = NONE_GIVEN) -> None:
     def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
         return written(analyses.gears(loaded_case, folder=common.output, progress=progress), common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "gears")
 
 
 def load(
@@ -102,7 +102,7 @@ def load(
         )
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "load")
 
 
 def system(
@@ -157,7 +157,7 @@ def system(
         )
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "system")
 
 
 def steady(
@@ -208,7 +208,7 @@ def steady(
         )
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "steady")
 
 
 def sound(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) -> None:
@@ -221,7 +221,7 @@ def sound(case: CaseName, *, fresh: Fresh = False, common: Common = NONE_GIVEN) 
         result = analyses.sound(loaded_case, folder=common.output, fresh=fresh, progress=progress)
         return written(result, common.output, progress)
 
-    on_case(case, common, work, shown_by(sections))
+    on_case(case, common, work, shown_by(sections), "sound")
 
 
 def sweep(
@@ -268,7 +268,7 @@ def sweep(
         )
         return written(result, folder, progress)
 
-    document = on_loaded(case, common, work, shown_by(sections, timed=True))
+    document = on_loaded(case, common, work, shown_by(sections, timed=True), "sweep")
     if document["failed"]:
         total = len(document["points"])
         raise PartlyFailedError(f"{document['failed']} of {total} points failed; they are tried again on the next run")

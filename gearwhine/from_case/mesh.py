@@ -8,16 +8,20 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
+from gearwhine.case.box import FACES
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, did_you_mean
 from gearwhine.case.housing import Region
 from gearwhine.case.input_files import ChangedFileError
 from housing import Joint, Material
+from housing.fem.nearest_point import NearestOnSurface
+from housing.fem.surface import flat_faces
 from housing.housing import cover_joint
 from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 from meshes.bores import CylindricalBore
 from meshes.errors import MeshSizeError
-from meshes.lengths import UNITS
+from meshes.lengths import UNITS, length_text
+from meshes.quality import WaveCarrier
 
 
 def ignore_warning(warning: str) -> None:
@@ -46,13 +50,13 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     assert table is not None
     if table.box is not None:
         with _at_fault("housing.box", "a box that can be meshed"):
-            return mesh_box(box_geometry(table.box, table.seat), table.box.mesh_size, order=order)
+            return mesh_box(box_geometry(table.box, table.seat), box_mesh_size(case), order=order)
     if table.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
             with case.input_files.unchanged(table.mesh.file):
                 mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
             mesh = mesh.rotated(np.array(table.mesh.rotation))
-        return _with_seats(case, mesh)
+        return _with_faces(case, _with_seats(case, mesh))
     assert table.cad is not None
     turn = np.array(table.cad.rotation)
     with (
@@ -70,7 +74,30 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
         )
     for remark in meshed.remarks:
         warn(f"{table.cad.file.name}: {remark}")
-    return _with_seats(case, meshed.mesh.rotated(turn))
+    return _with_faces(case, _with_seats(case, meshed.mesh.rotated(turn)))
+
+
+_ON_FACE = 0.01  # distance of a named face's point from the surface, as a part of the housing's diagonal
+_WAVES = 5.0  # elements to a bending wave in a first mesh, whose estimated error says how much smaller they are to be
+_WALLS = 2.0  # and their least size over the wall's thickness
+
+
+def box_mesh_size(case: Case) -> float:
+    """Return the size of a box's elements [m]; with an accuracy in its place, that of a first, coarse mesh."""
+    table = case.housing
+    assert table is not None
+    assert table.box is not None
+    if table.box.mesh_size is not None:
+        return table.box.mesh_size
+    walls = table.box.walls
+    thinnest: float = min(getattr(walls, face) for face in FACES)
+    size: float = _WALLS * thinnest
+    if table.frequency_limit is not None:
+        steel = case.material[table.material]
+        omega = 2.0 * np.pi * table.frequency_limit
+        wave = WaveCarrier(steel.youngs_modulus, steel.poisson_ratio, steel.density, omega).shortest_wave(thinnest)
+        size = max(size, wave / _WAVES)
+    return min(size, min(table.box.size) / 2.0)
 
 
 def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
@@ -113,6 +140,41 @@ def _with_seats(case: Case, mesh: Mesh) -> Mesh:
     if problems:
         raise CaseError(problems)
     return mesh
+
+
+def _with_faces(case: Case, mesh: Mesh) -> Mesh:
+    """Return the mesh with a surface for each named face: the flat face that its point is on.
+
+    Raises
+    ------
+    CaseError
+        With every face whose name a surface of the file has, or whose point is beside the surface.
+    """
+    assert case.housing is not None
+    if not case.housing.face:
+        return mesh
+    faces, boundary = flat_faces(mesh), NearestOnSurface(mesh, mesh.boundary)
+    near = _ON_FACE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+    surfaces, problems = dict(mesh.surfaces), []
+    for index, named in enumerate(case.housing.face):
+        key, label = f"housing.face[{index}]", f'face "{named.name}"'
+        point = boundary.point(np.array(named.at))
+        if named.name in surfaces:
+            expected = f"a name of its own; the surfaces are {', '.join(sorted(surfaces))}"
+            problems.append(Problem(f"{key}.name", named.name, expected, label=label))
+        elif (off := float(np.linalg.norm(point.position - named.at))) > near:
+            expected = f"a point on the surface; this one is {length_text(off)} from it"
+            problems.append(Problem(f"{key}.at", UNSAID, expected, label=label))
+        else:
+            facet = set(point.nodes.tolist())
+            (surfaces[named.name],) = [
+                face.facets
+                for face in faces
+                if any(facet == set(nodes) for block in face.facets for nodes in block.nodes.tolist())
+            ]
+    if problems:
+        raise CaseError(problems)
+    return replace(mesh, surfaces=surfaces)
 
 
 def cover_joints(case: Case) -> list[Joint]:

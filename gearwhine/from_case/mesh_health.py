@@ -13,7 +13,7 @@ from gearwhine.case.box import Box
 from gearwhine.case.checks.housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
-from gearwhine.from_case.mesh import build_mesh, cover_joints, materials_of
+from gearwhine.from_case.mesh import box_mesh_size, build_mesh, cover_joints, materials_of
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from housing import HousingError, Joint, ModeSet
@@ -29,6 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _TWO_PI = 2.0 * np.pi
 _UNKNOWNS_EACH = 4.2  # degrees of freedom for each 10-node tetrahedron of a bulky solid; in thin walls up to 6
 _MANY_UNKNOWNS = 1.5e6
+_ORDER_AT_INNER_EDGES = 2.0 * 0.545
 _BEYOND_ESTIMATE = 0.3  # estimated error from which it is a lower bound: the mode's shape itself is another one
 _BESIDE = 0.01  # distance of a point from the surface above which a warning is given, over the housing's diagonal
 
@@ -87,14 +88,14 @@ def discretisation_warnings(case: Case, mesh: Mesh, modes: ModeSet) -> list[dict
     worst, count = int(np.argmax(errors)), int(coarse.sum())
     # So coarse a mesh that the mode is another one: how much too high it is no stress field of its own can tell.
     least = "at least " if errors[worst] > _BEYOND_ESTIMATE else ""
-    finer = size_for(errors[worst], DISCRETISATION_BOUND, mesh.order)
+    finer = size_for(errors[worst], DISCRETISATION_BOUND)
     advice, figures = f"use elements of at most {finer:.2g} of their size", {}
     if table.mesh_size is not None:
         # Elements that are larger than the walls' waves say little of smaller ones.
         wave = _wave(case, float(modes.frequencies_hz[worst])).shortest_wave(wall_thickness(mesh))
         size = min(table.mesh_size * finer, resolving_size(wave, mesh.order))
         advice, figures = f"use a mesh_size of about {length_text(size)}", {"mesh_size_m": size}
-    missing = "" if table.frequency_limit is None else ", and higher ones that belong below the limit are missing"
+    missing = "" if table.frequency_limit is None else ", and higher ones that belong below the limit may be missing"
     message = (
         f"this mesh makes {count} of {len(errors)} modes more than {100 * DISCRETISATION_BOUND:g} % too high by an "
         f"estimate from their own stresses, mode {worst + 1} at {modes.frequencies_hz[worst]:.4g} Hz by {least}"
@@ -104,13 +105,14 @@ def discretisation_warnings(case: Case, mesh: Mesh, modes: ModeSet) -> list[dict
     return [found, *warnings]
 
 
-def size_for(error: float, wanted: float, order: int) -> float:
+def size_for(error: float, wanted: float) -> float:
     """Return the size of elements that brings an error down to what is wanted, as a part of their size.
 
-    With elements of order p the error of a smooth mode's frequency falls with h^2p. In thin walls with inner edges,
-    where stresses are singular, it falls by half that order or less (Strang and Fix 1973, chapter 8), which is taken.
+    The error of a smooth mode's frequency falls with h² or h⁴, by elements of order 1 or 2. At a right-angled inner
+    edge, as walls have where they meet, stresses grow with r^(0.545 - 1) (Williams 1952), and it falls with h^1.09 in
+    the end, whatever the order (Strang and Fix 1973, chapter 8); that is taken.
     """
-    return float((wanted / error) ** (1.0 / order))
+    return float((wanted / error) ** (1.0 / _ORDER_AT_INNER_EDGES))
 
 
 def _wave(case: Case, limit_hz: float) -> WaveCarrier:
@@ -154,7 +156,7 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, 
     table = case.housing
     assert table is not None
     if table.box is not None:
-        load = _preview_load(expected_elements(wall_volume(table.box), table.box.mesh_size))
+        load = _preview_load(expected_elements(wall_volume(table.box), box_mesh_size(case)))
         preview = MeshPreview(np.array(table.box.size), table.box.mesh_size, bolts=cover_joints(case))
         return preview, _preview_size(case, table.box) + load
     remarks: list[str] = []
@@ -173,7 +175,7 @@ def preview_mesh(case: Case, progress: Progress = silent) -> tuple[MeshPreview, 
 def _preview_size(case: Case, box: Box) -> list[dict[str, Any]]:
     assert case.housing is not None
     limit = case.housing.frequency_limit
-    if limit is None:
+    if limit is None or box.mesh_size is None:
         return []
     walls = box.walls
     thinnest = min(walls.left, walls.right, walls.bottom, walls.top, walls.back, walls.front)

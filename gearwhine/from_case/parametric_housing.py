@@ -122,6 +122,9 @@ class FittedCase:
         return document
 
 
+_WALL: Location = ("housing", "box", "wall")
+
+
 def fitted_case(
     case: Case, mesh_size: float | None = None, parameters: Sequence[UpdateParameter] | None = None
 ) -> FittedCase:
@@ -154,6 +157,8 @@ def fitted_case(
             matches = list(matching_places(document, steps or ()))
             if not matches:
                 problems.append(Problem(where, key, "the key path of a number in this case", label))
+            if matches == [_WALL]:  # one thickness for all walls
+                matches = [(*_WALL, face) for face in document["housing"]["box"]["wall"]]
             for place in matches:
                 value = si_amount(look_up(document, place))
                 if value is None:

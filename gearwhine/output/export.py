@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.output.csv_cells import plain_cells
 from gearwhine.output.files import file_stems
 from gearwhine.output.sections import Column, Document, Section, Table, value_at
 from gearwhine.output.store import stored_results
@@ -117,8 +118,8 @@ def _csv(table: Table) -> str:
     spread = [cells for column in columns for cells in _spread(column, table.rows)]
     file = io.StringIO()
     writer = csv.writer(file)
-    writer.writerow([heading for heading, _ in spread])
-    writer.writerows(zip(*(cells for _, cells in spread), strict=True))
+    writer.writerow(plain_cells(heading for heading, _ in spread))
+    writer.writerows(plain_cells(row) for row in zip(*(cells for _, cells in spread), strict=True))
     return file.getvalue()
 
 

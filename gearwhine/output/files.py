@@ -19,6 +19,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from gearwhine.failures import DamagedResultsError
+from gearwhine.output.manifest import MANIFEST, file_digest, listed_digests, manifest_text
+from gearwhine.output.own_files import require_own
+
 
 @contextmanager
 def exclusive_lock(folder: Path) -> Iterator[None]:
@@ -181,7 +185,9 @@ _LONGEST = 60  # length of the longest name in a file's name [characters]
 
 
 @contextmanager
-def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -> Iterator[Path]:
+def staging(
+    folder: Path, settle: Callable[[Path], Path | None] | None = None, *, listed: bool = True
+) -> Iterator[Path]:
     """Stage files in a folder inside the output folder: they move out to it, one by one and whole, at the end.
 
     Where the work fails or is interrupted, the output folder keeps its files. Staged files of a killed run are removed
@@ -196,6 +202,13 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
         command's results, relative to the output folder; drawings that the earlier summary there lists and this run
         does not draw anew are then cleared away, so that no old mode stands among the new ones. None where the files
         add to earlier ones.
+    listed : bool
+        Whether the folder's manifest lists the files.
+
+    Raises
+    ------
+    ForeignFileError
+        Where a file that no run made would be replaced.
     """
     is_new = not folder.exists()
     with ExitStack() as stack:
@@ -209,6 +222,9 @@ def staging(folder: Path, settle: Callable[[Path], Path | None] | None = None) -
             yield place
             with exclusive_lock(folder):
                 replaced = None if settle is None else settle(place)
+                require_own(folder, [path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()])
+                if listed:
+                    _write_manifest(place, folder)
                 _move_out(place, folder, replaced)
         except OSError as error:
             # Libraries that write files do not say where there was no room.
@@ -256,6 +272,17 @@ def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         os.replace(place / name, target)
+
+
+def _write_manifest(place: Path, folder: Path) -> None:
+    """Write the manifest of all of a folder's files of runs as it is once the staged ones have moved there."""
+    try:
+        earlier = listed_digests(folder)
+    except DamagedResultsError:  # what it listed is unknown; the summaries list most
+        earlier = {}
+    names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
+    digests = earlier | {name.as_posix(): file_digest(place / name) for name in names}
+    (place / MANIFEST).write_text(manifest_text(digests), encoding="utf-8")
 
 
 def json_text(document: Mapping[str, Any]) -> str:

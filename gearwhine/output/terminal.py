@@ -1,10 +1,11 @@
 """Results on the terminal: the sections of a document, its files and its time."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
+from rich.cells import cell_len
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table as Grid
@@ -14,6 +15,7 @@ from gearwhine.output.sections import Document, Section, Table, is_number
 
 _WIDTH = 120
 _LISTED = 12  # largest number of files that are named
+_BETWEEN = 3  # columns between the cells of a table
 _NARROWEST = 20  # least number of columns of a wrapped text
 
 
@@ -62,7 +64,8 @@ def show_section(console: Console, section: Section, indent: int = 0) -> None:
         if isinstance(item, Table):
             if item.caption:
                 console.print(f"{' ' * indent}{item.caption}")
-            console.print(Padding(_grid(item), (0, 0, 1, indent), expand=False))
+            for grid in _fitting(console, item, indent):
+                console.print(Padding(grid, (0, 0, 1, indent), expand=False))
         else:
             console.print(f"{' ' * indent}{_hanging(console, str(item), indent)}")
     for inner in section.inner:
@@ -95,6 +98,38 @@ def show_origin(console: Console, document: Document) -> None:
     """Show the file that modes were read from in place of being solved for."""
     if document.get("reused"):
         console.print(f"Modes read from {document['modes_read_from']} (unchanged housing)")
+
+
+def _fitting(console: Console, table: Table, indent: int) -> list[Grid]:
+    """Return a table as it fits a terminal: its rows become columns, a few beside each other, where it is too wide."""
+    columns, rows = table.filled()
+    if not console.is_terminal:
+        return [_grid(table)]
+    headings = [column.heading for column in columns]
+    room = console.width - indent
+
+    def width(cells: Sequence[str]) -> int:
+        return _BETWEEN + max((cell_len(line) for cell in cells for line in cell.split("\n")), default=0)
+
+    whole = sum(width([heading, *(row[place] for row in rows)]) for place, heading in enumerate(headings))
+    first = width(headings)
+    widest = max((width(row) for row in rows), default=0)
+    if whole <= room or first + widest > room:  # nothing is won where not even one row fits beside the headings
+        return [_grid(table)]
+    beside = (room - first) // widest
+    groups = [rows[start : start + beside] for start in range(0, len(rows), beside)]
+    return [_turned(headings, group) for group in groups]
+
+
+def _turned(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Grid:
+    """Return rows as columns, the first of their cells on top."""
+    grid = Grid(box=SIMPLE_HEAD, show_edge=False)
+    grid.add_column(headings[0])
+    for row in rows:
+        grid.add_column(row[0], justify="right")
+    for place, heading in enumerate(headings[1:], start=1):
+        grid.add_row(heading, *(row[place] for row in rows))
+    return grid
 
 
 def _grid(table: Table) -> Grid:

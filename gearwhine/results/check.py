@@ -110,6 +110,7 @@ HOUSING = (
     ),
     Quantity("size_m", lambda checked: checked.mesh.size),
     _optional("mesh_size_m", lambda checked: checked.mesh.mesh_size),
+    _optional("accuracy", lambda checked: checked.case.housing.accuracy),
     _optional("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
     Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores(checked.mesh.mesh), BORE),
     _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
@@ -537,6 +538,8 @@ def _housing_lines(housing: Document) -> list[str]:
         shape += f" of {' x '.join(f'{1e3 * length:.6g}' for length in housing['size_m'])} mm"
     if "mesh_size_m" in housing:
         shape += f", elements of {1e3 * housing['mesh_size_m']:g} mm"
+    if "accuracy" in housing:
+        shape += f", elements as small as modes within {100 * housing['accuracy']:g} % need"
     if "mesh" in housing:
         shape += f", {housing['mesh']['nodes']} nodes, {kinds_of_elements(housing['kinds'])}"
     limit, count = housing["frequency_limit_hz"], housing["modes"]

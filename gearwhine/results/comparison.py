@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gearwhine.output.csv_cells import plain_cells
 from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, columns_of, counted, table_of
 from gearwhine.results.housing import shape_places
@@ -567,5 +568,5 @@ def _cell(value: float | None) -> str | int:
 def _write_table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(heads)
-        writer.writerows(rows)
+        writer.writerow(plain_cells(heads))
+        writer.writerows(plain_cells(row) for row in rows)

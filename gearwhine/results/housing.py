@@ -181,6 +181,7 @@ HOUSING: Fields = (
     Rows("modes", _modes, MODE, "housing_mode"),
     Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
     Part("mesh", lambda solved: solved.mesh, MESH_SIZE),
+    Quantity("refinement", lambda solved: solved.refinement or ABSENT),
     Quantity("size_m", lambda solved: np.ptp(solved.mesh.points, axis=0)),
     Quantity("mass_kg", lambda solved: solved.mass),
     Quantity("center_of_mass_m", lambda solved: solved.checks["health"]["center_of_gravity_m"]),
@@ -390,7 +391,13 @@ def detailed_sections(document: Document) -> tuple[Section, ...]:
 
 
 def _modes_content(document: Document) -> tuple[str | Table, ...]:
-    return (*table_of(_MODES, document["modes"]), modes_sentence(document))
+    return (*table_of(_MODES, document["modes"]), modes_sentence(document), *_refinement(document))
+
+
+def _refinement(document: Document) -> Iterator[str]:
+    if steps := document.get("refinement"):
+        meshes = ", ".join(f"{1e3 * step['mesh_size_m']:.3g} mm {100 * step['largest_error']:.2g} %" for step in steps)
+        yield f"Refined until every mode is within its accuracy; largest estimated error by elements of {meshes}"
 
 
 def modes_sentence(document: Document) -> str:

@@ -620,6 +620,19 @@ ROTORS = (
 """Quantities of all rotors of a case."""
 
 
+def _stability_warnings(rotor: "SolvedRotor") -> Iterator[dict[str, Any]]:
+    """Warn of a rotor whose whirl grows by itself, at the lowest speed that is known of."""
+    onset = None if rotor.campbell is None else rotor.campbell.unstable_from
+    if onset is None:
+        onset = min((state.speed for state in rotor.whirl if not np.all(state.stable)), key=abs, default=None)
+    if onset is not None:
+        message = (
+            f'rotor "{rotor.rotor.name}" is unstable from {abs(onset) * RPM:.6g} rpm on: a whirl mode has negative '
+            "damping and grows by itself; motions of this rotor mean nothing beyond"
+        )
+        yield warning("unstable rotor", message, rotor=rotor.rotor.name, unstable_from_rpm=abs(float(onset)) * RPM)
+
+
 def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
     """Return the rotors as the command's JSON, with warnings."""
     warnings = [
@@ -627,6 +640,7 @@ def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
         for rotor in solved
         if rotor.damps_across
     ]
+    warnings += [entry for rotor in solved for entry in _stability_warnings(rotor)]
     return document_of(ROTORS, solved) | {"warnings": warnings}
 
 

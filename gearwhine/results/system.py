@@ -122,7 +122,7 @@ MODE = (
 def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
     """Return the mesh stiffness at which each loaded flank is linearised, beside its mean without load.
 
-    It is that between the rims; the twist of the gears' bodies is in series with it.
+    It is that between the rims; the gears' bodies on their shafts are in series with it.
     """
     contact, unloaded = solved.contact, solved.unloaded.stiffness
     rows = []
@@ -130,7 +130,7 @@ def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
         if not tooth.loaded:
             continue
         force = None if contact.force is None else float(contact.force[number])
-        twist = solved.machine.meshes[solved.machine.flanks(number)[0]].body_twist
+        behind = solved.machine.meshes[solved.machine.flanks(number)[0]].behind_rims
         if force is None:
             linearisation = "tangent at the mesh phase"
         elif contact.stiffness[number] == 0.0:
@@ -143,7 +143,7 @@ def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
                 "taken": linearisation,
                 "stiffness_n_per_m": contact.stiffness[number],
                 "unloaded_mean_n_per_m": unloaded[number],
-                "bodies_n_per_m": None if twist == 0.0 else 1.0 / twist,
+                "bodies_n_per_m": None if behind == 0.0 else 1.0 / behind,
                 "force_n": force,
             }
         )
@@ -606,7 +606,7 @@ def _mesh_sentence(mesh: Document) -> str:
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
     bodies = mesh.get("bodies_n_per_m")
-    twist = "" if bodies is None else f"; behind the rims the bodies twist by {1e-6 * bodies:.4g} N/µm"
+    twist = "" if bodies is None else f"; in series, bodies behind the rims {1e-6 * bodies:.4g} N/µm"
     return f"Mesh stiffness of {mesh['name']}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}{twist}."
 
 

@@ -10,7 +10,7 @@ A new key of the housing therefore counts until it is listed as one that changes
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ import gearwhine
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import attach_all, build_attachments, check_places
-from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.from_case.mesh import box_mesh_size, build_mesh, materials_of
 from gearwhine.from_case.mesh_health import (
     discretisation_warnings,
     noted_on_failure,
@@ -33,6 +33,7 @@ from gearwhine.from_case.mesh_health import (
 from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 from housing import (
     HealthReport,
     Housing,
@@ -55,7 +56,8 @@ from housing.modes.receptance import Selection, select_modes
 from housing.storage.mesh_arrays import mesh_digest
 from housing.storage.mode_file import ModeRecord, with_sensors
 from housing.storage.netcdf import LabelledArray, content_key
-from meshes import Mesh
+from meshes import Mesh, mesh_quality
+from meshes.lengths import length_text
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -77,6 +79,7 @@ MODES_CODE = (
     "gearwhine.from_case.mesh",
     "gearwhine.from_case.mesh_health",
     "gearwhine.solve.housing_modes",
+    "gearwhine.solve.mesh_refinement",
 )
 """Code that the modes are solved by: a change of any other, such as that of figures, leaves them cached."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
@@ -225,6 +228,11 @@ class SolvedHousing:
         return housing_damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
 
     @property
+    def refinement(self) -> list[dict[str, Any]]:
+        """Meshes that were solved until the modes had the accuracy asked for, the last one this; else empty."""
+        return list(self.record.notes.get("refinement", ()))
+
+    @property
     def survey_shapes(self) -> FloatArray:
         """Mode shapes at the survey points, mass-normalised, shape (n_modes, n_points, 3) [1/√kg]."""
         count = len(self.modes.frequencies)
@@ -290,6 +298,66 @@ def solve_housing(
         Where the modes fail their certificate, their static compliance its proof, or the model its checks.
     """
     require(case, "housing", command=command)
+    table = case.housing
+    assert table is not None
+    if table.accuracy is not None:
+        inputs = mode_cache_inputs(case)
+        if fresh or folder is None or read_mode_cache(folder, inputs)[0] is None:
+            return _refined(case, progress, inputs, before=before)
+    return _solve_on_one_mesh(case, progress, folder=folder, fresh=fresh, before=before)
+
+
+def _refined(
+    case: Case,
+    progress: Progress,
+    inputs: dict[str, Any],
+    *,
+    before: Callable[[Case, Mesh], None] | None,
+) -> SolvedHousing:
+    """Solve the housing on finer and finer meshes, until every mode's estimated error is within the accuracy."""
+    table = case.housing
+    assert table is not None
+    assert table.accuracy is not None
+    steps: list[RefinementStep] = []
+    begin, size = time.perf_counter(), box_mesh_size(case) if table.box is not None else None
+    while True:
+        trial = case if size is None else case.model_copy(update={"housing": table.meshed_by(size)})
+        # Without a size the mesher takes a coarse one by the walls' thickness.
+        solved = _solve_on_one_mesh(trial, progress, folder=None, fresh=True, before=before)
+        errors = solved.modes.discretisation_errors
+        assert errors is not None
+        size = mesh_quality(solved.mesh).edge_length[1] if size is None else size
+        worst = int(np.argmax(errors))
+        steps.append(RefinementStep(size, 3 * len(solved.mesh.points), len(errors), float(errors[worst])))
+        progress(
+            f"elements of {length_text(size)}, {steps[-1].dofs} degrees of freedom: mode {worst + 1} has the largest "
+            f"estimated error, {100 * errors[worst]:.2g} %; {100 * table.accuracy:g} % is wanted"
+        )
+        if errors[worst] <= table.accuracy:
+            break
+        size = next_size(steps, table.accuracy)
+    seconds = solved.seconds | {"total": time.perf_counter() - begin}
+    # What was asked for is reached: no advice on the size of elements.
+    noted = [entry for entry in solved.record.notes["warnings"] if entry["name"] != "discretisation"]
+    steps_made = [step.document for step in steps]
+    notes = {**solved.record.notes, "warnings": noted, "seconds": seconds, "refinement": steps_made}
+    return replace(
+        solved,
+        seconds=seconds,
+        record=replace(solved.record, inputs=inputs, notes=notes),
+        warnings=[entry for entry in solved.warnings if entry["name"] != "discretisation"],
+    )
+
+
+def _solve_on_one_mesh(
+    case: Case,
+    progress: Progress,
+    *,
+    folder: Path | None,
+    fresh: bool,
+    before: Callable[[Case, Mesh], None] | None,
+) -> SolvedHousing:
+    """Mesh the housing and solve its modes, or read them from the mode cache; see :func:`solve_housing`."""
     table = case.housing
     assert table is not None
     begin = time.perf_counter()
@@ -362,6 +430,7 @@ def solve_housing(
         source_holds=cached is not None and cached.sensors == record.sensors,
         up=_upwards(case),
         warnings=warnings
+        + _health_warnings(checks)
         + list(surface_point_warnings(case, mesh))
         + ([] if spoilt is None else [warning("modes file", spoilt)])
         + _surplus_damping(case, len(modes.frequencies)),
@@ -507,6 +576,21 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
         if bearing.seat in centers
     }
     return places or {name: (name, 0.0) for name in centers}
+
+
+def _health_warnings(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Warn of every check of the housing's model that misses its bound."""
+    return [
+        warning(
+            "health",
+            f"{line['name']} is {line['value']:.3g}, beyond its bound of {line['bound']:.3g}: {line['why']}",
+            check=line["name"],
+            value=line["value"],
+            bound=line["bound"],
+        )
+        for line in checks["health"]["lines"]
+        if not line["ok"] and line["bound"] is not None
+    ]
 
 
 def housing_checks(described: Housing, health: HealthReport, masses: EffectiveMass) -> dict[str, Any]:

@@ -505,6 +505,9 @@ def update_housing(
     table = case.update
     assert table is not None
     assert case.housing is not None
+    if case.housing.accuracy is not None:
+        expected = "a mesh_size in its place: designs are compared on elements of one size (`gearwhine modes` finds it)"
+        raise CaseError([Problem("housing.accuracy", f"{100 * case.housing.accuracy:g} %", expected)])
     measured = measurement_of(case, progress)
     target = measured.target
     if null and target.shapes is not None:

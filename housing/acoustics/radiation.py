@@ -387,6 +387,15 @@ def set_down(surface: RadiatingSurface, floor: HardPlane, edge: float) -> Radiat
     return RadiatingSurface(surface.points - np.outer(moved, floor.normal), surface.triangles)
 
 
+_TRIANGLES_ALONG = 3.0
+"""Triangles along the shortest side of a housing that a wrap has at least, so that it has its shape."""
+
+
+def coarsest_edge(mesh: Mesh) -> float:
+    """Return the longest edge with which triangles wrap a housing [m]."""
+    return float(np.ptp(mesh.bounds, axis=0).min()) / _TRIANGLES_ALONG
+
+
 def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None = None) -> RadiatingSurface:
     """Wrap a housing in triangles, and set it down on a floor where its vertices are within 2 % of an edge of it.
 
@@ -394,7 +403,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     ----------
     mesh : Mesh
     edge : float
-        Edge of the triangles [m].
+        Edge of the triangles [m]; a longer one than `coarsest_edge` is taken as that.
     close_holes : float
         Diameter of the largest hole that is capped [m].
     floor : HardPlane, optional
@@ -404,6 +413,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     TriangleSizeError, HousingError
         As :func:`housing.acoustics.wrapping.wrap`.
     """
+    edge = min(edge, coarsest_edge(mesh))
     surface = wrap(mesh, edge, close_holes)
     return surface if floor is None else set_down(surface, floor, edge)
 
@@ -446,6 +456,7 @@ class HousingRadiation:
         *,
         edge: float,
         close_holes: float,
+        resting_caps: bool = False,
         method: Method = "boundary-elements",
         medium: Medium = AIR,
         floor: HardPlane | None = None,
@@ -463,6 +474,8 @@ class HousingRadiation:
             Edge of the triangles [m].
         close_holes : float
             Diameter of the largest hole that is capped [m].
+        resting_caps : bool
+            Whether caps are at rest; else they move as their rims.
         method : {"boundary-elements", "erp"}
         medium : Medium
         floor : HardPlane, optional
@@ -488,7 +501,7 @@ class HousingRadiation:
             elements.require_few()
             if highest_frequency is not None:
                 elements.require_resolved(highest_frequency)
-        carried = surface_velocity(mesh, surface)
+        carried = surface_velocity(mesh, surface, resting_caps=resting_caps)
         error = transfer_error(carried, shapes[:natural_modes])
         error.require()
         points = carried.points(tuple(still)).on(elements.uncovered)

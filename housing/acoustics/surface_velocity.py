@@ -12,12 +12,14 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+from scipy.spatial import cKDTree
 
 from housing.acoustics.radiating_surface import RadiatingSurface
 from housing.acoustics.skin import NearestSkin, Skin, skin_of
 from housing.acoustics.skin_points import FacetPoints, SkinPoints
 from housing.errors import TriangleSizeError
-from housing.fem.surface import flat_face_numbers, surface_quadrature
+from housing.fem.outer_facets import triangle_middles
+from housing.fem.surface import boundary_members, flat_face_names, flat_face_numbers, nearest_axis
 from meshes import Mesh
 from meshes.elements import Facets, facet_centers, facet_normals
 from meshes.shape_functions import quadrature, shape_functions
@@ -37,6 +39,9 @@ _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # corners of a triang
 _SPACING = 0.35  # edges between the samples of a skin
 _TURNED = 0.5  # edges that a skin at a right angle counts as farther, over sqrt(2)
 _BESIDE = 0.1  # edges that a point of a cap lies beside the skin, across its normal
+_PARTS = 8  # a triangle's edges are cut into these parts for the area of what it closes
+_GRAZING = 1e-3  # cosine between skin and normal below which a line does not meet the skin, but runs along it
+_EDGEWISE = 1e-6  # part of a skin triangle by which a line may miss it at its edge
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
 _SAME_WAY = 0.7  # least cosine between their normals there
 _LARGE = 0.02  # part of the surface's area above which a flat face has a label of its own
@@ -54,12 +59,15 @@ class SurfaceVelocity:
         Skin of the mesh's boundary.
     nearest : NearestSkin
         Nearest points of the six points of each triangle, triangle after triangle.
+    resting_caps : bool
+        Whether what closes holes is at rest. Else it moves as the rim that is nearest, as covers and bearings do.
     """
 
     mesh: Mesh
     surface: RadiatingSurface
     skin: Skin
     nearest: NearestSkin
+    resting_caps: bool = False
 
     @cached_property
     def facets(self) -> IntArray:
@@ -84,10 +92,53 @@ class SurfaceVelocity:
         """Triangles that close a hole for the most part, shape (n_triangles,)."""
         return np.asarray(self._cap_points @ _WEIGHTS > 0.5)
 
-    @property
+    @cached_property
+    def _over_holes(self) -> BoolArray:
+        """Points of the triangles over a hole, shape (n_triangles, 6)."""
+        over = np.zeros(self._cap_points.shape, dtype=bool)
+        for triangle in self._near_caps.tolist():
+            over[triangle] = self._over_hole(triangle, _SHARES)
+        return over
+
+    @cached_property
     def cap_area(self) -> float:
-        """Area of the surface beside the skin [m²]."""
-        return float(self.surface.areas @ (self._cap_points @ _WEIGHTS))
+        """Area of the surface over holes [m²]."""
+        shares = triangle_middles(_PARTS)
+        parts = [self.surface.areas[one] * self._over_hole(one, shares).mean() for one in self._near_caps.tolist()]
+        return float(sum(parts))
+
+    @cached_property
+    def _near_caps(self) -> IntArray:
+        """Triangles that close holes, and those that share a vertex with them."""
+        touched = np.zeros(len(self.surface.points), dtype=bool)
+        touched[self.surface.triangles[self._cap_points.any(axis=1)]] = True
+        return np.flatnonzero(touched[self.surface.triangles].any(axis=1))
+
+    @cached_property
+    def _skin_tree(self) -> tuple[cKDTree, float]:
+        """Tree of the middles of the skin's triangles, and the largest distance of a corner from its middle [m]."""
+        middles = self.skin.corners.mean(axis=1)
+        reach = float(np.linalg.norm(self.skin.corners - middles[:, None], axis=2).max())
+        return cKDTree(middles), reach
+
+    def _over_hole(self, triangle: int, shares: FloatArray) -> BoolArray:
+        """Whether the line along its normal through each point of a triangle meets no skin that looks its way.
+
+        Points by their shares of the corners, shape (n, 3). Skin farther off than an edge is that of another wall.
+        """
+        corners, normal = self.surface.corners[triangle], self.surface.normals[triangle]
+        tree, size = self._skin_tree
+        middle = corners.mean(axis=0)
+        reach = float(np.linalg.norm(corners - middle, axis=1).max()) + self.edge + size
+        near = np.array(tree.query_ball_point(middle, reach), dtype=np.int64)
+        near = near[self.skin.normals[near] @ normal > _GRAZING]
+        first, *others = np.moveaxis(self.skin.corners[near], 1, 0)
+        # p + t n = a + u (b - a) + v (c - a) for every point p and skin triangle a b c.
+        frame = np.stack([others[0] - first, others[1] - first, np.broadcast_to(-normal, first.shape)], axis=2)
+        gaps = (shares @ corners)[:, None] - first
+        u, v, t = np.moveaxis(np.einsum("kij,pkj->pki", np.linalg.inv(frame), gaps), 2, 0)
+        met = (u >= -_EDGEWISE) & (v >= -_EDGEWISE) & (u + v <= 1.0 + _EDGEWISE) & (np.abs(t) <= self.edge)
+        return np.asarray(~met.any(axis=1))
 
     @cached_property
     def distances(self) -> FloatArray:
@@ -128,7 +179,9 @@ class SurfaceVelocity:
     def points(self, without: Sequence[str | Facets] = ()) -> SkinPoints:
         """Points of the skin that the triangles move with; see :meth:`transfer`."""
         facets = self.facets.ravel()
-        silent = np.isin(facets, _members(self.mesh, without))
+        silent = np.isin(facets, boundary_members(self.mesh, without))
+        if self.resting_caps:
+            silent |= self._over_holes.ravel()
         groups, first = [], 0
         for block in self.mesh.boundary:
             chosen = np.flatnonzero((facets >= first) & (facets < first + len(block)) & ~silent)
@@ -149,42 +202,25 @@ class SurfaceVelocity:
         """Label of the housing's face that each triangle lies on.
 
         A face has the name of the mesh's surface that holds most of it, as ``top``. Another flat face of at least
-        2 % of the surface is ``face 3 (+y)``, with the axis nearest to its normal, and the rest is ``other (+y)``.
+        2 % of the surface has that of its place, ``+y at 0, 10, 0 mm``, and the rest is ``other (+y)``.
         Triangles over holes are ``cap``.
         """
-        boundary = self.mesh.boundary
-        n_facets = sum(len(block) for block in boundary)
         share = np.repeat(self.surface.areas, len(_WEIGHTS)) * np.tile(_WEIGHTS, len(self.surface.triangles))
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
-        names = np.array([""] * n_facets, dtype=object)
-        sizes = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(self.mesh, boundary)])
-        whole = np.bincount(numbers, sizes)
-        for name in self.mesh.surfaces:
-            members = _members(self.mesh, (name,))
-            part = np.bincount(numbers[members], sizes[members], len(whole))
-            names[np.isin(numbers, np.flatnonzero(part > 0.5 * whole))] = name
-        large = [n for n in np.argsort(-area, kind="stable").tolist() if area[n] > _LARGE * self.surface.area]
-        for place, number in enumerate(large):
-            at = numbers == number
-            if not names[at][0]:
-                names[at] = f"face {place + 1}"
+        faces = flat_face_names(self.mesh)
+        told = [face.is_surface or area[number] > _LARGE * self.surface.area for number, face in enumerate(faces)]
         middle = self.facets[:, int(np.argmax(_WEIGHTS))]
         labels = []
         for e, facet in enumerate(middle.tolist()):
-            axis = _direction(self.surface.normals[e])
-            label = names[facet]
-            if self.caps[e]:
-                label = "cap"
-            elif not label:
-                label = f"other ({axis})"
-            elif label.startswith("face "):
-                label = f"{label} ({axis})"
-            labels.append(str(label))
+            axis = nearest_axis(self.surface.normals[e])
+            number = numbers[facet]
+            label = faces[number].name if told[number] else f"other ({axis})"
+            labels.append("cap" if self.caps[e] else label)
         return labels
 
 
-def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
+def surface_velocity(mesh: Mesh, surface: RadiatingSurface, *, resting_caps: bool = False) -> SurfaceVelocity:
     """Find the points of a housing's skin that a radiating surface moves with.
 
     Parameters
@@ -193,12 +229,14 @@ def surface_velocity(mesh: Mesh, surface: RadiatingSurface) -> SurfaceVelocity:
         The housing's finite elements.
     surface : RadiatingSurface
         Radiating surface around the housing.
+    resting_caps : bool
+        See :class:`SurfaceVelocity`.
     """
     skin = skin_of(mesh, mesh.boundary)
     edge = float(np.sqrt(4.0 / np.sqrt(3.0) * surface.area / len(surface.triangles)))
     normals = np.repeat(surface.normals, len(_WEIGHTS), axis=0)
     return SurfaceVelocity(
-        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge)
+        mesh, surface, skin, skin.nearest(_places(surface), normals, _SPACING * edge, _TURNED * edge), resting_caps
     )
 
 
@@ -330,27 +368,3 @@ def _triangle_skin(surface: RadiatingSurface) -> Skin:
     numbers = np.arange(len(surface.triangles))
     places = np.tile(_CORNERS, (len(numbers), 1, 1))
     return Skin(surface.triangles, surface.corners, numbers, places)
-
-
-def _members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
-    """Numbers of the boundary facets, block after block, that belong to surfaces."""
-    wanted = [
-        block for surface in surfaces for block in (mesh.surface(surface) if isinstance(surface, str) else surface)
-    ]
-    members, first = [np.empty(0, dtype=np.int64)], 0
-    for block in mesh.boundary:
-        corners = np.sort(block.corners, axis=1)
-        for other in wanted:
-            if other.of.n_corners == corners.shape[1]:
-                both = np.concatenate([corners, np.sort(other.corners, axis=1)])
-                _, number = np.unique(both, axis=0, return_inverse=True)
-                number = number.ravel()
-                members.append(first + np.flatnonzero(np.isin(number[: len(corners)], number[len(corners) :])))
-        first += len(block)
-    return np.unique(np.concatenate(members))
-
-
-def _direction(normal: FloatArray) -> str:
-    """Axis nearest to a normal, as ``+y``."""
-    axis = int(np.argmax(np.abs(normal)))
-    return f"{'+' if normal[axis] > 0.0 else '-'}{'xyz'[axis]}"

@@ -1,5 +1,6 @@
 """Surface of a housing: integration by quadrature, and its flat faces."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,25 +79,29 @@ class FlatFace:
         Area [m²].
     center, normal : ndarray, shape (3,)
         Centroid [m] and outward unit normal.
+    name : str
+        Name, see :func:`flat_face_names`.
     """
 
     facets: Facets
     area: float
     center: FloatArray
     normal: FloatArray
+    name: str
 
 
 def flat_faces(mesh: Mesh) -> list[FlatFace]:
     """Divide a mesh's boundary into flat faces: facets that share edges and lie in one plane; the largest first."""
     boundary, face_of = mesh.boundary, flat_face_numbers(mesh)
     normals, centers = facet_normals(mesh.points, boundary), facet_centers(mesh.points, boundary)
-    areas = np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, boundary)])
+    areas, names = _facet_areas(mesh), flat_face_names(mesh)
     faces = []
     for number in np.argsort(-np.bincount(face_of, areas), kind="stable").tolist():
         chosen = face_of == number
         area, normal = float(areas[chosen].sum()), areas[chosen] @ normals[chosen]
         center = areas[chosen] @ centers[chosen] / area
-        faces.append(FlatFace(pick_facets(boundary, chosen), area, center, normal / np.linalg.norm(normal)))
+        unit = normal / np.linalg.norm(normal)
+        faces.append(FlatFace(pick_facets(boundary, chosen), area, center, unit, names[number].name))
     return faces
 
 
@@ -120,3 +125,64 @@ def flat_face_numbers(mesh: Mesh) -> IntArray:
     flat = np.einsum("ei,ei->e", normals[first_facet], normals[second_facet]) > _ALIGNED
     joined = sparse.coo_array((np.ones(flat.sum()), (first_facet[flat], second_facet[flat])), shape=(first, first))
     return np.asarray(connected_components(joined, directed=False)[1], dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class FaceName:
+    """Name of a flat face, and whether it is that of a surface of the mesh."""
+
+    name: str
+    is_surface: bool
+
+
+def flat_face_names(mesh: Mesh) -> list[FaceName]:
+    """Name the flat faces of a mesh's boundary, in the order of :func:`flat_face_numbers`.
+
+    A face has the name of the mesh's surface that holds most of it. Another has its direction and the place of its
+    centre, such as ``+y at 0, 10, 0 mm``: the same wherever the housing's faces are told.
+    """
+    numbers, areas = flat_face_numbers(mesh), _facet_areas(mesh)
+    whole = np.bincount(numbers, areas)
+    normals, centers = (
+        np.stack([np.bincount(numbers, areas * part) for part in vectors.T], axis=1)
+        for vectors in (facet_normals(mesh.points, mesh.boundary), facet_centers(mesh.points, mesh.boundary))
+    )
+    names = []
+    for normal, center in zip(normals, 1e3 * centers / whole[:, None], strict=True):
+        x, y, z = center.round().astype(int).tolist()
+        names.append(FaceName(f"{nearest_axis(normal)} at {x}, {y}, {z} mm", is_surface=False))
+    for name in mesh.surfaces:
+        members = boundary_members(mesh, (name,))
+        part = np.bincount(numbers[members], areas[members], len(whole))
+        for number in np.flatnonzero(part > 0.5 * whole).tolist():
+            names[number] = FaceName(name, is_surface=True)
+    return names
+
+
+def _facet_areas(mesh: Mesh) -> FloatArray:
+    """Areas of the boundary facets [m²], block after block."""
+    return np.concatenate([part.areas.sum(axis=1) for part in surface_quadrature(mesh, mesh.boundary)])
+
+
+def boundary_members(mesh: Mesh, surfaces: Sequence[str | Facets]) -> IntArray:
+    """Numbers of the boundary facets, block after block, that belong to surfaces."""
+    wanted = [
+        block for surface in surfaces for block in (mesh.surface(surface) if isinstance(surface, str) else surface)
+    ]
+    members, first = [np.empty(0, dtype=np.int64)], 0
+    for block in mesh.boundary:
+        corners = np.sort(block.corners, axis=1)
+        for other in wanted:
+            if other.of.n_corners == corners.shape[1]:
+                both = np.concatenate([corners, np.sort(other.corners, axis=1)])
+                _, number = np.unique(both, axis=0, return_inverse=True)
+                number = number.ravel()
+                members.append(first + np.flatnonzero(np.isin(number[: len(corners)], number[len(corners) :])))
+        first += len(block)
+    return np.unique(np.concatenate(members))
+
+
+def nearest_axis(normal: FloatArray) -> str:
+    """Axis nearest to a normal, as ``+y``."""
+    axis = int(np.argmax(np.abs(normal)))
+    return f"{'+' if normal[axis] > 0.0 else '-'}{'xyz'[axis]}"

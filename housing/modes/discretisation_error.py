@@ -138,7 +138,7 @@ def _nodal_stresses(
     """Mean at each node of the stresses that its elements have there, shape (n_nodes, 6, n_modes)."""
     n_modes = motions.shape[1] // 3
     total = np.zeros((len(points), 6 * n_modes))
-    count = np.zeros(len(points))
+    count: FloatArray = np.zeros(len(points))
     for block in blocks:
         places, weights = quadrature(block.kind, block.of.order)
         reference = shape_functions(block.kind, places)[1]
@@ -164,17 +164,17 @@ def _free_surface(mesh: Mesh, loaded: IntArray | None) -> tuple[IntArray, FloatA
     widths = np.concatenate([np.full(len(block), block.of.n_nodes) for block in facets])
     facet = np.repeat(np.arange(len(normals)), widths)
     about = sparse.csr_array((np.ones(len(rows)), (rows, facet)), shape=(len(mesh.points), len(normals)))
-    count = about.sum(axis=1)
+    count: FloatArray = np.bincount(rows, minlength=len(mesh.points)).astype(np.float64)
     on_surface = count > 0
     if loaded is not None:
         on_surface[loaded] = False
     nodes = np.flatnonzero(on_surface)
-    about = sparse.csr_array(about[nodes] / count[nodes][:, None])
-    squares = (about @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
+    about = sparse.csr_array(sparse.diags_array(1.0 / count[nodes]) @ about[nodes])
+    squares = np.asarray(about @ (normals[:, :, None] * normals[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
     values, directions = np.linalg.eigh(squares)
     is_normal = values >= _EDGE
     # The facets about an outer edge lie below its mean normal, those about an inner edge above it.
-    rise = ((about @ normals) * (about @ centers - mesh.points[nodes])).sum(axis=1)
+    rise = (np.asarray(about @ normals) * (np.asarray(about @ centers) - mesh.points[nodes])).sum(axis=1)
     keep = (is_normal.sum(axis=1) == 1) | (rise < 0.0)
     along = directions * ~is_normal[:, None]
     return nodes[keep], np.asarray(along[keep] @ directions[keep].transpose(0, 2, 1))

@@ -54,7 +54,7 @@ class CadMesh:
 
 def mesh_cad(
     path: str | Path,
-    mesh_size: float,
+    mesh_size: float | None,
     *,
     unit: float | None = None,
     glue: bool = True,
@@ -69,8 +69,8 @@ def mesh_cad(
     ----------
     path : path
         A STEP, IGES or BREP file.
-    mesh_size : float
-        Edge length aimed at [m].
+    mesh_size : float or None
+        Edge length aimed at [m]; None for a coarse one by the thickness of the walls.
     unit : float, optional
         Unit of the file's numbers [m], where it states none itself (BREP; default a millimetre). What a STEP or
         IGES file states holds, unless the part would then be no housing by its size and is one in this unit.
@@ -98,7 +98,7 @@ def mesh_cad(
         Where gmsh cannot be loaded.
     """
     check_mesh_request(mesh_size, order)
-    if refined_size is not None and not 0.0 < refined_size <= mesh_size:
+    if refined_size is not None and (mesh_size is None or not 0.0 < refined_size <= mesh_size):
         raise GeometryError(f"refined mesh size {refined_size} m must be positive and at most {mesh_size} m")
     path = Path(path)
     kind = KINDS.get(path.suffix.lower())

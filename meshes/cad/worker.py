@@ -11,7 +11,7 @@ import shutil
 import sys
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ import numpy as np
 
 from meshes.cad.shape import Shape, choose_unit, conforming, extent, read_solids
 from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
-from meshes.gmsh_meshing import Tetrahedra, check_mesh_size, collect, gmsh_session, mesh_solids
+from meshes.gmsh_meshing import Tetrahedra, check_mesh_size, coarse_size, collect, gmsh_session, mesh_solids
 
 STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
 FORESEEN = "foreseen"  # the file with the number of elements to come
@@ -37,8 +37,8 @@ class Request:
     ----------
     path : str
     kind : {"step", "iges", "brep"}
-    mesh_size : float
-        Mesh size [m].
+    mesh_size : float or None
+        Mesh size [m]; None for one by the thickness of the walls.
     order : {1, 2}
     stated, given : float or None
         Units of length [m], as of :func:`meshes.cad.shape.choose_unit`.
@@ -52,7 +52,7 @@ class Request:
 
     path: str
     kind: str
-    mesh_size: float
+    mesh_size: float | None
     order: int
     stated: float | None
     given: float | None
@@ -106,20 +106,39 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
         at(JOINING)
         shape = conforming(gmsh, solids, glue=request.glue)
         filled = sum(abs(gmsh.model.occ.getMass(3, tag)) for tags in shape.solids.values() for tag in tags)
-        check_mesh_size(filled * unit**3, extent(gmsh) * unit, request.mesh_size)
+        size, given = request.mesh_size, request.mesh_size is not None
+        if size is None:
+            area = sum(gmsh.model.occ.getMass(2, tag) for _, tag in gmsh.model.getEntities(2))
+            size = coarse_size(filled * unit**3, area * unit**2, extent(gmsh) * unit)
+            request = replace(request, mesh_size=size)
+        check_mesh_size(filled * unit**3, extent(gmsh) * unit, size)
         (folder / FORESEEN).write_text(f"{_foreseen(request, filled * unit**3):.0f}", encoding="utf-8")
         at(MESHING)
         _refine(gmsh, request, unit)
-        _mesh(gmsh, shape, request, unit)
+        for last in (size,) if given else (size, 0.7 * size, 0.5 * size):
+            request = replace(request, mesh_size=last)
+            try:
+                _mesh(gmsh, shape, request, unit)
+                break
+            except GeometryError:
+                # Walls that a coarse mesh bridges or folds: a first mesh may be finer.
+                if given or last < 0.6 * size:
+                    raise
+                gmsh.model.mesh.clear()
         at("collecting its mesh")
         arrays = _save(folder, collect(gmsh, request.order, shape.faces, shape.solids, unit=unit))
         return {"solids": list(shape.solids), "unit": chosen.length, "remarks": chosen.remarks, "arrays": arrays}
 
 
+def _size(request: Request) -> float:
+    assert request.mesh_size is not None
+    return request.mesh_size
+
+
 def _foreseen(request: Request, volume: float) -> float:
     """Upper estimate of the number of elements in a volume [m³], refined places included."""
-    finest = request.place_size if request.places and request.place_size is not None else request.mesh_size
-    return _FILLING * volume / request.mesh_size**3 * (request.mesh_size / finest) ** 3
+    finest = request.place_size if request.places and request.place_size is not None else _size(request)
+    return _FILLING * volume / _size(request) ** 3 * (_size(request) / finest) ** 3
 
 
 def _refine(gmsh: Any, request: Request, unit: float) -> None:
@@ -132,9 +151,9 @@ def _refine(gmsh: Any, request: Request, unit: float) -> None:
         for key, value in zip(("XCenter", "YCenter", "ZCenter"), center, strict=True):
             field.setNumber(ball, key, value / unit)
         field.setNumber(ball, "Radius", 0.75 * diameter / unit)
-        field.setNumber(ball, "Thickness", _BLEND * request.mesh_size / unit)
+        field.setNumber(ball, "Thickness", _BLEND * _size(request) / unit)
         field.setNumber(ball, "VIn", request.place_size / unit)
-        field.setNumber(ball, "VOut", request.mesh_size / unit)
+        field.setNumber(ball, "VOut", _size(request) / unit)
         balls.append(ball)
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", balls)
@@ -143,10 +162,10 @@ def _refine(gmsh: Any, request: Request, unit: float) -> None:
 
 def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
     """Mesh the solids; the error names the one that cannot be meshed."""
-    smallest = min(request.mesh_size, request.place_size or request.mesh_size) / unit
+    smallest = min(_size(request), request.place_size or _size(request)) / unit
     trouble = ""
     try:
-        mesh_solids(gmsh, request.mesh_size / unit, request.order, smallest=smallest)
+        mesh_solids(gmsh, _size(request) / unit, request.order, smallest=smallest)
     except Exception as error:  # gmsh raises bare Exception for every failure of its kernel
         if type(error) is not Exception:
             raise
@@ -159,7 +178,7 @@ def _mesh(gmsh: Any, shape: Shape, request: Request, unit: float) -> None:
     if empty or trouble:
         which = ", ".join(repr(name) for name in empty) or "it"
         raise GeometryError(
-            f"{which} cannot be meshed with elements of {1e3 * request.mesh_size:g} mm{trouble}; "
+            f"{which} cannot be meshed with elements of {1e3 * _size(request):.4g} mm{trouble}; "
             "try a smaller mesh_size, and let the CAD program check and heal the solid"
         )
 

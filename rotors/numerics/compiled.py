@@ -16,6 +16,11 @@ folder's name is a digest of all sources of machine code and of the versions of 
 changed sources find an empty folder. numba itself separates Python versions and processors. The folder stands below
 ``NUMBA_CACHE_DIR`` where that is set, else beside the sources, else, where these are read-only, in the user's cache.
 Folders that no process has used for a month are removed.
+
+numba numbers the files of one kernel's machine code, a file for each signature. Two processes that compile different
+signatures at once choose the same number, and the index of the one may come to name the code of the other: arrays are
+then read by the wrong layout or type, which neither numba nor the processor notices. Here each file that is written has
+a name of its own; the index that is written last stands, and what it does not name is compiled again.
 """
 
 import hashlib
@@ -24,6 +29,7 @@ import os
 import re
 import shutil
 import time
+import uuid
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
@@ -73,11 +79,21 @@ def counted(**options: Any) -> Callable[[Kernel], Kernel]:
         config: Any = numba.config
         previous, config.CACHE_DIR = config.CACHE_DIR, cache_folder()
         try:
-            return cast(Kernel, njit(**(_ALL | options))(function))
+            kernel: Any = njit(**(_ALL | options))(function)
         finally:
             config.CACHE_DIR = previous
+        _name_code_files_apart(kernel)
+        return cast(Kernel, kernel)
 
     return compiled
+
+
+def _name_code_files_apart(kernel: Any) -> None:
+    """Let no two processes write a kernel's machine code under one name; without a cache there is nothing to do."""
+    files = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if files is not None:
+        stem = files._index_name.removesuffix(".nbi")
+        files._data_name = lambda number: f"{stem}.{number}.{uuid.uuid4().hex}.nbc"
 
 
 def uncounted(**options: Any) -> Callable[[Kernel], Kernel]:

@@ -1,4 +1,4 @@
-"""Twist of gear bodies between shaft and rim, against own models with elastic annuli, shafts and bearings."""
+"""Rims of gears on their hubs, against own models with elastic annuli, shafts and bearings."""
 
 import math
 from dataclasses import replace
@@ -13,7 +13,7 @@ from scipy import linalg
 from coupling import CoupledMachine, Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
 from coupling.gears import Gear, SquareStiffness, loaded_transmission_error
 from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.body_twist import rim_shares
+from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_compliance, shift_shares
 from coupling.machine.components import rotor_component
 from coupling.statics.mean_mesh import mean_meshes
 from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 E, NU, DENSITY = 207e9, 0.3, 7850.0
 G = E / (2.0 * (1.0 + NU))
 STEEL = ShaftMaterial.from_poisson_ratio(E, NU, DENSITY)
-HALF, BEARING, RINGS = 0.06, 5e8, 40
+HALF, BEARING, RINGS, ANGLE = 0.06, 5e8, 20, math.radians(20.0)
 
 
 def gear(name: str, teeth: int, module: float, width: float, bore: float, **more: float) -> Gear:
@@ -60,21 +60,27 @@ def pair_machine(wheels: tuple[Gear, Gear], **more: object) -> Machine:
     return Machine(shafts, held, gears, [pair], speed=1.0, torque=200.0)
 
 
-def annulus(wheel: Gear) -> tuple[FloatArray, FloatArray]:
-    """In-plane torsion of the body between bore and root circle, by the rotations of its circles: K and M.
-
-    Quadratic elements of the displacement u; the shear strain is u' - u/r. The teeth are rigid on the root circle.
-    """
+def circles(wheel: Gear) -> tuple[FloatArray, FloatArray]:
+    """Radii of the nodes of quadratic elements of the body, and the elements' widths [m]."""
     inner, outer = 0.5 * wheel.bore, wheel.root_circle_radius
     inside, web = wheel.rim_inner_radius or inner, wheel.web_thickness or wheel.face_width
     ends = np.unique(np.concatenate([np.linspace(inner, inside, RINGS), np.linspace(inside, outer, RINGS)]))
     r = np.zeros(2 * ends.size - 1)
     r[::2], r[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
+    return r, np.where(r[1::2] > inside, wheel.face_width, web)
+
+
+def annulus(wheel: Gear) -> tuple[FloatArray, FloatArray]:
+    """In-plane torsion of the body between bore and root circle, by the rotations of its circles: K and M.
+
+    Quadratic elements of the displacement u; the shear strain is u' - u/r. The teeth are rigid on the root circle.
+    """
+    r, widths = circles(wheel)
     stiffness, mass = np.zeros((r.size, r.size)), np.zeros((r.size, r.size))
     points, weights = np.polynomial.legendre.leggauss(5)
-    for element in range(ends.size - 1):
+    for element, width in enumerate(widths):
         here = slice(2 * element, 2 * element + 3)
-        h, width = 0.5 * (r[here][2] - r[here][0]), wheel.face_width if r[here][1] > inside else web
+        h = 0.5 * (r[here][2] - r[here][0])
         for x, weight in zip(points, weights, strict=True):
             shape = np.array([0.5 * x * (x - 1.0), 1.0 - x**2, 0.5 * x * (x + 1.0)])
             slope = np.array([x - 0.5, -2.0 * x, x + 0.5]) / h
@@ -84,7 +90,7 @@ def annulus(wheel: Gear) -> tuple[FloatArray, FloatArray]:
             stiffness[here, here] += G * area * np.outer(strain, strain)
             mass[here, here] += DENSITY * area * np.outer(shape, shape)
     stiffness, mass = r[:, None] * stiffness * r, r[:, None] * mass * r
-    mass[-1, -1] += 0.5 * math.pi * DENSITY * wheel.face_width * (wheel.pitch_radius**4 - outer**4)
+    mass[-1, -1] += 0.5 * math.pi * DENSITY * wheel.face_width * (wheel.pitch_radius**4 - r[-1] ** 4)
     return stiffness, mass
 
 
@@ -125,39 +131,76 @@ def beam(diameter: float, elements: int) -> tuple[FloatArray, FloatArray]:
     return stiffness, mass
 
 
+def wave_across(wheel: Gear) -> tuple[FloatArray, FloatArray]:
+    """In-plane motion (U cos t, V sin t) of the body on a hub that moves along t = 0, in plane stress: K and M.
+
+    The first coordinate is the hub's motion, the others are U and V of each circle outward, those of the root circle
+    last. The teeth are a ring of mass on it.
+    """
+    r, widths = circles(wheel)
+    stiffness, mass = np.zeros((2 * r.size,) * 2), np.zeros((2 * r.size,) * 2)
+    elastic = E / (1.0 - NU**2) * np.array([[1.0, NU, 0.0], [NU, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - NU)]])
+    points, weights = np.polynomial.legendre.leggauss(5)
+    for element, width in enumerate(widths):
+        here, own = slice(2 * element, 2 * element + 3), slice(4 * element, 4 * element + 6)
+        h = 0.5 * (r[here][2] - r[here][0])
+        for x, weight in zip(points, weights, strict=True):
+            shape = np.array([0.5 * x * (x - 1.0), 1.0 - x**2, 0.5 * x * (x + 1.0)])
+            slope = np.array([x - 0.5, -2.0 * x, x + 0.5]) / h
+            at = shape @ r[here]
+            strain, moved = np.zeros((3, 6)), np.zeros((2, 6))
+            strain[0, ::2], strain[1, ::2], strain[1, 1::2] = slope, shape / at, shape / at
+            strain[2, ::2], strain[2, 1::2] = -shape / at, slope - shape / at
+            moved[0, ::2], moved[1, 1::2] = shape, shape
+            area = math.pi * at * width * weight * h
+            stiffness[own, own] += area * strain.T @ elastic @ strain
+            mass[own, own] += DENSITY * area * moved.T @ moved
+    teeth = 0.5 * math.pi * DENSITY * wheel.face_width * (wheel.pitch_radius**2 - r[-1] ** 2)
+    mass[-2:, -2:] += teeth * np.eye(2)
+    hub = np.zeros((2 * r.size, 2 * r.size - 1))
+    hub[0, 0], hub[1, 0] = 1.0, -1.0
+    hub[2:, 1:] = np.eye(2 * r.size - 2)
+    return hub.T @ stiffness @ hub, hub.T @ mass @ hub
+
+
+def joined(shaft: tuple[FloatArray, FloatArray], node: int, body: tuple[FloatArray, FloatArray]) -> list[FloatArray]:
+    """Join the first coordinate of a body to a coordinate of a shaft: K and M, the shaft's coordinates first."""
+    n, m = len(shaft[0]), len(body[0])
+    join = np.zeros((n + m, n + m - 1))
+    join[:n, :n], join[n, node], join[n + 1 :, n:] = np.eye(n), 1.0, np.eye(m - 1)
+    return [join.T @ linalg.block_diag(one, two) @ join for one, two in zip(shaft, body, strict=True)]
+
+
 def own_frequencies(machine: Machine, mesh_stiffness: float) -> FloatArray:
-    """Natural frequencies in the plane of the line of action, at rest [Hz], and the mesh's share of their energy."""
-    elements, blocks, rows = 60, [], []
+    """Natural frequencies at rest [Hz], and the mesh's share of their energy.
+
+    Shafts bend across and along the radius to the tooth, and twist; the bodies on them are elastic in the waves 0 and 1
+    around them. ``mesh_stiffness`` is that of the teeth and the waves beyond.
+    """
+    elements, blocks, rows = 60, list[list[FloatArray]](), list[FloatArray]()
+    middle, across, along = elements // 2, math.cos(ANGLE), math.sin(ANGLE)
     for mounted, side in zip(machine.gears, (1.0, -1.0), strict=True):
         wheel = mounted.gear
-        (bend, bend_mass), (turn, turn_mass) = beam(wheel.bore, elements), rod(wheel.bore, elements)
-        ring, ring_mass = annulus(wheel)
-        middle = elements // 2
-        for end in (0, 2 * elements):
-            bend[end, end] += BEARING
-        inside = wheel.rim_inner_radius or 0.5 * wheel.bore
-        for width, low, high in (
-            (wheel.web_thickness or 0.0, 0.5 * wheel.bore, inside),
-            (wheel.face_width, inside, wheel.pitch_radius),
-        ):
-            weight = DENSITY * math.pi * width * (high**2 - low**2)
-            bend_mass[2 * middle, 2 * middle] += weight
-            bend_mass[2 * middle + 1, 2 * middle + 1] += weight * (0.25 * (high**2 + low**2) + width**2 / 12.0)
-        # The inner circle of the ring is the section of the shaft.
-        join = np.zeros((len(turn) + len(ring), len(turn) + len(ring) - 1))
-        join[: len(turn), : len(turn)] = np.eye(len(turn))
-        join[len(turn), middle] = 1.0
-        join[len(turn) + 1 :, len(turn) :] = np.eye(len(ring) - 1)
-        twist, twist_mass = (
-            join.T @ linalg.block_diag(one, two) @ join for one, two in ((turn, ring), (turn_mass, ring_mass))
-        )
-        blocks.append((linalg.block_diag(bend, twist), linalg.block_diag(bend_mass, twist_mass)))
-        row = np.zeros(len(blocks[-1][0]))
-        row[2 * middle], row[-1] = side, wheel.base_radius
-        rows.append(row)
+        blocks.append(joined(rod(wheel.bore, elements), middle, annulus(wheel)))
+        rows.append(np.eye(len(blocks[-1][0]))[-1] * wheel.base_radius)
+        for last, part in ((-1, -side * across), (-2, side * along)):
+            bend, mass = beam(wheel.bore, elements)
+            for end in (0, 2 * elements):
+                bend[end, end] += BEARING
+            inside = wheel.rim_inner_radius or 0.5 * wheel.bore
+            for width, low, high in (
+                (wheel.web_thickness or 0.0, 0.5 * wheel.bore, inside),
+                (wheel.face_width, inside, wheel.pitch_radius),
+            ):
+                weight = DENSITY * math.pi * width * (high**2 - low**2)
+                mass[2 * middle + 1, 2 * middle + 1] += weight * (0.25 * (high**2 + low**2) + width**2 / 12.0)
+            blocks.append(joined((bend, mass), 2 * middle, wave_across(wheel)))
+            rows.append(np.eye(len(blocks[-1][0]))[last] * part)
     stiffness, mass = (linalg.block_diag(*parts) for parts in zip(*blocks, strict=True))
     direction = np.concatenate(rows)
-    values, vectors = linalg.eigh(stiffness + mesh_stiffness * np.outer(direction, direction), mass)
+    values, vectors = linalg.eigh(
+        stiffness + mesh_stiffness * np.outer(direction, direction), mass, subset_by_index=[0, 40]
+    )
     strain = mesh_stiffness * (direction @ vectors) ** 2 / np.maximum(values, 1.0)
     return np.array([np.sqrt(np.maximum(values, 0.0)) / (2.0 * math.pi), strain])
 
@@ -170,14 +213,24 @@ def ring_twist(wheel: Gear) -> float:
     return wheel.base_radius**2 * soft / (4.0 * math.pi * G)
 
 
-def rim_mesh_stiffness(machine: Machine) -> float:
-    """Mean mesh stiffness between the root circles: the static one without the twist of both rings in closed form."""
+def ring_shift(wheel: Gear, across: float = math.cos(ANGLE), along: float = math.sin(ANGLE)) -> float:
+    """Motion of the root circle by wave 1 on a hub at rest, under a unit load at an angle to the tooth [m/N]."""
+    stiffness, _ = wave_across(wheel)
+    compliance = np.linalg.solve(stiffness[1:, 1:], np.eye(len(stiffness) - 1)[:, -2:])[-2:]
+    return float(across**2 * compliance[1, 1] + along**2 * compliance[0, 0])
+
+
+def mean_stiffness_without(machine: Machine, compliance: float) -> float:
+    """Mean over the period of the static mesh stiffness without a compliance in series [N/m]."""
     (pair,) = machine.loaded_pairs()
-    twist = ring_twist(pair.geometry.driver) + ring_twist(pair.geometry.driven)
-    tangent = pair.static.tangent_stiffness
+    tangent = pair.static.tangent_stiffness / (1.0 - compliance * pair.static.tangent_stiffness)
     phases = np.append(pair.static.phases, pair.static.phases[0] + 1.0)
-    rims = tangent / (1.0 - twist * tangent)
-    return float(np.trapezoid(np.append(rims, rims[0]), phases))
+    return float(np.trapezoid(np.append(tangent, tangent[0]), phases))
+
+
+def teeth_stiffness(machine: Machine) -> float:
+    """Mean mesh stiffness without the waves 0 and 1 of both bodies [N/m]."""
+    return mean_stiffness_without(machine, sum(ring_twist(one.gear) + ring_shift(one.gear) for one in machine.gears))
 
 
 def mesh_mode(machine: Machine) -> float:
@@ -189,7 +242,7 @@ def mesh_mode(machine: Machine) -> float:
 
 
 def own_mesh_mode(machine: Machine) -> float:
-    frequencies, strain = own_frequencies(machine, rim_mesh_stiffness(machine))
+    frequencies, strain = own_frequencies(machine, teeth_stiffness(machine))
     return float(frequencies[int(np.argmax(strain))])
 
 
@@ -206,11 +259,11 @@ def test_mesh_mode_of_two_equal_gears_is_that_of_elastic_annuli(bore: float) -> 
 
 def test_all_modes_of_the_pair_are_those_of_elastic_annuli_on_shafts_and_bearings() -> None:
     machine = twins(30e-3)
-    own = own_frequencies(machine, rim_mesh_stiffness(machine))[0]
+    own = own_frequencies(machine, teeth_stiffness(machine))[0]
     found = np.abs(machine.modes().eigenvalues) / (2.0 * math.pi)
-    own = own[(own > 1.0) & (own < 12000.0)]
+    own = own[(own > 1.0) & (own < 11000.0)]
     assert own.size == 9
-    assert np.array([found[np.argmin(np.abs(found - one))] for one in own]) == pytest.approx(own, rel=0.005)
+    assert np.array([found[np.argmin(np.abs(found - one))] for one in own]) == pytest.approx(own, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -226,11 +279,12 @@ def test_mesh_modes_of_other_gears(wheels: list[tuple[int, float, float, float]]
 
 
 def test_mesh_mode_with_rims_on_thin_webs() -> None:
+    """On a thin web the rim's own deformation in wave 1, which stays with the teeth, has 1.5 per cent."""
     body = {"rim_thickness": 9e-3, "web_thickness": 5e-3}
     machine = pair_machine(
         (gear("pinion", 50, 3e-3, 20e-3, 30e-3, **body), gear("wheel", 60, 3e-3, 20e-3, 40e-3, **body))
     )
-    assert mesh_mode(machine) == pytest.approx(own_mesh_mode(machine), rel=0.015)
+    assert mesh_mode(machine) == pytest.approx(own_mesh_mode(machine), rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -248,7 +302,7 @@ def test_rim_on_a_hub_at_rest_has_the_first_frequency_of_the_annulus(
     wheel = gear("wheel", teeth, 3e-3, 20e-3, bore, **more)
     stiffness, mass = annulus(wheel)
     exact = float(np.sqrt(linalg.eigh(stiffness[1:, 1:], mass[1:, 1:], eigvals_only=True)[0]))
-    shares, twist = rim_shares(wheel), ring_twist(wheel)
+    shares, twist = rotation_shares(wheel), ring_twist(wheel)
     found = math.sqrt(wheel.base_radius**2 / twist / (shares.rim * wheel.polar_inertia))
     assert exact < found < 1.02 * exact
     # Static shape of a torque at the root circle on a hub at rest, with the inertia of the annulus.
@@ -257,6 +311,28 @@ def test_rim_on_a_hub_at_rest_has_the_first_frequency_of_the_annulus(
     assert np.sum(mass) == pytest.approx(wheel.polar_inertia, rel=1e-9)
     assert shares.coupling * wheel.polar_inertia == pytest.approx(np.sum(mass @ shape), rel=1e-5)
     assert shares.rim * wheel.polar_inertia == pytest.approx(shape @ mass @ shape, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("bore", "more"), [(40e-3, {}), (20e-3, {}), (30e-3, {"rim_thickness": 9e-3, "web_thickness": 5e-3})]
+)
+def test_rim_shifts_on_a_hub_at_rest_as_wave_one_of_the_annulus(bore: float, more: dict[str, float]) -> None:
+    """The static shape under tractions (cos t, -sin t) at the root circle, by finite elements of wave 1."""
+    wheel = gear("wheel", 50, 3e-3, 20e-3, bore, **more)
+    stiffness, mass = wave_across(wheel)
+    load = np.zeros(len(stiffness))
+    load[-2:] = 0.5, -0.5
+    shape = np.append(0.0, np.linalg.solve(stiffness[1:, 1:], load[1:]))
+    shift = 0.5 * (shape[-2] - shape[-1])
+    assert shift_compliance(wheel, "plane-stress") == pytest.approx(shift, rel=1e-5)
+    shares, hub = shift_shares(wheel, "plane-stress"), np.zeros(len(mass))
+    hub[0] = 1.0
+    hub[1::2], hub[2::2] = 1.0, -1.0
+    assert hub @ mass @ hub == pytest.approx(wheel.mass, rel=1e-9)
+    assert shares.coupling * wheel.mass == pytest.approx(hub @ mass @ shape / shift, rel=1e-4)
+    assert shares.rim * wheel.mass == pytest.approx(shape @ mass @ shape / shift**2, rel=1e-4)
+    exact = float(np.sqrt(linalg.eigh(stiffness[1:, 1:], mass[1:, 1:], eigvals_only=True)[0]))
+    assert exact < math.sqrt(1.0 / (shift * shares.rim * wheel.mass)) < 1.04 * exact
 
 
 def with_twist_in_the_mesh(machine: Machine) -> CoupledMachine:
@@ -279,7 +355,11 @@ def test_static_equilibrium_is_that_of_the_complete_contact_law() -> None:
     machine = twins(20e-3)
     moving, standing = machine.assembled, with_twist_in_the_mesh(machine)
     assert len(machine.gear_bodies) == 2
-    assert moving.meshes[0].body_twist == pytest.approx(2.0 * ring_twist(machine.gears[0].gear), rel=1e-9)
+    wheel, body = machine.gears[0].gear, machine.gear_bodies[0]
+    assert body.twist is not None
+    assert body.shift is not None
+    assert wheel.base_radius**2 / body.twist.stiffness == pytest.approx(ring_twist(wheel), rel=1e-9)
+    assert moving.meshes[0].behind_rims == pytest.approx(2.0 * body.compliance(wheel.base_radius), rel=1e-12)
     for phase in (0.1, 0.4, 0.8):
         time = phase / moving.system.contacts[0].mesh_frequency
         q, expected = static_equilibrium(moving.system, time), static_equilibrium(standing.system, time)
@@ -291,7 +371,7 @@ def test_static_equilibrium_is_that_of_the_complete_contact_law() -> None:
             machine.loaded_pairs()[0].contact, force, np.array([contact.phase_after(time)])
         )
         between = float(contact.direction @ q)
-        assert between + moving.meshes[0].body_twist * force == pytest.approx(whole.transmission_error[0], rel=1e-7)
+        assert between + moving.meshes[0].behind_rims * force == pytest.approx(whole.transmission_error[0], rel=1e-7)
 
 
 def test_a_rotation_of_the_whole_turns_shaft_and_rim_alike() -> None:
@@ -299,8 +379,8 @@ def test_a_rotation_of_the_whole_turns_shaft_and_rim_alike() -> None:
     whole = rotor.turning
     assert np.sum(whole**2) == pytest.approx(twins(20e-3).rotor("in").polar_inertia, rel=1e-12)
     assert rotor.rotation(0.02) @ whole == pytest.approx(1.0, rel=1e-12)
-    assert rotor.rim_rotation("pinion", HALF) @ whole == pytest.approx(1.0, rel=1e-12)
-    assert rotor.rim_rotation("another", HALF) == pytest.approx(rotor.rotation(HALF), rel=0.0)
+    assert rotor.rim_section("pinion", HALF) @ whole == pytest.approx([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], abs=1e-12)
+    assert rotor.rim_section("another", HALF)[5] == pytest.approx(rotor.rotation(HALF), rel=0.0)
     assert rotor.stiffness @ whole == pytest.approx(0.0 * whole, abs=1e-9)
 
 
@@ -313,8 +393,12 @@ def test_given_inertia_is_spread_over_the_body_as_its_own() -> None:
     mass, polar, diametral = machine.gears[0].body_inertia
     heavy = with_gears(machine, inertia=(2.0 * mass, 2.0 * polar, 2.0 * diametral))
     one, two = machine.gear_bodies[0], heavy.gear_bodies[0]
-    assert (two.rim_inertia, two.coupling_inertia) == pytest.approx((2 * one.rim_inertia, 2 * one.coupling_inertia))
-    assert two.stiffness == one.stiffness
+    for before, after in ((one.twist, two.twist), (one.shift, two.shift)):
+        assert before is not None
+        assert after is not None
+        assert after.rim_inertia == pytest.approx(2.0 * before.rim_inertia)
+        assert after.coupling_inertia == pytest.approx(2.0 * before.coupling_inertia)
+        assert after.stiffness == before.stiffness
     # Twice the density.
     wheels = tuple(replace(each.gear, density=2.0 * DENSITY) for each in machine.gears)
     dense = pair_machine(wheels)  # type: ignore[arg-type]
@@ -351,14 +435,17 @@ def test_bodies_that_do_not_twist_or_twist_statically_are_left_alone(changes: di
         gear_pairs=[replace(machine.gear_pairs[0], stiffness=changes.get("stiffness", "elastic-ring"))],
     )
     assert machine.gear_bodies == ()
-    assert machine.assembled.meshes[0].body_twist == 0.0
+    assert machine.assembled.meshes[0].behind_rims == 0.0
 
 
 def test_mesh_damping_is_that_of_the_rims() -> None:
     machine = twins(20e-3)
     (pair,) = machine.loaded_pairs()
     equivalent = 0.5 * machine.gears[0].gear.polar_inertia / machine.gears[0].gear.base_radius ** 2
-    expected = 2.0 * 0.05 * math.sqrt(rim_mesh_stiffness(machine) * equivalent)
+    behind = sum(
+        body.compliance(one.gear.base_radius) for body, one in zip(machine.gear_bodies, machine.gears, strict=True)
+    )
+    expected = 2.0 * 0.05 * math.sqrt(mean_stiffness_without(machine, behind) * equivalent)
     assert pair.contact.damping == pytest.approx(expected, rel=1e-3)
 
 
@@ -401,9 +488,9 @@ def test_an_idler_passes_its_torque_on_without_a_twist() -> None:
     coupled = machine.assembled
     q = static_equilibrium(coupled.system)
     idler = coupled.rotors[1]
-    twist = coupled.rows("g1", idler.rim_rotation("g1", HALF) - idler.rotation(HALF)) @ q
+    twist = coupled.rows("g1", idler.rim_section("g1", HALF)[5] - idler.rotation(HALF)) @ q
     force = machine.torque / coupled.meshes[0].geometry.driver.base_radius
-    alone = force * coupled.meshes[0].geometry.driver.base_radius / idler.bodies[0].stiffness
+    alone = force * coupled.meshes[0].geometry.driver.base_radius / idler.bodies[0].twist.stiffness  # type: ignore[union-attr]
     assert twist == pytest.approx(0.0, abs=1e-6 * alone)
 
 

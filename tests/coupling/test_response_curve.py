@@ -212,6 +212,8 @@ def test_resonances_that_nothing_damps_are_stepped_over_and_told() -> None:
     assert "the motion grows without a top at one speed" in curve.account
     assert curve.passes(1.6)
     assert not curve.passes(1.75)
+    with pytest.raises(CouplingError, match=r"no motion at 1\.75"):
+        curve.at(1.75)
     # No motion on the way up to it is left on the curve.
     alone = response_curve(lambda speed: one_mass(speed, SHALLOW, 0.05), 1.55, 1.95, points=40)
     assert curve.rms_compression.max() == pytest.approx(alone.rms_compression.max(), rel=0.05)

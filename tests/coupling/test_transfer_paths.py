@@ -129,7 +129,7 @@ def test_modal_rows_are_recorded_after_the_others(grounded: CoupledMachine) -> N
     start = sum(part.size for part in machine.rotors)
     np.testing.assert_array_equal(found.housing_acceleration[0], q[start : start + MODES])
     assert found.coordinates["housing: mode 2"][0] == q[start + 1]
-    torsion = 2 * machine.rotors[0].modal.lateral.count
+    torsion = 2 * machine.rotors[0].plane_size
     assert found.coordinates["input: torsion 1"][0] == q[torsion]
     assert [name for name in found.coordinates if name.startswith("input")] == [
         f"input: {kind}"

@@ -22,7 +22,7 @@ from coupling.machine.components import Component
 from coupling.machine.connectors import ContactConnector, LinearConnector
 from coupling.machine.coupled_system import HarmonicLoad
 from coupling.machine.speed_profile import SpeedProfile
-from coupling.time.transient import TransientResult
+from coupling.time.transient import EnergyBalance, TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -257,3 +257,10 @@ def test_a_slow_ramp_on_helical_teeth_balances_the_better_the_finer_the_steps(
     # Newmark's method is of the second order.
     expected = coarse.energy.error * (coarse.steps / fine.steps) ** 2
     assert fine.energy.error == pytest.approx(expected, rel=0.3)
+
+
+@pytest.mark.parametrize("wrong", ["change", "loads", "lost", "teeth", "scale"])
+def test_a_balance_with_a_part_that_is_no_number_does_not_close(wrong: str) -> None:
+    balance = EnergyBalance(change=1.0, loads=3.0, lost=2.0, teeth=0.0, scale=3.0)
+    assert balance.error == 0.0
+    assert replace(balance, **{wrong: float("nan")}).error == float("inf")

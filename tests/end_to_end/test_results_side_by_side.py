@@ -16,7 +16,11 @@ SHORT = ("--set", "transient.revolutions=3", "--set", "transient.discard=1")
 
 def contents(folder: Path, but: str) -> dict[str, bytes]:
     """Of all files outside one sub-folder."""
-    found = (path for path in folder.rglob("*") if path.is_file() and path.relative_to(folder).parts[0] != but)
+    found = (
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and path.name != ".gearwhine.json" and path.relative_to(folder).parts[0] != but
+    )
     return {str(path.relative_to(folder)): path.read_bytes() for path in found}
 
 
@@ -62,7 +66,7 @@ def test_a_run_has_the_folder_itself_and_what_was_there_moves(gearwhine: Callabl
     moved = json.loads((out / "gears" / "summary.json").read_text(encoding="utf-8"))
     assert moved == first | {"files": [f"gears/{name}" for name in first["files"]]}
     assert (out / "mine.txt").read_text(encoding="utf-8") == "mine"
-    assert {path.name for path in out.iterdir()} == {"gears", "mine.txt", "case.toml", "results.nc", "summary.json"}
+    assert {path.name for path in out.glob("[!.]*")} == {"gears", "mine.txt", "case.toml", "results.nc", "summary.json"}
 
 
 @pytest.mark.parametrize("how", ["file", "link"])

@@ -54,6 +54,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
     settings = (
         f"gear.a.tip_relief={{amount='{RELIEF} m', start_roll_angle='24 deg'}}",
         f"gear.c.errors={{pitch=[{cumulative}]}}",
+        # Formulas of flanks that stand in line: under load these shafts, on bearings of unlike stiffness, tilt.
+        "gear_pair.*.misalignment=0 rad",
     )
     changes = [part for setting in settings for part in ("--set", setting)]
     assert run_command(["gears", str(case), "-q", "-o", str(folder / "out"), *changes]) == 0

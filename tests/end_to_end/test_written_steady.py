@@ -98,8 +98,9 @@ def test_the_branch_over_speed(curve: tuple[xr.Dataset, dict[str, Any]]) -> None
 def test_meshes_without_common_period_have_a_motion_each(tmp_path: Path) -> None:
     case = tmp_path / "lopsided.toml"
     case.write_text(lopsided(housing=False), encoding="utf-8")
-    changes = ("--set", "rotor.input.unbalance=", "--set", "rotor.output.unbalance=")
-    data, summary = solved(tmp_path, str(case), *changes)
+    # By the lever the force acts in the middle of the face: on flanks out of line it would not.
+    keys = ("rotor.input.unbalance=", "rotor.output.unbalance=", "gear_pair.*.misalignment=0 rad")
+    data, summary = solved(tmp_path, str(case), *(part for key in keys for part in ("--set", key)))
     contacts = [" -> ".join(pair) for pair in PAIRS]
     assert data.contact.values.tolist() == contacts
     assert data.excitation_mesh_force.dims == ("excitation", "contact", "period_part")

@@ -164,7 +164,7 @@ def lopsided(*, housing: bool = True, spatial: bool = False, limit: float = 2500
             "damping_ratio = 0.02",
             f'frequency_limit = "{limit} Hz"',
             "[housing.box]",
-            'size = ["260 mm", "150 mm", "160 mm"]',
+            'size = ["270 mm", "150 mm", "160 mm"]',
             'wall = "10 mm"',
             'mesh_size = "50 mm"',
         ]
@@ -190,7 +190,7 @@ def lopsided(*, housing: bool = True, spatial: bool = False, limit: float = 2500
             'direction = "y"',
             "[[housing.sensor]]",
             'name = "wall"',
-            'position = ["130 mm", "60 mm", "-30 mm"]',
+            'position = ["135 mm", "60 mm", "-30 mm"]',
             'direction = "x"',
         ]
     for rotor, (x, y) in AXES.items():

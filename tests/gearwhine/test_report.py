@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import tomllib
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
@@ -14,11 +15,12 @@ from PIL import Image
 from gearwhine.case import Case, CaseError, dump_case, load_case, mesh_frequencies
 from gearwhine.case.input_files import file_contents
 from gearwhine.output.report import Contents, report_page
+from gearwhine.output.report.freshness import mismatches
 from gearwhine.output.sections import Column, Picture, Section, columns_of, table_of
 from gearwhine.results import chapters_of, comparison, gears, housing, motion, rotors, run, system, update
 from gearwhine.results import steady_state as steady
 from gearwhine.results.bearing_lives import life_in_words
-from gearwhine.results.first_page import first_page, machine_section
+from gearwhine.results.first_page import _sound_proofs, first_page, machine_section
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
@@ -292,7 +294,7 @@ def test_the_first_page_marks_each_proof(tmp_path: Path) -> None:
     write(tmp_path, document, 'title = "x"')
     found = marks(tmp_path)
     assert found["Stability: 1 mode grows. "] == "failed"
-    assert found["Motion: the energy balance closes to 1e-06 over 1000 steps. "] == "passed"
+    assert found["Motion: the energy balance closes to 1e-06 over 1000 steps (bound: 1 %). "] == "passed"
     assert found["Teeth run out by 3 µm. "] == "warned"
     assert "checks passed, 1 did not; 1 warning." in read(tmp_path).text
     assert next(kind for text, kind in found.items() if text.startswith("Housing: 1 modes found")) == "passed"
@@ -309,6 +311,38 @@ def test_results_of_another_case_fail_on_the_first_page(tmp_path: Path) -> None:
     )
     (told,) = [text for text, kind in marks(tmp_path).items() if kind == "failed" and text.startswith("gearwhine run")]
     assert "operation.speed was 1, is 2" in told
+
+
+@pytest.mark.parametrize(
+    ("command", "change", "differs"),
+    [
+        ("gears", "[acoustics]\nlines = 3", False),
+        ("gears", "[sweep]\nspeed = 3", False),
+        ("gears", "[operation]\ntorque = 3", True),
+        ("modes", "[[gear]]\nname = 'a'\nteeth = 3", False),
+        ("modes", "[housing]\nmodes = 3", True),
+        ("compare", "[measured]\nfrequencies = [3]", True),
+        ("rotors", "[measured]\nfrequencies = [3]", False),
+        ("sound", "[acoustics]\nlines = 3", True),
+        ("run", "[acoustics]\nlines = 3", True),
+        ("run", "notes = 'other words'", False),
+        ("run", "[unheard_of]\nkey = 3", True),
+    ],
+)
+def test_a_result_is_held_against_the_keys_that_its_command_reads(
+    tmp_path: Path, command: str, change: str, *, differs: bool
+) -> None:
+    write(tmp_path, {"command": command}, "[material]\na = 1\n")
+    present = tomllib.loads(f"{change}\n[material]\na = 1\n")
+    assert bool(mismatches(tmp_path, {"command": command}, present)) is differs
+
+
+@pytest.mark.parametrize(("error", "passed"), [(0.2, True), (0.36, None), (1.2, False)])
+def test_a_known_source_a_third_off_is_no_tick(error: float, passed: bool | None) -> None:
+    sound = {"known_source_error": error, "known_source_rms": 0.05}
+    (finding,) = _sound_proofs({"sound": sound})
+    assert "(bound: 25.9 %, 2 dB)" in finding.text
+    assert finding.passed is passed
 
 
 def test_inner_sections_choose_their_pictures_first(tmp_path: Path) -> None:

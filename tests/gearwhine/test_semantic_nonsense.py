@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from broken_cases import broken
-from odd_but_sound import bundled, changed
+from odd_but_sound import bundled, changed, shaft
 from semantic_nonsense import NONSENSE
 
+import gearwhine as gw
 from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
 from coupling.gears import Gear
 from coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.analyses.case import check
 from gearwhine.case import CaseError, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.case.load import bundled_names, load_case
+from gearwhine.from_case.parametric_housing import fitted_case
 from housing import Support
 from housing.material import STEEL, Material
 from rotors import Bearing, Disc, Rotor, Segment
@@ -170,3 +175,48 @@ def test_one_error_for_a_wrong_segment() -> None:
     with pytest.raises(CaseError) as caught:
         parse_case(document)
     assert [problem.key for problem in caught.value.problems] == ["rotor[0].segments[0].diameter"]
+
+
+def test_a_dotted_key_of_thousands_of_tables_is_refused_before_it_is_parsed(tmp_path: Path) -> None:
+    """The parser takes time with the square of their number: half a minute for twenty thousand."""
+    file = tmp_path / "case.toml"
+    inline = "x = { " + '"a" . ' * 20_000 + "a = 1}"
+    for text in ("a." * 20_000 + "a = 1", "[" + "a." * 20_000 + "a]", inline):
+        file.write_text(text, encoding="utf-8")
+        begin = time.perf_counter()
+        with pytest.raises(CaseError, match="at most 32 deep"):
+            load_case(file)
+        assert time.perf_counter() - begin < 2.0
+    file.write_text('notes = """\n' + "e. g. " * 40 + '"""\n[material.a]\n', encoding="utf-8")
+    with pytest.raises(CaseError, match=r"material.a.density"):
+        load_case(file)
+
+
+def test_one_thickness_of_all_walls_is_fitted() -> None:
+    document = changed("steel-box", ("housing.box.wall", "9 mm"))
+    parameter = {"name": "walls", "keys": ["housing.box.wall"], "range": ["5 mm", "20 mm"]}
+    tables = {"update": {"parameter": [parameter]}, "measured": {"frequencies": ["600 Hz"]}}
+    (number,) = fitted_case(parse_case(document | tables)).numbers
+    assert {place[-1] for place in number.places} == {"left", "right", "bottom", "top", "back", "front"}
+    assert number.own == pytest.approx([9e-3] * 6)
+
+
+def test_an_unstable_rotor_is_warned_of() -> None:
+    unstable = shaft()
+    for held in unstable["bearing"]:
+        held["stiffness"] |= {"xy": "2e6 N/m", "yx": "-2e6 N/m"}
+    document = gw.build(**unstable, rotor_analysis={"modes": 4, "speed": ["100 rpm", "3000 rpm"]}).rotors().document
+    (entry,) = [entry for entry in document["warnings"] if entry["name"] == "unstable rotor"]
+    assert entry["rotor"] == "s"
+    assert entry["unstable_from_rpm"] == pytest.approx(100.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("key", ["highest_frequency", "mesh_size"])
+def test_triangles_longer_than_the_housing_are_no_traceback(key: str) -> None:
+    value = {"highest_frequency": "100 Hz", "mesh_size": "1 m"}[key]
+    case = parse_case(changed("small-gearbox", ("acoustics", {key: value})))
+    if key == "mesh_size":
+        with pytest.raises(CaseError, match=r"acoustics.mesh_size: expected an edge of at most 53.3333 mm"):
+            check(case)
+    else:
+        assert [text for text in check(case).warnings if "highest_frequency" in text]

@@ -9,6 +9,7 @@ import pytest
 from coupling import SpeedProfile
 from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
+from gearwhine.figures.gears.transmission_error import _name
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_map
 from gearwhine.figures.machine.transient import (
     between_samples,
@@ -137,6 +138,19 @@ def test_bars_are_the_shares(tmp_path: Path) -> None:
     assert widths[0] == pytest.approx([140.0, -40.0, 0.0])
     assert widths[1] == pytest.approx([10.0, 0.0, 0.0, 0.0, 0.0, 0.0][: len(widths[1])])
     save(figure, tmp_path / "contributions.png")
+    # Of many sensors the highest lines alone are drawn: the sheet stays a page.
+    many = {f"sensor {number}": tuple(replace(line, value=10.0 * number + i) for i in range(3)) for number in range(20)}
+    figure = draw_contributions("$1", many)
+    assert figure.get_figheight() * 25.4 < 400.0
+    drawn = {text.get_text().partition(":")[0] for text in figure.texts}
+    assert {f"sensor {number}" for number in range(12, 20)} <= drawn
+    assert "sensor 0" not in drawn
+
+
+def test_every_pair_of_teeth_has_a_name_of_its_own() -> None:
+    names = [_name(before) for before in range(-3, 4)]
+    assert len(set(names)) == len(names)
+    assert _name(-1) == "pair that follows"
 
 
 def test_a_long_record_keeps_its_extremes_and_gains_no_frequency() -> None:

@@ -26,7 +26,7 @@ def results(folder: Path, names: list[str], own: Path = Path()) -> None:
 
 
 def names_in(folder: Path) -> set[str]:
-    return {path.name for path in folder.iterdir()}
+    return {path.name for path in folder.iterdir()} - {".gearwhine.json"}
 
 
 @pytest.mark.parametrize("own", [Path(), Path("system")])
@@ -72,7 +72,8 @@ def test_only_plain_names_of_drawings_in_the_folder_are_cleared(tmp_path: Path) 
         path.write_text("mine", encoding="utf-8")
     (folder / "link.png").symlink_to(tmp_path / "outside.png")
     listed = ["../outside.png", str(kept[0]), "inner/deep.png", "results.nc", "notes.txt", "link.png", "folder.png", ""]
-    (folder / "summary.json").write_text(json.dumps({"files": listed}), encoding="utf-8")
+    ours = {"command": "modes", "files": [*listed, "summary.json"]}
+    (folder / "summary.json").write_text(json.dumps(ours), encoding="utf-8")
     results(folder, ["mode-01.png"])
     assert all(path.read_text(encoding="utf-8") == "mine" for path in kept)
     assert (folder / "link.png").is_symlink()

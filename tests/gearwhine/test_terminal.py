@@ -7,9 +7,10 @@ from contextlib import redirect_stdout
 from typing import Any
 
 import pytest
+from rich.console import Console
 
-from gearwhine.output.sections import Section
-from gearwhine.output.terminal import shown_by
+from gearwhine.output.sections import Column, Section, Table
+from gearwhine.output.terminal import show_section, shown_by
 from gearwhine.results import comparison, housing, run, system
 
 Document = dict[str, Any]
@@ -168,3 +169,22 @@ def test_shares_stand_under_their_own_directions_whatever_the_order_of_the_docum
 def test_strength_has_a_column_only_where_there_are_seats() -> None:
     assert "strength" not in _said(housing.sections, _modes())
     assert "1.000e-02" in _said(housing.sections, _modes(strength=0.01))
+
+
+def test_rows_of_a_table_too_wide_for_the_terminal_become_columns() -> None:
+    columns = tuple(Column(f"quantity {number} [mm]", f"q{number}", ".3f") for number in range(8))
+    named = (Column("gear", "name"), *columns)
+    rows = tuple({"name": name} | {f"q{number}": number + 0.125 for number in range(8)} for name in ("pinion", "wheel"))
+    section = Section("", (Table(named, rows),))
+
+    def drawn(width: int) -> list[str]:
+        console = Console(file=io.StringIO(), force_terminal=True, width=width, color_system=None, markup=False)
+        show_section(console, section)
+        assert isinstance(console.file, io.StringIO)
+        return console.file.getvalue().splitlines()
+
+    wide, narrow = drawn(200), drawn(80)
+    assert sum("quantity 0 [mm]" in line and "quantity 7 [mm]" in line for line in wide) == 1
+    assert not any("…" in line or len(line.rstrip()) > 80 for line in narrow)
+    assert narrow[0].split() == ["gear", "pinion", "wheel"]
+    assert [line.split() for line in narrow if "quantity 7" in line] == [["quantity", "7", "[mm]", "7.125", "7.125"]]

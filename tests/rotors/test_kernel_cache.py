@@ -1,10 +1,12 @@
 """Compiled kernels are cached by all that reaches their machine code."""
 
+import copy
 import os
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -116,3 +118,27 @@ def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.Mon
     assert folder.is_dir()
     assert recent.is_dir()
     assert not old.exists()
+
+
+def test_processes_that_compile_at_once_do_not_mix_their_machine_code(tmp_path: Path) -> None:
+    """One process writes the index of its signature, another then writes its own signature, and the first its code."""
+
+    def process() -> Any:
+        # As a process on its own sees the cache of a kernel.
+        files: Any = copy.copy(factor._cache._cache_file)  # type: ignore[attr-defined]
+        files._cache_path = str(tmp_path)
+        files._index_path = str(tmp_path / files._index_name)
+        return files
+
+    first, second = process(), process()
+    second._load_index = dict  # read before the first one wrote
+    write = first._save_data
+
+    def late(name: str, code: str) -> None:
+        second.save("real arrays", "code for real arrays")
+        write(name, code)
+
+    first._save_data = late
+    first.save("complex arrays", "code for complex arrays")
+    assert process().load("real arrays") == "code for real arrays"
+    assert process().load("complex arrays") in (None, "code for complex arrays")

@@ -522,18 +522,18 @@ class ToothContact:
 
 
 @lru_cache(maxsize=16)  # keyed by identity of the contact, whose table for the kernels is kept with the result
-def without_body_twist(contact: ToothContact, twist: float) -> ToothContact:
-    """Contact law of a pair whose bodies twist beside it: without that part of the shared compliance, `twist` [m/N].
+def law_between_rims(contact: ToothContact, behind: float) -> ToothContact:
+    """Contact law of a pair without that part of its shared compliance which lies behind the rims, `behind` [m/N].
 
     The law of the pairs without what they share stays the same.
     """
-    if twist == 0.0:
+    if behind == 0.0:
         return contact
     return replace(
         contact,
-        stiffness=without_shared_compliance(ToothPairCurves(contact.stiffness, contact.deviation), twist).stiffness,
-        variants=tuple(without_shared_compliance(curves, twist) for curves in contact.variants),
-        shared_compliance=contact.shared_compliance - twist,
+        stiffness=without_shared_compliance(ToothPairCurves(contact.stiffness, contact.deviation), behind).stiffness,
+        variants=tuple(without_shared_compliance(curves, behind) for curves in contact.variants),
+        shared_compliance=contact.shared_compliance - behind,
     )
 
 

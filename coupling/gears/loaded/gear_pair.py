@@ -1,8 +1,8 @@
 """Gear pair: its specification, and its mesh under the mean torque: contact law, mesh damping, transmission error.
 
 The mesh damping coefficient follows from a damping ratio ζ, the mean mesh stiffness k between the rims and the
-equivalent mass m of the two gears rotating against each other: ``2 ζ sqrt(k m)``. The twist of the gears' bodies, which
-lies between the rims and the shafts, has no part in k.
+equivalent mass m of the two gears rotating against each other: ``2 ζ sqrt(k m)``. What the gears' bodies yield
+between the rims and the shafts has no part in k.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, without_body_twist
+from coupling.gears.contact.contact_law import ToothContact, law_between_rims, slices_of_teeth, tooth_contact
 from coupling.gears.contact.face_slices import FaceSlices, face_slices
 from coupling.gears.errors import GearError
 from coupling.gears.geometry.faults import MissingTooth
@@ -26,8 +26,8 @@ from coupling.gears.stiffness.models import (
     SquareStiffness,
     StiffnessModel,
     require_known_model,
+    rim_compliances,
     stiffness_under_load,
-    twist_by_gear,
 )
 from housing.own_copies import keep_tuples
 from numerics.findings import Finding, Number, Numbers, Text, attribute_findings, refuse
@@ -393,12 +393,12 @@ def load_gear_pair(
     hunting = hunting_period_mesh(carrying, force) if carrying.hunting_period > 1 else None
     # The damping ratio refers to the mesh that vibrates about its mean load, as in linear analyses: the mean of all
     # mesh periods, which are not alike with pitch deviations or damaged teeth. The inertias are those of the rims, so
-    # the twist of the bodies behind them has no part in it.
-    twist = sum(twist_by_gear(model, geometry))
+    # what the bodies behind them yield has no part in it.
+    behind = sum(rim.twist + rim.shift for rim in rim_compliances(model, geometry))
     mean_mesh_stiffness = (
-        (hunting or static).mean_stiffness_without(twist)
+        (hunting or static).mean_stiffness_without(behind)
         if force > 0.0
-        else without_body_twist(contact, twist).unloaded_mean_mesh_stiffness
+        else law_between_rims(contact, behind).unloaded_mean_mesh_stiffness
     )
     damping = _damping_coefficient(pair, geometry, mean_mesh_stiffness, inertias)
     contact = contact.with_damping(damping, _FADING * force / contact.unloaded_mean_mesh_stiffness)

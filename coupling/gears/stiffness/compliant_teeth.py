@@ -28,7 +28,8 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from functools import partial
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -42,6 +43,7 @@ from coupling.gears.stiffness.beam import PlaneState
 from coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneven_shares
 from coupling.gears.stiffness.hertz import hertz_compliance, line_contact
 from coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
+from coupling.gears.stiffness.rim_on_hub import shift_compliance
 from coupling.gears.stiffness.ring_body import neighbour_compliance, twist_compliance
 
 FloatArray = npt.NDArray[np.float64]
@@ -97,6 +99,22 @@ class SharedBody:
 
     state: PlaneState
     twists: bool
+
+
+class RimCompliance(NamedTuple):
+    """Motion of a gear's rim on its hub under a load of its teeth, along the line of action [m/N].
+
+    Attributes
+    ----------
+    twist, shift : float
+        By the rotation about the shaft, and by the motion across it.
+    state : {"plane-stress", "plane-strain"}
+        State of the body.
+    """
+
+    twist: float = 0.0
+    shift: float = 0.0
+    state: PlaneState = "plane-stress"
 
 
 @dataclass(frozen=True)
@@ -170,21 +188,22 @@ class CompliantTeeth(ABC):
         """
         return sum(self._shared_by_gear(geometry))
 
-    def twist_by_gear(self, geometry: GearPairGeometry) -> tuple[float, float]:
-        """Parts of `shared_compliance` that are the twist of the driver's and of the driven gear's body [m/N].
+    def rim_compliances(self, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
+        """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
-        The twist lies between the shaft and the rim with its inertia (:mod:`coupling.gears.stiffness.body_twist`);
-        what else neighbouring teeth share lies between the rim and the teeth.
+        They lie between the shaft and the rim with its inertia (:mod:`coupling.gears.stiffness.rim_on_hub`); what else
+        neighbouring teeth share lies between the rim and the teeth.
         """
-        twists = []
+        compliances = []
         for gear, shared in zip(geometry.carrying_gears, self._shared_by_gear(geometry), strict=True):
             body = self.shared_body(gear)
             if body is None or not body.twists or shared <= 0.0:
-                twists.append(0.0)
+                compliances.append(RimCompliance())
                 continue
-            constant = transverse_compliance(gear, _twist_anywhere)
-            twists.append(min(float(constant(np.zeros(()))), shared))
-        return twists[0], twists[1]
+            twist = min(_anywhere(gear, twist_compliance), shared)
+            shift = min(_anywhere(gear, partial(shift_compliance, state=body.state)), shared - twist)
+            compliances.append(RimCompliance(twist, shift, body.state))
+        return compliances[0], compliances[1]
 
     def shared_over_face(self, geometry: GearPairGeometry) -> FloatArray:
         """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
@@ -292,7 +311,11 @@ class CompliantTeeth(ABC):
         return piecewise.tabulated(chebyshev_interpolant(stiffness, length), length)
 
 
-def _twist_anywhere(spur: Gear) -> Compliance:
-    """Compliance by the twist of a spur gear's body, the same for a load at any radius."""
-    twist = twist_compliance(spur)
-    return lambda radius: np.full(np.shape(radius), twist)
+def _anywhere(gear: Gear, solve: Callable[[Gear], float]) -> float:
+    """Compliance of teeth along the transverse line of action [m/N] that is the same for a load at any radius."""
+
+    def constant(spur: Gear) -> Compliance:
+        value = solve(spur)
+        return lambda radius: np.full(np.shape(radius), value)
+
+    return float(transverse_compliance(gear, constant)(np.asarray(gear.pitch_radius)))

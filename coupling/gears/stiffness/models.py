@@ -36,7 +36,7 @@ from coupling.gears import piecewise_cubic as piecewise
 from coupling.gears.errors import StiffnessModelError
 from coupling.gears.geometry.pair import GearPairGeometry
 from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from coupling.gears.stiffness.compliant_teeth import CompliantTeeth, RimCompliance
 from coupling.gears.stiffness.foundation import require_thick_ring
 from coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
 from coupling.gears.stiffness.tooth_compliance import (
@@ -72,13 +72,15 @@ def shared_compliance(model: StiffnessModel, geometry: GearPairGeometry) -> floa
     return model.shared_compliance(geometry) if isinstance(model, SharingModel) else 0.0
 
 
-def twist_by_gear(model: StiffnessModel | str, geometry: GearPairGeometry) -> tuple[float, float]:
-    """Parts of `shared_compliance` that are the twist of the driver's and of the driven gear's body [m/N].
+def rim_compliances(model: StiffnessModel | str, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
+    """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
-    It depends on no load, so a model may be given by its name.
+    They depend on no load, so a model may be given by its name.
     """
     named = stiffness_model(model) if isinstance(model, str) else model
-    return named.twist_by_gear(geometry) if isinstance(named, CompliantTeeth) else (0.0, 0.0)
+    if isinstance(named, CompliantTeeth):
+        return named.rim_compliances(geometry)
+    return RimCompliance(), RimCompliance()
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ inside.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -255,6 +255,44 @@ def _least_work(energy: FloatArray, resultants: FloatArray) -> tuple[FloatArray,
     free = np.linalg.solve(energy, resultants.T)
     flexibility = np.asarray(np.linalg.inv(resultants @ free), dtype=np.float64)
     return flexibility, np.asarray((free @ flexibility).T, dtype=np.float64)
+
+
+def root_motion(rings: tuple[Annulus, ...], wave: int, kappa: float, tractions: FloatArray) -> FloatArray:
+    """Displacement (u_r, u_t) of the root circle, times 2 mu, under (s_r cos n t, s_rt sin n t) on it, n from 1."""
+    return np.asarray(_wave_flexibility(rings, np.array([wave]), kappa)[0] @ tractions)
+
+
+def ring_motions(
+    rings: tuple[Annulus, ...], wave: int, kappa: float, tractions: FloatArray, places: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Displacement (u_r, u_t) within each ring, times 2 mu, under (s_r cos n t, s_rt sin n t) on the root circle.
+
+    Parameters
+    ----------
+    rings, kappa
+        As for `root_flexibility`.
+    wave : int
+        n, from 1.
+    tractions : ndarray, shape (2,)
+        s_r and s_rt.
+    places : sequence of ndarray
+        Radii in each of the rings, in root circle radii.
+
+    Returns
+    -------
+    list of ndarray, shape (places, 2) each
+    """
+    n, load, motions = np.array([wave]), np.asarray(tractions, dtype=np.float64), list[FloatArray]()
+    for number in range(len(rings) - 1, -1, -1):
+        ring, inside = rings[number], rings[:number]
+        support = _wave_flexibility(inside, n, kappa) if inside else np.zeros((1, 2, 2))
+        ratio = ring.width / inside[-1].width if inside else 1.0
+        motion, stress = _fields(ring.inner, ring, n, kappa)
+        conditions = np.vstack([(motion - ratio * support @ stress)[0], _fields(ring.outer, ring, n, kappa)[1][0]])
+        solution = np.linalg.solve(conditions, np.concatenate([np.zeros(2), load]))
+        motions.append(np.array([_fields(r, ring, n, kappa)[0][0] @ solution for r in places[number].tolist()]))
+        load = ratio * stress[0] @ solution
+    return motions[::-1]
 
 
 def _wave_flexibility(rings: tuple[Annulus, ...], waves: npt.NDArray[np.int64], kappa: float) -> FloatArray:

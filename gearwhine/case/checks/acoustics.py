@@ -48,6 +48,8 @@ def _rayleigh(acoustics: Acoustics) -> Iterator[Finding]:
         yield _finding("faces", expected, missing=True)
     if acoustics.floor is not None:
         yield _finding("floor", "no floor: with the method 'rayleigh' each face lies in a baffle, its own hard plane")
+    if acoustics.caps != "move":
+        yield _finding("caps", "no caps: 'rayleigh' has the flat faces alone")
     if acoustics.mesh_size is not None:
         yield _finding("mesh_size", "no mesh size: 'rayleigh' takes the elements of the housing")
     if acoustics.microphone_box is not None:

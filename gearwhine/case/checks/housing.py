@@ -73,7 +73,8 @@ def box_findings(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Findin
 
     try:
         box_geometry(box, [seat for _, seat in seats])
-        check_mesh_size(wall_volume(box), max(box.size), box.mesh_size)
+        if box.mesh_size is not None:
+            check_mesh_size(wall_volume(box), max(box.size), box.mesh_size)
     except MeshSizeError as error:
         yield Finding(("housing", "box", "mesh_size"), f"another size of elements; {error}")
     except BoxMisfitError as error:
@@ -115,9 +116,30 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
     if len(limits) != 1:
         expected = "exactly one of 'frequency_limit' (such as '3.2 kHz') and 'modes' (such as 25)"
         yield Finding(("housing",), expected, limits or NOTHING)
+    yield from _check_resolution(housing)
+    if "box" in housing and housing.get("face"):
+        yield Finding(("housing", "face"), f"none of a box, whose faces are named already: {', '.join(FACES)}", UNSAID)
     ratios, modes = housing.get("damping_ratio"), housing.get("modes")
     if isinstance(ratios, list) and isinstance(modes, int) and len(ratios) != modes:
         yield Finding(("housing", "damping_ratio"), f"a ratio for each of the {modes} modes (there are {len(ratios)})")
+
+
+def _check_resolution(housing: Mapping[str, object]) -> Iterator[Finding]:
+    """Yield a size of elements and an accuracy that are both given, or neither, or of a mesh that is there already."""
+    accuracy = "accuracy" in housing
+    if accuracy and "mesh" in housing:
+        expected = "none with [housing.mesh], whose elements are as they are; `gearwhine modes` estimates their error"
+        yield Finding(("housing", "accuracy"), expected)
+    for key in ("box", "cad"):
+        source = housing.get(key)
+        if not isinstance(source, Mapping):
+            continue
+        if not accuracy and "mesh_size" not in source:
+            expected = "a length above 0 m such as '6.35 mm', or an accuracy in [housing] such as '2 %'"
+            yield Finding(("housing", key, "mesh_size"), expected, NOTHING)
+        for size in ("mesh_size", "seat_mesh_size"):
+            if accuracy and size in source:
+                yield Finding(("housing", key, size), "none beside an accuracy in [housing], by which it is found")
 
 
 def check_box(draft: Draft) -> Iterator[Finding]:

@@ -12,7 +12,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, StopStiffness
+from gearwhine.case.bearings import (
+    Bearing,
+    MatrixDamping,
+    RadialDamping,
+    RadialStiffness,
+    RollingStiffness,
+    StopStiffness,
+)
 from gearwhine.case.checks.keys_of_attributes import key_in_gear
 from gearwhine.case.errors import UNSAID, Finding, Location, key_of, label_of, look_up, show_value
 from gearwhine.case.gears import Gear, GearPair, shaft_of
@@ -213,7 +220,8 @@ def _of_machine(case: Case) -> Iterator[PlacedFinding]:
         if kind == "bearing" and finding.attribute == "rolling":
             placed = _placed(location, finding, ("stiffness", "rolling"))
             # A rotor of a file may have no journals; one of the case is drawn as it is.
-            yield replace(placed, warns=case.rotor_named(case.bearing[location[1]].rotor).file is not None)
+            of_file = case.rotor_named(case.bearing[numbers[kind][name]].rotor).file is not None
+            yield replace(placed, warns=placed.warns or of_file)
         elif kind == "shaft" and finding.attribute.startswith("discs") and case.rotor[numbers[kind][name]].file:
             yield _placed(location, finding, ())
         else:
@@ -381,7 +389,9 @@ def _of_stiffness(index: int, bearing: Bearing) -> Iterator[PlacedFinding]:
         coefficients = [getattr(stiffness, key)]
         values = [value for one in coefficients for value in (one if isinstance(one, tuple) else (one,))]
         location: Location = ("bearing", index, "stiffness", key)
-        damps = not isinstance(damping, RadialDamping) or getattr(damping, key) != 0.0
+        damps = isinstance(damping, MatrixDamping) or (
+            isinstance(damping, RadialDamping) and getattr(damping, key) != 0.0
+        )
         if not any(values) and not damps:
             expected = "a stiffness, or a damping beside it: this bearing does nothing in this direction"
             yield PlacedFinding(location, expected, True, True)

@@ -101,9 +101,11 @@ def _draw_shares(axes: Axes, contact: ToothContact, mesh: LoadedMesh) -> None:
 
 
 def _name(before: int) -> str:
-    """Name of a pair by the number of mesh periods since it entered."""
-    if before <= 0:
-        return "pair that enters at 0" if before == 0 else "pair that follows"
+    """Name of a pair by the number of mesh periods since it entered, each its own."""
+    if before == 0:
+        return "pair that enters at 0"
+    if before < 0:
+        return "pair that follows" if before == -1 else f"{-before} pairs after"
     return "pair before" if before == 1 else f"{before} pairs before"
 
 

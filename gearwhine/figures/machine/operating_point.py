@@ -374,6 +374,7 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
 
 
 _NARROWEST = 1.0  # least range on either side of zero [µrad]
+_ALIGNED = 1e-8  # misalignment by each cause up to which there is nothing to draw [rad]
 _BAR = 11.0  # height of a pair's row [mm of paper]
 _NAMES, _SUMS = 26.0, 30.0  # widths of the pairs' names and of their sums [mm of paper]
 
@@ -504,7 +505,8 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         title = f"Shaft {shortened(shaft.name, 20)} under load"
         yield stem, draw_deflected_shaft(title, assembly, shaft, acting[shaft.name])
     pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]
-    if pairs:
+    causes = [abs(pair.misalignment_by_cause[cause]) for pair in pairs for cause in CAUSES]
+    if max(causes, default=0.0) > _ALIGNED:
         yield "load-misalignment", draw_misalignment("Misalignment of the flanks by cause", pairs)
     names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in pairs]
     faces, patterns = file_stems(names, "load-face-"), file_stems(names, "load-pattern-")

@@ -153,7 +153,7 @@ def _color(line: TracedLine) -> str:
     return RED if line.named.kind == "mesh" else INK
 
 
-_LINES = 3  # lines of each sensor
+_LINES, _MOST_LINES = 3, 8  # lines of each sensor, and of all on a sheet
 _PARTS = 6  # parts of each kind
 _BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, width of its name, and gap above a panel [mm]
 _MARGIN = 4.0
@@ -163,10 +163,16 @@ _VISIBLE = 0.05  # size below which a part counts as zero [%]
 def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> Figure:
     """Draw the parts of modes and of bearings in phase with each line, in percent of it, largest first.
 
-    Bars to the left work against the line. The smaller parts of each kind are one bar together.
+    Bars to the left work against the line. The smaller parts of each kind are one bar together. Of many sensors fewer
+    lines each are drawn, the highest, so that the sheet stays a page.
     """
     width = (SHEET_WIDTH - 2.0 * _MARGIN) / 2.0 - _NAMES - 3.0
-    leading_lines = [(name, line) for name, named in lines.items() for line in named[:_LINES]]
+    traced = [name for name, named in lines.items() if named]
+    each = max(1, min(_LINES, _MOST_LINES // len(traced)))
+    highest = sorted(
+        ((name, line) for name in traced for line in lines[name][:each]), key=lambda pair: -abs(pair[1].value)
+    )[:_MOST_LINES]
+    leading_lines = sorted(highest, key=lambda pair: traced.index(pair[0]))
     groups = [
         (name, line, _gathered(line.modes), _gathered((*line.bearings, line.free))) for name, line in leading_lines
     ]

@@ -10,6 +10,22 @@ from gearwhine.case.input_files import file_contents
 
 _DIFFERENCES = 6  # largest number of keys of the case that are named
 _REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
+_TITLES = ("title", "notes")
+_HOUSING = ("modes", "compare", "survey", "update", "render")
+_READERS: dict[str, tuple[str, ...]] = {
+    "acoustics": ("check", "load", "run", "simulate", "sound", "sweep"),
+    "measured": ("check", "compare", "render", "run", "update"),
+    "rotor_analysis": ("check", "rotors", "run"),
+    "sweep": ("check", "rotors", "run", "steady", "sweep", "system"),
+    "update": ("check", "load", "update"),
+}
+"""Commands that read a table of the case; other tables are read by all, but for those of :data:`_UNREAD`."""
+_UNREAD: dict[str, tuple[str, ...]] = {
+    "gears": ("transient",),
+    "rotors": ("transient", "gear_pair"),
+    **dict.fromkeys(_HOUSING, ("transient", "gear", "gear_pair")),
+}
+"""Tables that a command does not read, of those that have no list of readers."""
 
 
 def moment(text: object) -> str:
@@ -30,18 +46,28 @@ def stored_case(place: Path) -> Mapping[str, Any] | None:
 
 def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> list[str]:
     """Return how the case and the input files of a result differ from those of now; empty where they do not."""
-    return [*_differences(stored_case(place), present), *_changed_files(document.get("input_files"))]
+    differences = _differences(stored_case(place), present, str(document.get("command", "")))
+    return [*differences, *_changed_files(document.get("input_files"))]
 
 
-def _differences(stored: Mapping[str, Any] | None, present: Mapping[str, Any] | None) -> list[str]:
-    """Keys in which the case of a result differs from the present one, in one sentence."""
+def _reads(command: str, key: str) -> bool:
+    """Whether a command reads a key of the case; one that is not known reads all."""
+    table = key.partition(".")[0]
+    return table not in _TITLES and (
+        command in _READERS[table] if table in _READERS else table not in _UNREAD.get(command, ())
+    )
+
+
+def _differences(stored: Mapping[str, Any] | None, present: Mapping[str, Any] | None, command: str) -> list[str]:
+    """Keys that a command reads and in which the case of its result differs from the present one, in one sentence."""
     if stored is None or present is None:
         return []
     before, now = (
         {key: value for key, value in _entries(document) if not key.startswith(_REMARKS)}
         for document in (stored, present)
     )
-    keys = [key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key)]
+    changed = (key for key in dict.fromkeys([*before, *now]) if before.get(key) != now.get(key))
+    keys = [key for key in changed if not command or _reads(command, key)]
     if not keys:
         return []
     listed = ", ".join(

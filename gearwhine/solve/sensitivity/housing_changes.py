@@ -225,8 +225,8 @@ def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[st
 def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
     """Differentiate the model of a case's housing by material on the large flat faces of its surface.
 
-    A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named by its
-    direction and its centre, such as ``+y at 0, 10, 0 mm``.
+    A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named as
+    :func:`housing.fem.surface.flat_face_names` has it, such as ``+y at 0, 10, 0 mm``.
     """
     assert case.housing is not None
     seats = [mesh.surface(seat.name) for seat in case.housing.seat]
@@ -242,10 +242,6 @@ def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
         velocity = np.zeros_like(mesh.points)
         velocity[np.unique(np.concatenate([block.corners.ravel() for block in face.facets]))] = face.normal
         velocity[held_nodes] = 0.0
-        axis = int(np.abs(face.normal).argmax())
-        direction = f"{'-+'[int(face.normal[axis] > 0.0)]}{'xyz'[axis]}"
-        x, y, z = (1e3 * face.center).round().astype(int).tolist()
-        name = f"{direction} at {x}, {y}, {z} mm"
         rate = ModelSensitivity(with_middles(mesh, velocity))
-        changes.append(HousingChange(name, "face", rate, {}, {}, slope=1.0, reference=None, thickness=math.inf))
+        changes.append(HousingChange(face.name, "face", rate, {}, {}, slope=1.0, reference=None, thickness=math.inf))
     return tuple(changes)

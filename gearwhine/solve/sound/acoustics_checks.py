@@ -5,6 +5,7 @@ triangles that are too large, and a floor above the soles, so that none of them 
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from housing import HousingError
 from housing.acoustics.boundary_elements import BoundaryElements
 from housing.acoustics.medium import HardPlane, Medium
 from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import set_down, wrapped
+from housing.acoustics.radiation import coarsest_edge, set_down, wrapped
 from housing.acoustics.sound_levels import measurement_box
 from housing.acoustics.surface_velocity import face_surface
 from housing.errors import TriangleSizeError
@@ -95,7 +96,7 @@ def flat_face(mesh: Mesh, name: str, place: int) -> FlatFace:
             chosen = np.array([nodes in wanted_facets for nodes in face_facets])
             if len(wanted_facets) > chosen.sum():
                 break
-            return type(face)(pick_facets(face.facets, chosen), face.area, face.center, face.normal)
+            return replace(face, facets=pick_facets(face.facets, chosen))
     raise CaseError([Problem(f"acoustics.faces[{place}]", name, "a flat surface, for Rayleigh's integral")])
 
 
@@ -253,6 +254,11 @@ def _surface_problems(case: Case, acoustics: Acoustics, mesh: Mesh) -> Iterator[
     is_size_known = acoustics.mesh_size is not None or limit is not None
     edge, holes, floor = wrap_settings(case, limit or acoustics.speed_of_sound / (6.0 * coarse))
     written = f"{1e3 * edge:.4g} mm"
+    longest = coarsest_edge(mesh)
+    if acoustics.mesh_size is not None and edge > longest:
+        expected = f"an edge of at most {millimetres(longest)}, three along the shortest side of the housing"
+        yield Problem("acoustics.mesh_size", written, expected)
+        return
     try:
         surface = wrapped(mesh, edge, holes)
     except TriangleSizeError as error:

@@ -341,6 +341,7 @@ def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = sil
             shapes,
             edge=edge,
             close_holes=holes,
+            resting_caps=acoustics.caps == "rest",
             method=acoustics.method,
             medium=medium,
             floor=floor,

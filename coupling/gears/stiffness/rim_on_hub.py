@@ -1,0 +1,125 @@
+r"""Rim of a gear on its hub: stiffness and inertia of its rotation and of its shift across the shaft.
+
+The body is the ring or the rings between the circle a where it is held and the root circle b
+(:mod:`coupling.gears.stiffness.ring_body`). What it yields between the two circles as a whole is strained near the
+bore, while its inertia is near the rim. With the static shape of each motion as the only one in dynamics (the static
+condensation of Guyan 1965) the rim is a rigid body on a spring, and energy and inertia are consistent.
+
+*Rotation.* Under a torque from hub to rim the circle of radius r turns by the part
+
+    s(r) = ∫_a^r dr / (w r³) / ∫_a^b dr / (w r³)
+
+of the root circle's rotation φ against the held one, w the width of the ring at r: (1/a² - 1/r²) / (1/a² - 1/b²) for
+one ring. With θ(r) = θ_hub + s φ the strain energy is ½ k φ², k the exact static stiffness, and the kinetic energy
+
+    ½ J θ_hub'² + S θ_hub' φ' + ½ J_r φ'²,        S = ∫ s dJ,        J_r = ∫ s² dJ,
+
+J being the polar inertia of the blank. In terms of hub and rim the matrix is [J - 2 S + J_r, S - J_r; S - J_r, J_r],
+whose sum is J.
+
+*Shift.* Tractions p (cos t, -sin t) on the root circle have a resultant force along t = 0 and no other. The ring moves
+by (U(r) cos t, V(r) sin t), wave 1 of the plane ring, and its root circle as a whole by w = (U - V)/2. With U and V of
+w = 1 and the mass m of the blank, S = ∫ ½ (U - V) dm and M_r = ∫ ½ (U² + V²) dm take the places of S and J_r. What a
+single tooth moves the root circle beyond w, the rim's own deformation, stays with the teeth.
+
+The teeth move with the root circle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coupling.gears.geometry.gear import Gear
+from coupling.gears.stiffness.beam import PlaneState
+from coupling.gears.stiffness.foundation import held_radius
+from coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_motions, root_motion
+
+FloatArray = npt.NDArray[np.float64]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_RIGID = np.array([1.0, -1.0])  # tractions, or displacements, of a rigid motion of a circle along t = 0
+
+
+class RimShares(NamedTuple):
+    """Parts of a gear's inertia, polar or mass, that a motion of its rim against the hub has.
+
+    Attributes
+    ----------
+    coupling : float
+        S / J or S / m: the part in the momentum of the rim's motion.
+    rim : float
+        J_r / J or M_r / m: the part in its kinetic energy.
+    """
+
+    coupling: float
+    rim: float
+
+
+def rotation_shares(gear: Gear) -> RimShares:
+    """Parts S / J and J_r / J of the polar inertia of a gear's blank; of a gear in one piece with its shaft both are 1.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a web that begins inside the bore's circle.
+    """
+    if held_radius(gear) is None:
+        return RimShares(1.0, 1.0)
+    root, rings = gear.root_circle_radius, body_rings(gear)
+    softness = [(ring.inner**-2 - ring.outer**-2) / ring.width for ring in rings]
+    # Inertias over 2 π ρ, radii in root circle radii; the teeth first.
+    toothed = 0.25 * gear.face_width * ((gear.pitch_radius / root) ** 4 - 1.0)
+    whole = coupling = rim = toothed
+    before = 0.0
+    for ring, own in zip(rings, softness, strict=True):
+        a, b = ring.inner, ring.outer
+        # s = p - q / r² on this ring.
+        q = 1.0 / (ring.width * sum(softness))
+        p = before / sum(softness) + q / a**2
+        fourth, square = 0.25 * (b**4 - a**4), 0.5 * (b**2 - a**2)
+        whole += ring.width * fourth
+        coupling += ring.width * (p * fourth - q * square)
+        rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + q**2 * math.log(b / a))
+        before += own
+    return RimShares(coupling / whole, rim / whole)
+
+
+def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
+    """Parts S / m and M_r / m of the mass of a gear's blank; of a gear in one piece with its shaft both are 1.
+
+    Raises
+    ------
+    StiffnessModelError
+        For a web that begins inside the bore's circle.
+    """
+    if held_radius(gear) is None:
+        return RimShares(1.0, 1.0)
+    root, rings = gear.root_circle_radius, body_rings(gear)
+    places = [ring.inner + 0.5 * (ring.outer - ring.inner) * (1.0 + _NODES) for ring in rings]
+    fields = ring_motions(rings, 1, kolosov(gear, state), _RIGID, places)
+    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID)
+    shift = 0.5 * float(_RIGID @ at_root)
+    # Masses over π ρ, radii in root circle radii; the teeth first.
+    whole = coupling = gear.face_width * ((gear.pitch_radius / root) ** 2 - 1.0)
+    rim = 0.5 * whole * float(at_root @ at_root) / shift**2
+    for ring, radius, field in zip(rings, places, fields, strict=True):
+        mass = ring.width * (ring.outer - ring.inner) * _WEIGHTS * radius
+        whole += float(mass.sum())
+        coupling += float(mass @ (field @ _RIGID)) * 0.5 / shift
+        rim += float(mass @ (field**2).sum(axis=1)) * 0.5 / shift**2
+    return RimShares(coupling / whole, rim / whole)
+
+
+def shift_compliance(gear: Gear, state: PlaneState) -> float:
+    """Shift of a spur gear's rim on its hub under a force across the shaft [m/N]; 0 in one piece with its shaft."""
+    if held_radius(gear) is None:
+        return 0.0
+    rings, nu = body_rings(gear), gear.poisson_ratio
+    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID)
+    # Times 2 mu, under a traction of 1 whose resultant is 2 pi times the width; E / (2 mu) = 1 + nu.
+    shift = 0.5 * float(_RIGID @ at_root)
+    return (1.0 + nu) * shift / (2.0 * math.pi * gear.youngs_modulus * gear.face_width)
