@@ -251,7 +251,10 @@ def _place_findings(
     for place, force in enumerate(() if case.operation is None else case.operation.force):
         yield from force_findings(force.build(), rotors[force.rotor], place)
     if case.housing is not None and case.housing.box is not None:
-        yield from wall_findings(placed_solids(shafts, gears, bearings), _walls(case))
+        # A rotor on the ground beside a housing may stand anywhere.
+        inside = {bearing.rotor for bearing in case.bearing if not bearing.grounded}
+        solids = [solid for solid in placed_solids(shafts, gears, bearings) if solid.shaft in inside]
+        yield from wall_findings(solids, _walls(case))
 
 
 def _walls(case: Case) -> list[Wall]:

@@ -145,7 +145,7 @@ def _names_by_case(case: Case) -> Iterator[str]:
         entries = look_up(document, keys)
         if isinstance(entries, list):
             entries = [entry["name"] for entry in entries if "name" in entry]
-        names = [] if entries is NOTHING else list(entries)
+        names: list[str] = list(entries) if isinstance(entries, (list, Mapping)) else []
         for place, name in enumerate(names):
             alike = (other for other in names[:place] if other != name and other.casefold() == name.casefold())
             if (twin := next(alike, None)) is not None:
