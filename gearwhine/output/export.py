@@ -26,7 +26,7 @@ import numpy.typing as npt
 from gearwhine.output.csv_cells import plain_cells
 from gearwhine.output.files import file_stems
 from gearwhine.output.sections import Column, Document, Section, Table, value_at
-from gearwhine.output.store import stored_results
+from gearwhine.output.store import DATA, intact_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,6 @@ SOUND_SECONDS = 5.0
 LONGEST_SOUND = 600.0
 """Longest sound file that may be asked for [s], which has 115 MB."""
 
-_DATA = "results.nc"
 _FIRST_DIGITS = (1.0, 2.0, 5.0, 10.0)  # first digits of a full scale
 _RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right to 1e-8
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
@@ -82,7 +81,7 @@ def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document
     """
     titled_tables = [
         (title, table)
-        for _, document in stored_results(folder)
+        for _, document in intact_results(folder)
         for title, table in _tables(str(document.get("command", "results")), chapters(document))
     ]
     written: list[Document] = []
@@ -220,8 +219,8 @@ def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors
 def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
     import xarray as xr
 
-    for place, document in stored_results(folder):
-        path = folder / place / _DATA
+    for place, document in intact_results(folder):
+        path = folder / place / DATA
         if path.is_file() and not path.is_symlink():
             with xr.open_dataset(path, engine="h5netcdf") as data:
                 yield str(document.get("command", "results")), document, data

@@ -24,8 +24,11 @@ from gearwhine.output.files import (
     read_summary,
     staging,
 )
+from gearwhine.output.manifest import require_as_written
 from housing.storage.netcdf import Variables, read_netcdf
 
+DATA = "results.nc"
+"""Name of the file of a result's labelled arrays."""
 _FOREMOST = "run"
 _ADDING = "render"  # command whose pictures are added to its earlier ones
 
@@ -190,6 +193,19 @@ def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     places = [Path(), *(Path(command) for command in COMMANDS if not (folder / command).is_symlink())]
     results = [(place, summary) for place in places if (summary := read_summary(folder / place)) is not None]
     return sorted(results, key=lambda result: str(result[1].get("made_at", "")), reverse=True)
+
+
+def intact_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
+    """Return :func:`stored_results`, whose documents and arrays are as they were written.
+
+    Raises
+    ------
+    DamagedResultsError
+        Where the manifest lists another digest of a file: it is damaged, or somebody has changed it.
+    """
+    places = [Path(), *(Path(command) for command in COMMANDS)]
+    require_as_written(folder, [(place / name).as_posix() for place in places for name in (SUMMARY, DATA)])
+    return stored_results(folder)
 
 
 def earlier_result(folder: Path, command: str) -> tuple[Path, Mapping[str, Any]] | None:

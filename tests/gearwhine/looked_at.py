@@ -12,6 +12,8 @@ import numpy as np
 from chromium import Browser
 from PIL import Image
 
+from gearwhine.output.manifest import MANIFEST
+
 HOSTILE = "</script><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>"
 LOOKS = [(400, True), (400, False), (1280, True), (1280, False), (3840, True), (3840, False)]
 _NAMES = ("name", "title", "driver", "driven", "rotor", "shaft", "sensor", "message")
@@ -143,6 +145,7 @@ def with_hostile_names(folder: Path, to: Path) -> None:
         return f"{value} {HOSTILE}" if isinstance(value, str) and key in _NAMES else value
 
     shutil.copytree(folder, to)
+    (to / MANIFEST).unlink()  # the names are none that a run wrote
     for summary in to.rglob("summary.json"):
         document = json.loads(summary.read_text(encoding="utf-8"))
         summary.write_text(json.dumps(named(document)), encoding="utf-8")

@@ -12,6 +12,7 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.analyses.case import export_results
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import MANIFEST
 
 
 def sensors(x: str) -> dict[str, Any]:
@@ -55,14 +56,32 @@ def test_each_file_has_the_points_of_its_own_result(folder: Path) -> None:
 
 def without_places(folder: Path, place: Path, *, case: bool) -> Path:
     """Copy a result as an earlier version wrote it: without the arrays of its sensors' places."""
-    shutil.copytree(folder, place)
+    shutil.copytree(folder, place, ignore=shutil.ignore_patterns("exports"))
     path = place / "results.nc"
     data = xr.load_dataset(path, engine="h5netcdf").drop_vars(["sensor_position", "sensor_direction"])
     if not case:
         del data.attrs["case"]
     path.unlink()
     data.to_netcdf(path, engine="h5netcdf")
+    (place / MANIFEST).unlink()  # earlier versions had none
     return place
+
+
+@pytest.mark.parametrize("name", ["results.nc", "summary.json"])
+@pytest.mark.parametrize("damage", ["a flipped bit", "cut off"])
+def test_damaged_results_are_neither_exported_nor_reported(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, damage: str
+) -> None:
+    place = tmp_path / "damaged"
+    shutil.copytree(folder, place, ignore=shutil.ignore_patterns("exports"))
+    content = bytearray((place / name).read_bytes())
+    content[len(content) // 2] ^= 1
+    (place / name).write_bytes(content if damage == "a flipped bit" else content[: len(content) // 2])
+    for command in (["export", "--csv"], ["export", "--uff"], ["report"]):
+        assert run_command([command[0], "small-gearbox", "-q", "-o", str(place), *command[1:]]) == 2
+        assert str(place / name) in capsys.readouterr().err
+    assert not (place / "report.html").exists()
+    assert not (place / "exports").exists()
 
 
 def test_results_of_earlier_versions_have_the_points_of_their_own_case(folder: Path, tmp_path: Path) -> None:
