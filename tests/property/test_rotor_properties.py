@@ -53,13 +53,18 @@ def random_segments(draw: st.DrawFn) -> list[Segment]:
 
 
 @st.composite
+def random_discs(draw: st.DrawFn, length: float) -> Disc:
+    """Disc of any body: its polar moment of inertia is at most twice the diametral one, as of a thin disc."""
+    diametral = draw(reals(0.0, 0.2))
+    polar = 2.0 * diametral * draw(reals(0.0, 1.0))
+    return Disc(length * draw(PLACES), draw(reals(0.1, 30.0)), polar, diametral)
+
+
+@st.composite
 def random_rotors(draw: st.DrawFn) -> Rotor:
     segments = draw(random_segments())
     length = math.fsum(segment.length for segment in segments)
-    discs = [
-        Disc(length * draw(PLACES), draw(reals(0.1, 30.0)), draw(reals(0.0, 0.3)), draw(reals(0.0, 0.2)))
-        for _ in range(draw(st.integers(0, 3)))
-    ]
+    discs = [draw(random_discs(length)) for _ in range(draw(st.integers(0, 3)))]
     return Rotor("random", segments, discs)
 
 
