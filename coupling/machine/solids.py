@@ -22,8 +22,9 @@ from rotors.rolling_bearings import RollingBearing
 _SLACK = 5e-5
 """Overlap of two parts up to which they just touch [m]."""
 _SAME_AXIS = 1e-6
-_SHORT = 1e-4
-"""Width of a bearing of unknown size, and height of its ring [m]."""
+_SHORT = 0.9e-4
+"""Width of a bearing of unknown size, and height of its ring [m]: half of it is within the slack, so that a bearing at
+the end of a face touches it."""
 
 
 @dataclass(frozen=True)
