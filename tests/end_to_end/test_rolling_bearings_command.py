@@ -36,16 +36,30 @@ RINGS = {"bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"}
 ISO = {"count": 7, "element_diameter": "11.5 mm", "pitch_diameter": "43.5 mm"}
 
 
-def friswell(**bearing: Any) -> dict[str, Any]:
-    """The published rotor with both bearings changed."""
+def journals(diameter: str) -> list[dict[str, str]]:
+    """Segments of the published rotor, its ends turned down to the bore of small bearings."""
+    lengths = {"0.02 m": diameter, "0.48 m": "50 mm"}
+    end = [{"length": length, "diameter": thick} for length, thick in lengths.items()]
+    return [*end, {"length": "0.5 m", "diameter": "50 mm"}, *end[::-1]]
+
+
+def inline(tables: list[dict[str, str]]) -> str:
+    """The tables in TOML on one line."""
+    rows = ("{ " + ", ".join(f"{key} = '{value}'" for key, value in table.items()) + " }" for table in tables)
+    return "[" + ", ".join(rows) + "]"
+
+
+def friswell(journal: str = "50 mm", **bearing: Any) -> dict[str, Any]:
+    """The published rotor with both bearings changed, and its journals."""
     document = copy.deepcopy(FRISWELL)
+    document["rotor"][0]["segments"] = journals(journal)
     for entry in document["bearing"]:
         entry.update(copy.deepcopy(bearing))
     return document
 
 
 def test_the_iso_bearing_under_a_case() -> None:
-    case = parse_case(friswell(stiffness={"rolling": ISO}, load={"x": "1 kN"}))
+    case = parse_case(friswell("30 mm", stiffness={"rolling": ISO}, load={"x": "1 kN"}))
     state = rolling_state(case, 0)
     assert state is not None
     assert 1e6 * state.displacement[0] == pytest.approx(15.110, rel=1e-4)
@@ -102,7 +116,8 @@ def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -
     assert told["displacement_m"][1] < 0.0
     if rolling.get("arrangement") is None and "carries" in rolling:
         assert told["displacement_m"][2] != 0.0
-    by_matrix = parse_case(friswell(stiffness={"matrix": told["stiffness"]}))
+    # A matrix has no damping of its own, rolling elements have 8 µs times their stiffness.
+    by_matrix = parse_case(friswell(stiffness={"matrix": told["stiffness"]}, damping={"over_stiffness": "8 us"}))
     same = rotors_document(solve_rotors(by_matrix))["rotors"][0]
     np.testing.assert_allclose(same["lateral_hz"], document["lateral_hz"], rtol=1e-9)
     np.testing.assert_allclose(same["whirl"][0]["frequency_hz"], document["whirl"][0]["frequency_hz"], rtol=1e-9)
@@ -176,7 +191,7 @@ def test_a_rolling_bearing_stands_on_a_pedestal_with_damping_over_speed() -> Non
     stands = {"stiffness": {"rolling": ISO}, "load": {"x": "1 kN"}}
     tabled = {"speeds": [0.0, 1000.0], "damping": {"xx": [100.0, 300.0], "yy": 50.0}}
     pedestal = {"mass": "4 kg", "stiffness": {"xx": 1e8, "yy": 2e8}}
-    case = parse_case(friswell(**stands, **tabled, pedestal=pedestal))
+    case = parse_case(friswell("30 mm", **stands, **tabled, pedestal=pedestal))
     bearing = build_bearings(case, "shaft")[0]
     state = rolling_state(case, 0)
     assert state is not None
@@ -199,13 +214,15 @@ def test_damping_by_matrix_damps_tilting() -> None:
 def test_a_bearing_that_its_load_does_not_hold_is_the_users_to_mend(
     gearwhine: Callable[..., Any], tmp_path: Any
 ) -> None:
-    loose = friswell(stiffness={"rolling": {**ISO, "clearance": "20 um"}}, load={"z": "0 N"})
+    loose = friswell("30 mm", stiffness={"rolling": {**ISO, "clearance": "20 um"}}, load={"z": "0 N"})
     with pytest.raises(CaseError, match=r"bearing\[0\].stiffness.rolling .*loose in x and y"):
         build_bearings(parse_case(loose), "shaft")
     changes = (
+        f"rotor.shaft.segments={inline(journals('30 mm'))}",
         "bearing.left.stiffness={ rolling = { count = 7, element_diameter = 0.0115, pitch_diameter = 0.0435 } }",
     )
-    outcome = gearwhine("rotors", "friswell-rotor", "--set", *changes, "--set", 'bearing.left.load={ x = "900 kN" }')
+    options = [part for change in changes for part in ("--set", change)]
+    outcome = gearwhine("rotors", "friswell-rotor", *options, "--set", 'bearing.left.load={ x = "900 kN" }')
     assert outcome.code == 2
     assert "of their diameter" in outcome.err
 
@@ -218,6 +235,7 @@ def test_a_rated_life_stands_in_document_file_terminal_and_report(
     rated = f"{{ rolling = {{ catalogue = {{ {ring} }}, dynamic_rating = '10 kN' }} }}"
     unrated = f"{{ rolling = {{ catalogue = {{ {ring} }} }} }}"
     changes = [
+        f"rotor.shaft.segments={inline(journals('30 mm'))}",
         f"bearing.left.stiffness={rated}",
         f"bearing.right.stiffness={unrated}",
         "bearing.left.load={ y = '-1 kN' }",
