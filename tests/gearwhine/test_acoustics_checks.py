@@ -16,7 +16,7 @@ UNDER = {"name": "under", "position": ["1 m", "-30 mm", "0 m"]}
 AT_THE_WALL = {"name": "wall", "position": ["110.01 mm", "80 mm", "0 mm"]}
 FREE = {"name": "free", "position": ["1 m", "0.5 m", "0.2 m"]}
 WRONG: dict[str, Any] = {
-    "acoustics.mesh_size": "90 mm",
+    "acoustics.mesh_size": "50 mm",
     "acoustics.highest_frequency": "3 kHz",
     "acoustics.floor": "-20 mm",
     "acoustics.still": ["sole"],
@@ -167,7 +167,7 @@ def test_a_case_without_acoustics_has_nothing_to_tell() -> None:
 
 
 def test_the_exit_code_is_that_of_bad_input(capsys: pytest.CaptureFixture[str]) -> None:
-    settings = ("--set", "acoustics.floor=5 mm", "--set", "acoustics.mesh_size=90 mm")
+    settings = ("--set", "acoustics.floor=5 mm", "--set", "acoustics.mesh_size=50 mm")
     settings += ("--set", "acoustics.highest_frequency=3 kHz")
     assert run_command(["check", "small-gearbox", "-q", *settings]) == 2
     said = capsys.readouterr().err
