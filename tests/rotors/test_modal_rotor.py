@@ -79,7 +79,7 @@ def test_static_error_is_what_the_vectors_repair() -> None:
 
 def test_attached_torques_make_the_static_twist_exact() -> None:
     """Opposite torques at two places of a free shaft twist the length between them by M L / GJ."""
-    shaft = Rotor("shaft", [BAR] * 4, [Disc(0.0, 1.0, 0.02, 0.01), Disc(1.0, 1.0, 0.05, 0.02)])
+    shaft = Rotor("shaft", [BAR] * 4, [Disc(0.0, 1.0, 0.02, 0.01), Disc(1.0, 1.0, 0.05, 0.03)])
     modes = solve_torsional_modes(shaft, count=3)
     attached = add_rod_attachment_modes(modes, [0.25, 0.75])
     assert attached.count == 5

@@ -151,7 +151,7 @@ def test_even_slices_have_the_closed_form_of_rollers() -> None:
     0.378 and 0.364 are J_r/J_1 and J_r/J_2 of line contacts, whose digits leave 2 % in the life; the f_k are written
     out.
     """
-    row = RollerRow(200, 0.5e-3, 8e-3, 60e-3, profile="straight", slices=31)
+    row = RollerRow(200, 0.5e-3, 7e-3, 60e-3, profile="straight", slices=31)
     state = rolling_equilibrium(RollingBearing([row]), [400.0, 0.0, 0.0, 0.0, 0.0], held={"rx": 0.0, "ry": 0.0})
     parts = [abs(2 * k - 32) / 60 for k in range(1, 32)]
     mean = sum((1.0 if part == 0.0 else 1.0 - 0.01 / math.log(1.985 * part)) ** 4.5 for part in parts) / 31
