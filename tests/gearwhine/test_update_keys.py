@@ -99,7 +99,7 @@ def test_priors_are_what_is_given_or_follow_from_the_case_and_the_range() -> Non
     [
         ({"keys": ["housing.box.wall.lid"], "range": [0.005, 0.02]}, "the key path of a number in this case"),
         ({"keys": ["housing.material"], "range": [0.005, 0.02]}, "housing.material is none"),
-        ({"keys": ["housing.box.wall"], "range": [0.005, 0.02]}, "housing.box.wall is none"),
+        ({"keys": ["housing.box.size"], "range": [0.005, 0.02]}, "housing.box.size is none"),
         ({"keys": ["housing.box.wall.top"] * 2, "range": [0.005, 0.02]}, "a key that no other sets"),
         ({"keys": ["housing.box.wall.top"], "range": [0.013, 0.02]}, "a range with the case's own 0.012 in it"),
     ],

@@ -64,8 +64,8 @@ def _bore(name: str = "a", x: float = 0.0, y: float = 0.08, z: float = FRONT, **
             {"bores": (_bore(boss=Boss(0.07, 0.01)), _bore("b", x=0.05))},
             "by 5 mm: centres 50 mm apart, 55 mm needed",
         ),
-        ({"bores": (_bore("left"),)}, "cannot be named 'left'"),
-        ({"bores": (_bore("foot-1"),)}, "cannot be named 'foot-1'"),
+        ({"bores": (_bore("left"),)}, "another name than that of a face or foot"),
+        ({"bores": (_bore("foot-1"),)}, "another name than that of a face or foot"),
     ],
 )
 def test_bad_geometry_is_named(changes: dict[str, Any], message: str) -> None:
