@@ -231,7 +231,8 @@ def test_a_sweep_shows_the_worst_proofs_of_its_points() -> None:
     ]
     document = {"command": "sweep", "points": [*points, {"status": "failed"}], "warnings": []}
     power, inside, source = sound_proofs(document)
-    assert (power.passed, inside.passed, source.passed) == (False, True, True)
+    # 31 % is beyond 2 dB, 26 %, and is still no source that is lost.
+    assert (power.passed, inside.passed, source.passed) == (False, True, None)
     assert "at most 31 % on the radiating surface, 2 % in the root mean square" in source.text
     assert "at most 0.70 dB" in power.text
     assert "at most 2 %" in inside.text
