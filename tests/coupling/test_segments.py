@@ -154,7 +154,7 @@ def test_a_branch_that_is_left_says_so(points: int, tries: int, ending: str) -> 
     assert curve.ending == ending
     assert 2 <= len(curve.speeds) <= 7
     assert curve.speeds[-1] < 0.9
-    assert "nothing was followed" in curve.account
+    assert "Nothing was followed" in curve.account
     assert f"{curve.speeds[-1]:.6g} and 0.9" in curve.account
 
 

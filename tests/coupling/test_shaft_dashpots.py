@@ -19,7 +19,7 @@ def machine(speed: float = 0.0, polar: tuple[float, float] = INERTIA, **damping:
     """Two short thick shafts with a disc each and a soft coupling between them, on a bearing at either end."""
     shaft = Segment(0.1, 0.08, 0.0, STEEL)
     soft = Coupling(0.02, LATERAL, 1e5, TORSIONAL, AXIAL)
-    discs = [Disc(0.05, 5.0, polar[0], 0.02), Disc(0.17, 5.0, polar[1], 0.02)]
+    discs = [Disc(0.05, 5.0, polar[0], 0.03), Disc(0.17, 5.0, polar[1], 0.03)]
     rotor = Rotor("train", [shaft, soft, shaft], discs)
     # The left bearing holds the axis as well, so that there are axial modes.
     held = [
