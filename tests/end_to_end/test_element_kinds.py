@@ -31,7 +31,7 @@ position = ["100 mm", "150 mm", "60 mm"]
 [measured]
 frequencies = ["3 kHz", "4 kHz"]
 [acoustics]
-mesh_size = "60 mm"
+mesh_size = "40 mm"
 highest_frequency = "1 kHz"
 [[acoustics.microphone]]
 name = "above"

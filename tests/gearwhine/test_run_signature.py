@@ -22,7 +22,7 @@ from gearwhine.solve.machine import build_machine
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
-FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=1e-2", "transient.discard=0")
+FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=5e-3", "transient.discard=0")
 
 
 def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, SolvedTransient]:

@@ -58,7 +58,7 @@ BRAKED = [
     "rotor.*.modes=2",
     "transient.revolutions=2",
     "transient.discard=0",
-    "transient.tolerance=1e-2",
+    "transient.tolerance=2e-3",
 ]
 
 
