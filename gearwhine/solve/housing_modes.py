@@ -579,7 +579,7 @@ def bearing_places(case: Case) -> dict[str, tuple[str, float]]:
 
 
 def _health_warnings(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Warn of every check of the housing's model that misses its bound."""
+    """Warn of every check of the housing's model that misses its bound, but the one that has a warning of its own."""
     return [
         warning(
             "health",
@@ -589,7 +589,8 @@ def _health_warnings(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
             bound=line["bound"],
         )
         for line in checks["health"]["lines"]
-        if not line["ok"] and line["bound"] is not None
+        # Of the error by the mesh ``discretisation_warnings`` tells more, unless the case asks for an accuracy.
+        if not line["ok"] and line["bound"] is not None and line["name"] != "discretisation"
     ]
 
 

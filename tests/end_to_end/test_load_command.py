@@ -28,7 +28,8 @@ def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.Capture
     # The force on the input's seats goes down, the other up: so do the seats.
     moved = {bearing["name"]: bearing["seat_displacement_m"] for bearing in document["bearings"]}
     assert moved["input-front"][1] < 0.0 < moved["output-front"][1]
-    assert document["warnings"] == []
+    # The mesh is coarse, so that the test is quick, and that alone is doubtful.
+    assert [warning["name"] for warning in document["warnings"]] == ["discretisation"]
     names = {path.name for path in out.iterdir()}
     assert {"results.nc", "summary.json", "case.toml", "modes.nc", "load-shaft-input.png", "load-housing.png"} <= names
     with xr.open_dataset(out / "results.nc") as data:

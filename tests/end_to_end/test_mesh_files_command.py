@@ -90,16 +90,18 @@ def test_a_mistaken_unit_is_a_warning_on_the_screen_and_in_the_document(gearwhin
     doubt = "the part is 200 m long; is the unit 'm'? With 'mm' it would be 200 mm"
     assert outcome.err.count("warning:") == 3  # the others say that it floats freely, and that its elements are coarse
     assert f"warning: {doubt}\n" in outcome.err
-    warning, coarse = outcome.document["warnings"]
+    warning, coarse, floating = outcome.document["warnings"]
     assert (warning["name"], warning["message"]) == ("unit", doubt)
-    assert coarse["name"] == "discretisation"
+    assert (coarse["name"], floating["name"]) == ("discretisation", "case")
+    assert floating["message"].endswith("it floats freely")
     assert f"warning: {doubt}" in gearwhine("mesh", case("hexahedron20", unit="m"), "-q").err
     assert f"warning: {doubt}" in gearwhine("check", case("hexahedron20", unit="m"), "-q").err
 
 
 def test_simple_tetrahedra_and_large_elements_are_doubted(gearwhine: Any, case: Any) -> None:
     warnings = gearwhine("modes", case("tetra"), "--json", "-q").document["warnings"]
-    assert [warning["name"] for warning in warnings] == ["discretisation", "locking"]
+    # The last says that it floats freely.
+    assert [warning["name"] for warning in warnings] == ["discretisation", "locking", "case"]
     coarse = gearwhine("check", "steel-box", "-q", "--set", "housing.frequency_limit=30 kHz", "--json")
     (warning,) = coarse.document["warnings"]
     assert warning["name"] == "size"

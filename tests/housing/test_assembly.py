@@ -332,11 +332,11 @@ def test_nodes_without_elements_are_refused(block: Callable[..., Mesh], steel: M
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ((0.0, 0.3, 7850.0), "E = 0.0 Pa"),
-        ((207e9, 0.3, -1.0), r"ρ = -1.0 kg/m³ must be positive"),
-        ((float("nan"), 0.3, 7850.0), "E = nan"),
-        ((207e9, 0.5, 7850.0), "Poisson's ratio 0.5"),
-        ((207e9, -0.1, 7850.0), "Poisson's ratio -0.1"),
+        ((0.0, 0.3, 7850.0), "youngs_modulus is 0; expected an elastic modulus"),
+        ((207e9, 0.3, -1.0), "density is -1; expected a density above 0"),
+        ((float("nan"), 0.3, 7850.0), "youngs_modulus is nan; expected an elastic modulus"),
+        ((207e9, 0.5, 7850.0), "poisson_ratio is 0.5; expected a Poisson ratio of at least 0 and below 0.5"),
+        ((207e9, -0.1, 7850.0), "poisson_ratio is -0.1; expected a Poisson ratio of at least 0"),
     ],
 )
 def test_impossible_materials_are_refused(values: tuple[float, float, float], message: str) -> None:
