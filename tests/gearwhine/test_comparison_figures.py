@@ -38,6 +38,7 @@ SOURCE = Comparison(
         ModePair(HERTZ * a, HERTZ * b, n, int(np.searchsorted(MODEL, HERTZ * b)) + 1, 0.01)
         for n, (a, b, _) in enumerate(TABLE_II, start=1)
     ),
+    "dominance",
     "dominance in order of frequency",
     (HERTZ * 500.0, HERTZ * 3100.0),
     gap=0.2,
