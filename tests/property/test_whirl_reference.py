@@ -38,7 +38,7 @@ def friswell_like(draw: st.DrawFn) -> Rotor:
     discs = [
         Disc.from_dimensions(at, draw(numbers(0.02, 0.1)), draw(numbers(0.1, 0.4)), 0.03, 7810.0) for at in joints[:3:2]
     ]
-    return Rotor("drawn", spans, [*discs, Disc(joints[-1], draw(numbers(0.0, 20.0)), draw(numbers(0.0, 0.2)), 0.05)])
+    return Rotor("drawn", spans, [*discs, Disc(joints[-1], draw(numbers(1.0, 20.0)), draw(numbers(0.0, 0.2)), 0.1)])
 
 
 @st.composite
