@@ -120,9 +120,9 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     for number in (len(along) // 3, 2 * len(along) // 3):
         at = (speeds[number] / 60.0 - begin) / rise
         middle = begin * at + 0.5 * rise * at**2
-        # Windows of two turns about the place.
-        span = np.abs(angle - middle) < 1.0
-        share = (0.5 + 0.5 * np.cos(np.pi * (angle[span] - middle))) * np.gradient(angle[span])
+        turns = document["run_signature"]["window_turns"]
+        span = np.abs(angle - middle) < 0.5 * turns
+        share = (0.5 + 0.5 * np.cos(2.0 * np.pi / turns * (angle[span] - middle))) * np.gradient(angle[span])
         line = 2.0 * abs(np.sum(share * force[span] * np.exp(-2j * np.pi * 28.0 * angle[span]))) / share.sum()
         assert line == pytest.approx(along[number], rel=0.02)
     report = gearwhine("report", "spur-pair", "-o", "out", "-q")
