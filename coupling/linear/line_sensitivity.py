@@ -190,7 +190,7 @@ class LineModel(MeshHarmonicModel):
         """Differentiate the output by a factor 1 + p on a bearing's tangent stiffness, at the same equilibrium."""
         law = self._connector(bearing)
         moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
-        return -float((adjoint @ law.stiffness @ moved).real)
+        return -float((self._with_damping(line, bearing) * (adjoint @ law.stiffness @ moved)).real)
 
     def by_bearing_position(self, line: Line, bearing: str) -> float:
         """Differentiate the output by a bearing's position on its shaft, towards +z, at the same static motions."""
@@ -223,7 +223,7 @@ class LineModel(MeshHarmonicModel):
     def stepped_bearing_stiffness(self, line: Line, bearing: str, part: float) -> float:
         """Change of the output by a factor 1 + part on a bearing's tangent, the response solved anew."""
         law = self._connector(bearing)
-        change = part * law.directions @ law.stiffness @ law.directions.T
+        change = part * self._with_damping(line, bearing) * (law.directions @ law.stiffness @ law.directions.T)
         return self._solved_anew(line, self._dynamic(line.frequency) + change)
 
     def stepped_bearing_position(self, line: Line, bearing: str, step: float) -> float:
@@ -351,9 +351,14 @@ class LineModel(MeshHarmonicModel):
         law = self._connector(bearing)
         among_axes = np.ix_(list(law.axes), list(law.axes))
         moved, adjoint = law.directions.T @ line.motion, law.directions.T @ line.adjoint
+        factor = self._with_damping(line, bearing)
         return np.array(
-            [-float((adjoint @ change[among_axes] @ moved).real) for change in self._tangent_rates[bearing]]
+            [-float((factor * (adjoint @ change[among_axes] @ moved)).real) for change in self._tangent_rates[bearing]]
         )
+
+    def _with_damping(self, line: Line, bearing: str) -> complex:
+        """Dynamic over static change 1 + iωτ of a bearing's tangent, whose damping is τ times its stiffness."""
+        return 1.0 + 1j * line.frequency * self.point.bearing(bearing).mounted.damping_time
 
     @cached_property
     def _tangent_rates(self) -> dict[str, FloatArray]:

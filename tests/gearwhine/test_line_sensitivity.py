@@ -171,9 +171,24 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     return np.array([one.value for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
 
 
-def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved) -> None:
-    """A bearing's law that is stiffer in the equilibrium alone, to 1e-3: by tangents, mesh stiffness and errors."""
+@pytest.mark.parametrize("typed_damping", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved, typed_damping: bool) -> None:
+    """A bearing's law that is stiffer in the equilibrium alone: by tangents, damping, mesh stiffness and errors.
+
+    To 2e-3, by which differences over steps from 1e-4 to 2e-3 differ too: slices of the face come into touch.
+    """
     housing, point, found = solved
+    if not typed_damping:  # damping in proportion to the stiffness, which follows the equilibrium as it does
+        document = case_document(case)
+        for entry in document["bearing"]:
+            del entry["damping"]
+        case = parse_case(document)
+        machine = describe_machine(case, full_housing_component(case, housing))
+        point = machine.operating_point()
+        assert all(load.mounted.damping_time > 0.0 for load in point.bearings)
+        lines = solve_lines(case, machine, point, housing, silent, count=9)
+        assert lines is not None
+        solved = housing, point, found = housing, point, lines
     machine = describe_machine(case, full_housing_component(case, housing))
     name = point.bearings[0].name
     own = np.array(
@@ -194,7 +209,7 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved)
 
     either = [at_point(case, solved, stiffer(size)) for size in (5e-4, -5e-4)]
     expected = (either[0] - either[1]) / 1e-3
-    assert (np.abs(own - expected) < 1e-3 * np.abs(expected).max()).all()
+    assert (np.abs(own - expected) < 2e-3 * np.abs(expected).max()).all()
     assert np.abs(own).max() > 1e-3
 
 
