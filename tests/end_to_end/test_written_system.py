@@ -10,6 +10,7 @@ import xarray as xr
 from lopsided_case import (
     AXES,
     GEARS,
+    HALF_FACE,
     HELD_AT,
     PAIRS,
     SPEEDS,
@@ -133,10 +134,14 @@ def test_bearings_balance_the_meshes_at_low_frequency(written: Written) -> None:
             for table in (forces, moments)
         )
         given = np.abs(meshes.values[number]).max()
+        couples = []
         for rotor in AXES:
-            left = np.abs(imbalance(rotor, of_meshes, of_bearings, about))
-            assert left[:2].max() < 5e-3 * given, rotor
-            assert left[2:].max() < 5e-3 * 0.1 * given, rotor
+            left = np.array(imbalance(rotor, of_meshes, of_bearings, about))
+            assert np.abs(left[:2]).max() < 5e-3 * given, rotor
+            # Shafts that bend carry the force of a mesh off the middle of its face, both of them alike.
+            assert np.abs(left[2:]).max() < HALF_FACE * given, rotor
+            couples.append(left[2:])
+        assert np.abs(sum(couples)).max() < 5e-3 * 0.1 * given
     largest = np.abs(moments.sel(transmissibility_bearing="output-back").values).max()
     assert largest > 1e-4 * np.abs(forces.values).max()
 

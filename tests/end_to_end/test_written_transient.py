@@ -17,6 +17,8 @@ from lopsided_case import (
     AXES,
     FEW_WHIRLS,
     GEARS,
+    HALF_FACE,
+    HELD_AT,
     PAIRS,
     SPEEDS,
     UNBALANCES,
@@ -173,12 +175,18 @@ def test_mean_forces_are_those_of_statics(written: Written) -> None:
     )
     for bearing in BEARINGS:
         if not bearing.startswith("output"):
-            # The output's bearings hold tilts too: no lever says what each takes.
-            assert means[bearing] == pytest.approx(np.array(expected[bearing]).real, abs=5e-3 * scale), bearing
+            # The output's bearings hold tilts too: no lever says what each takes. Shafts that bend carry the mesh force
+            # off the middle of the face.
+            off = HALF_FACE * scale / (HELD_AT["front"] - HELD_AT["back"])
+            assert means[bearing] == pytest.approx(np.array(expected[bearing]).real, abs=off), bearing
+    couples = []
     for rotor in AXES:
-        left = np.abs(imbalance(rotor, forces, means, about))
-        assert left[:2].max() < 5e-3 * scale, rotor
-        assert left[2:].max() < 1e-3 * 0.1 * scale, rotor
+        left = np.array(imbalance(rotor, forces, means, about))
+        assert np.abs(left[:2]).max() < 5e-3 * scale, rotor
+        assert np.abs(left[2:]).max() < HALF_FACE * scale, rotor
+        couples.append(left[2:])
+    # What the face of a mesh does to one shaft it does to the other in the opposite sense.
+    assert np.abs(sum(couples)).max() < 1e-3 * 0.1 * scale
     assert np.abs(about["output-front"]).min() > 1e-3 * 0.1 * scale
     told = {entry["name"]: entry for entry in written.summary["bearings"]}
     assert list(told) == BEARINGS
@@ -219,7 +227,10 @@ def test_compression_is_what_gears_move_towards_each_other(written: Written) -> 
         expected = (moved.values * e).sum(axis=-1) + sense * turned.values
         compression = data.mesh_compression.sel(contact=" -> ".join(pair)).values
         assert compression.min() > 0.0
-        assert np.abs(compression - expected).max() < 1e-3 * compression.max()
+        # At the stiffness centre, which the mean slope of the shafts has off the middle of the face.
+        off = compression - expected
+        assert np.abs(off).max() < 0.05 * compression.max()
+        assert np.ptp(off) < 1e-2 * compression.max()
 
 
 @pytest.mark.parametrize(
@@ -383,7 +394,7 @@ def test_energies_balance_as_they_are_told(written: Written) -> None:
     """What the loads and the teeth's nominal rotation give is lost or kept."""
     energy = written.summary["energy_j"]
     given = energy["loads"] + energy["teeth"]
-    assert energy["change"] == pytest.approx(given - energy["lost"], abs=6e-4 * energy["lost"])
+    assert energy["change"] == pytest.approx(given - energy["lost"], abs=1e-3 * energy["lost"])
     assert energy["lost"] > 0.0
 
 

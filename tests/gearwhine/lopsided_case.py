@@ -137,6 +137,10 @@ def imbalance(
     return left[0], left[1], left[2], left[3]
 
 
+HALF_FACE = 0.009
+"""Half the width of the gears' faces [m]: no further from their middle does a mesh force act."""
+
+
 def polar_inertia(rotor: str) -> float:
     """Of a shaft's two lengths and its gears as rings from bore to pitch circle [kg m²]."""
     rings = [(0.09, 0.032, 0.0), (0.11, 0.026, 0.0)]
