@@ -101,7 +101,8 @@ def bending_compliance(gear: Gear, stub: float) -> float:
     basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTetP2()), intorder=1)
     nodes = skfem.Basis(mesh, skfem.ElementTetP2(), intorder=1)
     solid = Mesh.of_tetrahedra(nodes.doflocs.T, right_handed(mesh, nodes.element_dofs.T))
-    stiffness = assemble(solid, Material(1.0, NU, 1.0), threads=1).stiffness
+    modulus = 1e9
+    stiffness = assemble(solid, Material(modulus, NU, 1000.0), threads=1).stiffness / modulus
     second = math.pi / 4.0 * root**4
     loaded = mesh.facets_satisfying(lambda x: np.isclose(x[2], half + stub), boundaries_only=True)
     load = skfem.LinearForm(lambda v, w: v[2] * w.x[0] / second).assemble(
