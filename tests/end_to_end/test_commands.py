@@ -104,7 +104,8 @@ def test_the_resolved_case_runs_to_the_same_numbers(gearwhine, run_folder: Path,
     assert outcome.code == 0
     # `gears` looks at other torques too, which the main job does not.
     for alone, of_run in zip(outcome.document["pairs"], run_summary["pairs"], strict=True):
-        extra = {key for key in alone if alone[key] != of_run[key]}
+        # A run says with its load where the misalignment is from.
+        extra = {key for key in alone if alone[key] != of_run.get(key)} - {"misalignment_seats"}
         assert extra == {"harris_map", "optimal_tip_relief"}
         assert all(of_run[key] is None for key in extra)
 
@@ -176,7 +177,8 @@ def test_gears_without_a_torque(gearwhine, tmp_path: Path) -> None:
 def test_system(gearwhine) -> None:
     document = gearwhine("system", "spur-pair", "--json", "-q").document
     kinds = {mode["kind"] for mode in document["modes"]}
-    assert kinds <= {"rigid", "rotor", "torsion", "mesh", "housing"}
+    # Rims on their hubs vibrate above the modes of their shafts.
+    assert kinds <= {"rigid", "rotor", "torsion", "mesh", "housing", "residual"}
     assert "rigid" in kinds  # the train turns freely
     assert all(mode["damping_ratio"] >= -1e-9 for mode in document["modes"])
     frequencies = [mode["frequency_hz"] for mode in document["modes"]]
@@ -228,7 +230,7 @@ def test_examples_copy(gearwhine, tmp_path: Path) -> None:
 
 def test_check_sums_up_in_a_dozen_lines_and_shows_all_when_asked(gearwhine) -> None:
     brief = gearwhine("check", "nasa-gear-noise-rig", "-q").out.splitlines()
-    assert len(brief) <= 14
+    assert len(brief) <= 16
     assert "housing     box of 279 x 254 x 330 mm, elements of 12 mm, steel; all modes below 3200 Hz" in brief
     assert "            4 seats, 4 supports, 3 sensors" in brief
     assert "bearings    4 in seats of the housing" in brief

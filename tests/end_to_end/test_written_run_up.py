@@ -49,7 +49,9 @@ def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     assert data.run_signal.values.tolist() == ["a -> b", "c -> d"]
     for speeds in (data.run_speed.values, data.order_speed.values):
         assert (np.diff(speeds) > 0.0).all()
-        assert speeds[[0, -1]] == pytest.approx([600.0, 3600.0], rel=0.01)
+        # The low-pass filter of a long record takes a sixtieth of a second at its begin.
+        assert speeds[0] == pytest.approx(600.0, rel=0.1)
+        assert speeds[-1] == pytest.approx(3600.0, rel=0.01)
     ratio = abs(SPEEDS["middle"] / SPEEDS["input"])
     orders = {"1× a -> b": 23.0, "2× a -> b": 46.0, "1× c -> d": 21.0 * ratio, "1× input": 1.0}
     numbers = dict(zip(data.named_order.values.tolist(), data.run_order_number.values.tolist(), strict=True))

@@ -146,6 +146,7 @@ def with_hostile_names(folder: Path, to: Path) -> None:
 
     shutil.copytree(folder, to)
     (to / MANIFEST).unlink()  # the names are none that a run wrote
+    (to / "report.html").unlink(missing_ok=True)
     for summary in to.rglob("summary.json"):
         document = json.loads(summary.read_text(encoding="utf-8"))
         summary.write_text(json.dumps(named(document)), encoding="utf-8")

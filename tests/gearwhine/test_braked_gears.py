@@ -100,7 +100,7 @@ def test_transmissibility_lines_and_resonances_of_a_braked_machine_are_those_of_
     (accelerations, lines, resonances, result), (others, other_lines, other_resonances, _) = found
     assert list(accelerations) == ["top", "right wall", "force"]
     for sensor, acceleration in accelerations.items():
-        np.testing.assert_allclose(acceleration, others[sensor], rtol=2e-3, atol=1e-6 * np.abs(acceleration).max())
+        np.testing.assert_allclose(acceleration, others[sensor], rtol=5e-3, atol=1e-6 * np.abs(acceleration).max())
     assert len(lines) > 2
     for line, other in zip(lines, other_lines, strict=True):
         for by, of_sensors in line["sensor_acceleration_m_per_s2"].items():

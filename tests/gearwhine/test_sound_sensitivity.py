@@ -209,7 +209,7 @@ def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
     # The steady motion follows the whole law of the teeth, which counts less at the mesh frequency than above.
     steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
-    assert loudest[1]["sound_power_db"] == pytest.approx(steady["1× pinion -> wheel"], abs=0.3)
+    assert loudest[1]["sound_power_db"] == pytest.approx(steady["1× pinion -> wheel"], abs=1.0)
     for one in loudest:
         weight = float(a_weighting(one["frequency_hz"]))
         assert one["sound_power_db_a"] == pytest.approx(one["sound_power_db"] + weight)
