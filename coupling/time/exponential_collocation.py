@@ -91,7 +91,9 @@ class CollocationRecord:
         skew = (system.stiffness - system.stiffness.T) @ part.displacement_rows
         if np.abs(skew).max(initial=0.0) <= 1e-12 * np.abs(forces).max(initial=0.0):
             skew = skew[:, :0]
-        riding = np.flatnonzero(np.any(load, axis=0))
+        # The work of constant loads is exact, by the displacements: modes too fast for the elements, such as those of
+        # residual coordinates, would spoil its quadrature.
+        riding = np.flatnonzero(np.any(load, axis=0) & (np.arange(load.shape[1]) != len(part.reference.eigenvalue) - 1))
         rows = np.hstack([part.velocity_rows, part.rigid]), skew, load[:, riding]
         rate, skew, pushing = (np.ascontiguousarray(row.T @ directions) for row in rows)
         return Powers(rate, loss, skew, riding, pushing)
@@ -126,11 +128,12 @@ class CollocationRecord:
         samples.compression[rows], samples.force[rows] = delta, force
         samples.acceleration[rows] = z @ self._acceleration[0].T - force @ self._acceleration[1].T
 
-    def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion) -> Checkpoint:
-        """Add the work, the losses and the contact figures of a trace to the state."""
-        from coupling.collocation.integration_kernels import add_contacts, add_powers
+    def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion, displaced: FloatArray) -> Checkpoint:
+        """Add the work, the losses and the contact figures of a trace that displaces the coordinates to the state."""
+        from coupling.collocation.integration_kernels import LOAD_WORK, add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
+        totals[LOAD_WORK] += self._constant @ displaced
         excess = trace.excess.reshape(len(trace.start), ORDER * trace.excess.shape[2])
         add_powers(steps, trace, excess, self._powers, free, self._room, totals)
         stored = add_contacts(trace, self.contacts, state.stored, self._room.weights[0], totals, figures)
@@ -228,7 +231,7 @@ class CollocationStepper:
         if compiles:
             trace, _ = self._elements(bounds[:1], np.zeros(0, dtype=np.int64))
             self._record.write(trace, self._free, np.zeros(0), samples, 0)
-            self._record.add(state, trace, self._steps, self._free)
+            self._record.add(state, trace, self._steps, self._free, np.zeros_like(state.q))
 
     def chunk(self, bounds: FloatArray, step: float) -> int:
         """Return the number of stretches between ``bounds`` to attempt at once."""
@@ -246,7 +249,8 @@ class CollocationStepper:
 
     def accept(self, state: Checkpoint, done: float, samples: Samples) -> Checkpoint:
         """Return the state after the last attempt, with its work, contact figures and samples."""
-        after = self._record.add(state, self._chunk, self._steps, self._free)
+        reached, _ = self._record.motion(self._end, self._free, done)
+        after = self._record.add(state, self._chunk, self._steps, self._free, reached - state.q)
         if done > self._settings.record_from:
             times = self._times_until(done, state.sample)
             self._record.write(self._chunk, self._free, times, samples, state.sample)

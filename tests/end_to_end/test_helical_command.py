@@ -122,4 +122,5 @@ def test_the_mesh_mode_does_not_lean_on_more_modes_of_the_shafts() -> None:
         case = load_case("helical-pair", [f'rotor.{name}.frequency_limit="{limit}"' for name in (0, 1)]).case
         modes = coupled_modes(build_machine(case, None, solve_gears(case)).system)
         found.append(next(f for f, kind in zip(modes.frequencies_hz, modes.kinds, strict=True) if kind == "mesh"))
-    assert found[0] == pytest.approx(found[1], rel=3e-4)
+    # What modes lack over the face is a compliance without mass: it answers the motion as at rest.
+    assert found[0] == pytest.approx(found[1], rel=1e-3)
