@@ -38,7 +38,7 @@ from coupling.collocation.arrays import (
     powers_room,
 )
 from coupling.collocation.linear_part import LinearPart, linear_part
-from coupling.connector_forces.kernel_arrays import Contacts, Samples
+from coupling.connector_forces.kernel_arrays import LOAD_WORK, Contacts, Samples
 from coupling.errors import PeriodicError, TransientError
 from coupling.machine.coupled_system import CoupledSystem
 from coupling.machine.speed_profile import SpeedProfile
@@ -130,7 +130,7 @@ class CollocationRecord:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion, displaced: FloatArray) -> Checkpoint:
         """Add the work, the losses and the contact figures of a trace that displaces the coordinates to the state."""
-        from coupling.collocation.integration_kernels import LOAD_WORK, add_contacts, add_powers
+        from coupling.collocation.integration_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
         totals[LOAD_WORK] += self._constant @ displaced
