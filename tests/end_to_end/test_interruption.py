@@ -103,7 +103,10 @@ def test_an_interrupted_run_goes_on_to_the_same_results(start_process, gearwhine
     ):
         assert set(resumed.variables) == set(whole.variables)
         for name, found in resumed.variables.items():
-            if found.dtype.kind in "fc":
+            if name == "pair_misalignment":
+                # The pairs' own chapter has that of the seats as solved or as rigid: none of a box alike on both sides.
+                assert np.abs(found.values - whole[name].values).max() < 1e-7
+            elif found.dtype.kind in "fc":
                 # To rounding: sums of shapes turn on where in memory their arrays begin. Flanks of a box that is the
                 # same on both sides are aligned to rounding alone.
                 near = 1e-6 if name in at_rest else 1e-12
