@@ -104,7 +104,7 @@ def test_the_resolved_case_runs_to_the_same_numbers(gearwhine, run_folder: Path,
     assert outcome.code == 0
     # `gears` looks at other torques too, which the main job does not.
     for alone, of_run in zip(outcome.document["pairs"], run_summary["pairs"], strict=True):
-        # A run says with its load where the misalignment is from; a box alike on both sides has none but rounding.
+        # Outside the folder of the run the seats are rigid; a box alike on both sides has no misalignment but rounding.
         assert alone["misalignment_rad"] == pytest.approx(of_run["misalignment_rad"], abs=1e-7)
         of_seats = {"misalignment_seats", "misalignment_rad"}
         extra = {key for key in alone if alone[key] != of_run.get(key)} - of_seats
