@@ -934,24 +934,28 @@ _OFF_NOTE = (
 def _lines(document: Document) -> Iterator[str | Table]:
     """Yield the lines of sensors and sound, and the strongest parameters of those that are ranked."""
     lines, loudest = document.get("sensor_lines", ()), document.get("loudest_lines", ())
+    shown: list[Table] = []
     if lines:
         caption = "Sensors' lines at mesh harmonics, linear about the mean load"
         yield from table_of(columns_of(SENSOR_LINE), lines, caption)
         number = next(n for n, row in enumerate(lines) if row["ranked"])
         chosen = f"the line of {lines[number]['sensor']} at {lines[number]['frequency_hz']:.0f} Hz"
-        yield from _ranked(document, chosen, lambda row: row["lines"][number])
+        shown += _ranked(document, chosen, lambda row: row["lines"][number])
+        yield from shown
     if loudest:
         caption = "Loudest mesh harmonics, A-weighted, linear about the mean load: sound power level re 1 pW"
         yield from table_of(columns_of(SOUND_LINE), loudest, caption)
         ranked = [n for n, row in enumerate(loudest) if row["ranked"]]
         if len(ranked) > 1:
             quantity = f"the A-weighted sound power of {counted(len(loudest), 'line')} together"
-            yield from _ranked(document, quantity, lambda row: row["sound_a"])
+            by_sound = _ranked(document, quantity, lambda row: row["sound_a"])
         else:
             chosen = f"the sound power at {loudest[ranked[0]]['frequency_hz']:.0f} Hz"
-            yield from _ranked(document, chosen, lambda row: row["sound"][ranked[0]])
+            by_sound = _ranked(document, chosen, lambda row: row["sound"][ranked[0]])
+        yield from by_sound
+        shown += by_sound
     if lines or loudest:
-        if any(_is_off(row) for row in document["sensitivity"]):
+        if any(row.get("first_order_is_off") for table in shown for row in table.rows):
             yield _OFF_NOTE
         case_fixes = document["lines_without"]
         fixed = "" if case_fixes is None else f"; the case fixes {case_fixes}, which do not follow the walls"
@@ -959,16 +963,9 @@ def _lines(document: Document) -> Iterator[str | Table]:
         yield f"In these changes damping ratios, friction of the teeth and mean mesh forces are kept{surface}{fixed}"
 
 
-def _is_off(row: Document) -> bool:
-    """Whether any of the lines at a step of a parameter is far from the first order."""
-    return any(
-        line.get("first_order_is_off")
-        for line in (*row.get("lines", ()), *row.get("sound", ()), row.get("sound_a") or {})
-    )
-
-
-def _ranked(document: Document, quantity: str, change: Callable[[Document], dict[str, Any]]) -> Iterator[str | Table]:
-    """Yield the parameters of the housing and of the bearings that change a level most."""
+def _ranked(document: Document, quantity: str, change: Callable[[Document], dict[str, Any]]) -> list[Table]:
+    """Return the parameters of the housing and of the bearings that change a level most."""
+    tables: list[Table] = []
     for of_bearings, place in ((False, "the housing"), (True, "a bearing")):
         rows = [
             {key: influence[key] for key in _STEP_KEYS if key in influence} | change(influence)
@@ -977,7 +974,8 @@ def _ranked(document: Document, quantity: str, change: Callable[[Document], dict
         ]
         rows.sort(key=lambda row: -max(abs(row["level_db"]), abs(row.get("reverse_level_db") or 0.0)))
         caption = f"Change of {quantity} by a step of one parameter of {place}"
-        yield from table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
+        tables += table_of(_LINE_COLUMNS, rows[:_MOST_INFLUENCES], caption)
+    return tables
 
 
 def _content(document: Document) -> Iterator[str | Table]:

@@ -104,7 +104,8 @@ def test_transmissibility_lines_and_resonances_of_a_braked_machine_are_those_of_
     assert len(lines) > 2
     for line, other in zip(lines, other_lines, strict=True):
         for by, of_sensors in line["sensor_acceleration_m_per_s2"].items():
-            assert of_sensors == pytest.approx(other["sensor_acceleration_m_per_s2"][by], rel=0.01, abs=1e-6)
+            # The mean over a mesh period is sampled from another start, which moves a resonance by some 1e-4 of itself.
+            assert of_sensors == pytest.approx(other["sensor_acceleration_m_per_s2"][by], rel=0.02, abs=1e-6)
     np.testing.assert_allclose(resonances.frequencies, other_resonances.frequencies, rtol=1e-4)
     np.testing.assert_allclose(resonances.line_levels, other_resonances.line_levels, atol=0.1)
     shown = "".join(str(part) for section in sections(result.document) for part in section.content)
