@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from coupling import CoupledMachine
 from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.linear.damping_band import DampingBand
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
@@ -28,10 +27,10 @@ from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_s
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import basis_error, point_of_pairs, solve_machine, solve_pairs
+from gearwhine.solve.machine import basis_error, line_mechanisms, point_of_pairs, solve_machine, solve_pairs
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
-    add_damping_bands,
+    add_mechanisms,
     add_uncertainty,
     centrifugal_warnings,
     constant_speed_warnings,
@@ -262,8 +261,8 @@ class _LoadedMachine:
         point = None if self.load is None else self.load.point
         error = basis_error(self.case, self.machine, self.housing, self.pairs, progress, point=point)
         add_uncertainty(document, error, document["trusted_below_hz"])
-        progress("bands of the lines by damping")
-        add_damping_bands(document, DampingBand(self.machine))
+        progress("mechanisms of the lines, and their bands by damping")
+        add_mechanisms(document, line_mechanisms(self.machine, self.housing))
         document["damping"] = damping_document(self.case)
         add_warnings(document, damping_warnings(self.case))
 

@@ -149,6 +149,49 @@ def plain(value: float, digits: int) -> str:
     return f"{rounded:g}" if rounded < 1e6 else f"{value:.{digits}g}"
 
 
+MECHANISMS = {
+    "transmission_error": "transmission error",
+    "load_shuttling": "load shuttling",
+    "friction": "tooth friction",
+    "pitch_errors": "pitch errors",
+    "unbalance": "unbalance",
+    "shaft_bow": "shaft bow",
+    "torque_ripple": "torque ripple",
+    "base_motion": "motion of the base",
+    "load": "other loads",
+}
+"""Mechanisms of lines in words."""
+_MINOR = 0.1  # part of a line's largest mechanism below which another one is not shown
+_FAR = 2.0  # factor between a line and the sum of its parts from which that is told
+
+
+def mechanism_words(row: Document) -> str:
+    """Return the mechanisms of a line with their amplitudes, the largest first; empty where nothing excites it."""
+    parts = {name: value for name, value in (row.get("parts") or {}).items() if value > 0.0}
+    if not parts:
+        return NOTHING
+    largest = max(parts.values())
+    told = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
+    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in told)
+    amplitude, together = row.get("amplitude_m_per_s2"), row["parts_together_m_per_s2"]
+    if amplitude is None or amplitude / _FAR <= together <= amplitude * _FAR:
+        return words
+    return f"{words}; by the linear model {plain(together, 2)} in all"
+
+
+MECHANISM = Column(
+    "by [m/s²]", mechanism_words, numbers=(*(f"parts.{name}" for name in MECHANISMS), "parts_together_m_per_s2")
+)
+"""Column of a line's mechanisms."""
+CAUSE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("Hz", "frequency_hz", ".0f"),
+    Column("m/s², peak", "amplitude_m_per_s2", shown=lambda row: amplitude_words(row)),
+    LINE_NAME,
+    MECHANISM,
+)
+"""Columns of lines on a terminal: what they are, and what excites them."""
+
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
     line_frequency(_paths_of),
@@ -157,6 +200,7 @@ LINE_COLUMNS = (
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
     Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
     LINE_NAME,
+    MECHANISM,
     shape_column("mostly by"),
 )
 
