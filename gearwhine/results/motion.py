@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import NOTHING, Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
-from gearwhine.results.line_columns import LINE_NAME, line_frequency
+from gearwhine.results.line_columns import LINE_NAME, MECHANISMS, line_frequency
 
 if TYPE_CHECKING:
     from coupling.machine.mounted_parts import GearMesh
@@ -149,18 +149,6 @@ def plain(value: float, digits: int) -> str:
     return f"{rounded:g}" if rounded < 1e6 else f"{value:.{digits}g}"
 
 
-MECHANISMS = {
-    "transmission_error": "transmission error",
-    "load_shuttling": "load shuttling",
-    "friction": "tooth friction",
-    "pitch_errors": "pitch errors",
-    "unbalance": "unbalance",
-    "shaft_bow": "shaft bow",
-    "torque_ripple": "torque ripple",
-    "base_motion": "motion of the base",
-    "load": "other loads",
-}
-"""Mechanisms of lines in words."""
 _MINOR = 0.1  # part of a line's largest mechanism below which another one is not shown
 _FAR = 2.0  # factor between a line and the sum of its parts from which that is told
 
