@@ -107,8 +107,9 @@ def gears(
     ----------
     case : Case
     housing : SolvedHousing, optional
-        Housing where it is solved already. It is solved here for a tip relief that aims at a sensor alone; without one
-        a misalignment that is found is that of rigid seats, with a warning.
+        Housing where it is solved already. It is solved here for a tip relief whose aim names a sensor alone; without
+        one a misalignment that is found is that of rigid seats, with a warning, and the best relief aims at no
+        sensor.
     folder : path, optional
         Results folder, whose housing modes are read where it keeps them.
     progress : callable
@@ -123,7 +124,7 @@ def gears(
     if housing is None and case.housing is not None and case.rotor and case.operation is not None:
         if aims_at_sensor(case):
             housing = solve_housing(case, progress, folder=folder)
-        elif any(case.finds_misalignment(pair) for pair in case.gear_pair):
+        elif case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
             housing = kept_housing(case, folder, progress)
     point = point_of_pairs(case, housing, progress)
     loaded = solve_pairs(case, housing, progress, point=point)
