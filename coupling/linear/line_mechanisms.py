@@ -230,7 +230,7 @@ class LineMechanisms:
         for amplitude, frequency, phase in contact.errors.tolist():
             at = abs(frequency)
             if at > 0.0 and amplitude != 0.0 and state.stiffness[number] > 0.0:
-                error = amplitude * np.exp(1j * np.copysign(phase, phase * frequency))
+                error = amplitude * np.exp(1j * phase * np.sign(frequency))
                 yield at, (state.stiffness[number] + 1j * at * state.damping[number]) * error * contact.direction
 
     @cached_property

@@ -6,7 +6,11 @@ from typing import Any
 import pytest
 from sounding_gearbox import sounding_gearbox
 
-LINEAR = {"gear_pair.0.stiffness": {"model": "constant", "value": "3e8 N/m"}, "gear_pair.0.misalignment": 0.0}
+LINEAR = {
+    "gear_pair.0.stiffness": {"model": "constant", "value": "3e8 N/m"},
+    "gear_pair.0.misalignment": 0.0,
+    "gear_pair.0.damping_ratio": 0.5,
+}
 UNBALANCE = {"rotor.1.unbalance": [{"at": "100 mm", "moment": "7e-5 kg*m", "phase": "40 deg"}]}
 RUNOUT = {"gear.0.errors": {"eccentricity": "6 um", "phase": "25 deg"}}
 RIPPLE = {"operation.ripple": [{"amplitude": "0.5 N*m", "order": 3, "phase": "10 deg"}]}
@@ -16,10 +20,10 @@ TURN = 5500.0 / 60.0
 
 
 @cache
-def lines_of(*names: str) -> dict[tuple[str, float], dict[str, Any]]:
+def lines_of(*names: str, sense: int = 1) -> dict[tuple[str, float], dict[str, Any]]:
     """Lines of the steady motion under some of the excitations, by sensor and order."""
     every = {"unbalance": UNBALANCE, "pitch_errors": RUNOUT, "torque_ripple": RIPPLE, "base_motion": BASE}
-    changes = LINEAR | NO_UNBALANCE
+    changes = LINEAR | NO_UNBALANCE | {"operation.speed": f"{sense * 5500} rpm"}
     for name in names:
         changes |= every[name]
     document = sounding_gearbox(changes).steady().document
@@ -35,8 +39,9 @@ ALL = ("unbalance", "pitch_errors", "torque_ripple", "base_motion")
 ORDERS = {"unbalance": 1.0, "pitch_errors": 1.0, "torque_ripple": 3.0, "base_motion": 12.0}
 
 
-def test_every_line_of_a_linear_machine_is_the_sum_of_its_parts() -> None:
-    lines = lines_of(*ALL)
+@pytest.mark.parametrize("sense", [1, -1])
+def test_every_line_of_a_linear_machine_is_the_sum_of_its_parts(sense: int) -> None:
+    lines = lines_of(*ALL, sense=sense)
     told = {key: line for key, line in lines.items() if key[1] in ORDERS.values()}
     assert len(told) == 6
     for line in told.values():
