@@ -34,7 +34,7 @@ from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.machine.face_compliance import face_compliance
-from coupling.machine.gear_bodies import GearBody, rim_spring, stiffest
+from coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -264,17 +264,41 @@ class Machine:
         for mounted in self.gears:
             of_gear = compliances.get(mounted.name, [])
             twisting, shifting = stiffest([twist for twist, _ in of_gear]), stiffest([shift for _, shift in of_gear])
-            if twisting == shifting == np.inf:
+            outward = self.bodies_out_of_plane.get(mounted.name)
+            if twisting == shifting == np.inf and outward is None:
                 continue
             shaft = self.shaft(mounted.shaft)
-            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
-            limit = limit if len(of_gear) == 1 else np.inf
-            mass, polar = gear_inertia_on_shaft(mounted, shaft.rotor)
+            own = self._mode_limit(shaft)
+            limit = own if len(of_gear) == 1 else np.inf
+            mass, polar, _ = gear_inertia_on_shaft(mounted, shaft.rotor)
             twist = rim_spring(twisting, polar, rotation_shares(mounted.gear), limit)
-            shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
-            if twist is not None or shift is not None:
-                bodies.append(GearBody(mounted.name, mounted.at, twist, shift))
+            shift = None
+            if mounted.name in states:
+                shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
+            body = GearBody(mounted.name, mounted.at, twist, shift)
+            if outward is not None and any(motion.kept for motion in outward.motions):
+                body = replace(body, axial=outward.axial, tilt=outward.tilt, plates=outward.plates, limit=own)
+            elif twist is None and shift is None:
+                continue
+            bodies.append(body)
         return tuple(bodies)
+
+    @cached_property
+    def bodies_out_of_plane(self) -> dict[str, BodyOutOfPlane]:
+        """Motions out of the plane of the gears with a body on a hub, and which of them the machine follows."""
+        bodies = {}
+        for mounted in self.gears:
+            shaft = self.shaft(mounted.shaft)
+            inertia = gear_inertia_on_shaft(mounted, shaft.rotor)
+            body = body_out_of_plane(mounted.gear, inertia, self._mode_limit(shaft))
+            if body is not None:
+                bodies[mounted.name] = body
+        return bodies
+
+    @staticmethod
+    def _mode_limit(shaft: Shaft) -> float:
+        """Limit of a shaft's modes [rad/s]."""
+        return 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -395,7 +419,9 @@ class Machine:
             Where a rolling bearing is loaded beyond its theory.
         """
         pairs = []
-        rims = {body.gear: body for body in self.gear_bodies if self._pair_count(body.gear) > 1}
+        shared = [body for body in self.gear_bodies if self._pair_count(body.gear) > 1]
+        outward = [body.out_of_plane for body in self.gear_bodies if self._pair_count(body.gear) == 1]
+        rims = {body.gear: body for body in (*shared, *outward) if body is not None}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if not carrying:

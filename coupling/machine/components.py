@@ -19,11 +19,13 @@ import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError
+from coupling.gears.stiffness.wheel_modes import PlateMode
 from coupling.machine.gear_bodies import GearBody, RimSpring
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
 from rotors.modes.lateral import LateralModes
 from rotors.modes.modal_rotor import gyroscopic_matrix
+from rotors.modes.torsional_and_axial import AxialModes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,8 +40,8 @@ class Component:
     ----------
     name : str
     kinds : tuple of str
-        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
-        ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
+        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``body`` (a gear's
+        body with nodal diameters), ``pedestal``, or ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
         frequency is no natural frequency of the housing, and motion at that frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
@@ -103,6 +105,8 @@ class RotorComponent(Component):
 
     The modes are those of the shaft with the rims of its gears on their hubs, see :func:`rotor_component`.
 
+    Last are the cosine and the sine of each mode of a gear's body with nodal diameters.
+
     Attributes
     ----------
     modal : ModalRotor
@@ -110,23 +114,30 @@ class RotorComponent(Component):
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m + s, m + s)
-        The m planar modes of ``modal`` and the shifts of s rims on their hubs, in terms of a plane's coordinates:
+        The m planar modes of ``modal`` and the shifts and tilts of s rims on their hubs, in terms of a plane's coordinates:
         shift, tilt and bending of the free shaft. Without rims it is orthogonal.
     torsion_basis : ndarray, shape (t + g, t + g)
         The t torsional modes of ``modal`` and the rotations of g rims against their hubs, in terms of the component's
         torsional coordinates.
+    axial_basis : ndarray, shape (a + u, a + u)
+        The a axial modes of ``modal`` and the motions of u rims along the axis against their hubs, in terms of the
+        component's axial coordinates.
     axis : tuple of float
         x and y of the shaft's line [m].
     bodies : tuple of GearBody
         Gears whose rims move on their hubs.
+    damping_ratio : float
+        Damping ratio of the shaft and the gears' bodies.
     """
 
     modal: ModalRotor
     start: float
     plane_basis: FloatArray
     torsion_basis: FloatArray
+    axial_basis: FloatArray
     axis: tuple[float, float] = (0.0, 0.0)
     bodies: tuple[GearBody, ...] = ()
+    damping_ratio: float = 0.0
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -148,7 +159,7 @@ class RotorComponent(Component):
             rows = np.zeros((6, self.size))
             for modes, own in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
                 rows[:5, own] = motions[:, modes] @ self.plane_basis[:m]
-            rows[:5, self._torsion.stop :] = motions[:, 2 * m + t :]
+            rows[:5, self.axial] = motions[:, 2 * m + t :] @ self.axial_basis[: motions.shape[1] - 2 * m - t]
             rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
             self._sections[at] = rows
             self._sections[at].setflags(write=False)
@@ -170,6 +181,18 @@ class RotorComponent(Component):
         first = 2 * self.plane_size
         return slice(first, first + len(self.torsion_basis))
 
+    @property
+    def axial(self) -> slice:
+        """The axial coordinates."""
+        return slice(self._torsion.stop, self._torsion.stop + len(self.axial_basis))
+
+    @property
+    def plates(self) -> tuple[tuple[str, PlateMode, slice], ...]:
+        """Modes of gear bodies with nodal diameters: gear, mode, and coordinates of its cosine and sine."""
+        modes = [(body.gear, mode) for body in self.bodies for mode in body.plates]
+        firsts = range(self.axial.stop, self.size, 2)
+        return tuple((gear, mode, slice(at, at + 2)) for (gear, mode), at in zip(modes, firsts, strict=True))
+
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,), not to be written to."""
         return np.asarray(self._section(at)[5])
@@ -182,14 +205,34 @@ class RotorComponent(Component):
         body = next((body for body in self.bodies if body.gear == gear), None)
         if body is None:
             return self._section(at)
-        rows = self._section(at).copy()
+        rows, (x, y) = self._section(at).copy(), self._planes
         if body.twist is not None:
-            number = [one.gear for one in self.bodies if one.twist is not None].index(gear)
-            rows[5, self._torsion] += self.torsion_basis[self.modal.torsional.count + number]
+            rows[5, self._torsion] += self.torsion_basis[self.modal.torsional.count + self._rim(gear, "twist")]
         if body.shift is not None:
-            number = [one.gear for one in self.bodies if one.shift is not None].index(gear)
-            for row, own in zip(rows, self._planes, strict=False):
-                row[own] += self.plane_basis[self.modal.lateral.count + number]
+            moved = self.plane_basis[self.modal.lateral.count + self._rim(gear, "shift")]
+            rows[0, x] += moved
+            rows[1, y] += moved
+        if body.tilt is not None:
+            shifts = sum(one.shift is not None for one in self.bodies)
+            tilted = self.plane_basis[self.modal.lateral.count + shifts + self._rim(gear, "tilt")]
+            rows[4, x] += tilted
+            rows[3, y] -= tilted
+            rows[0, x] += (at - body.at) * tilted
+            rows[1, y] += (at - body.at) * tilted
+        if body.axial is not None and self.modal.axial is not None:
+            rows[2, self.axial] += self.axial_basis[self.modal.axial.count + self._rim(gear, "axial")]
+        return rows
+
+    def _rim(self, gear: str, motion: str) -> int:
+        """Number of a gear among those whose rims have a motion on their hubs."""
+        return [one.gear for one in self.bodies if getattr(one, motion) is not None].index(gear)
+
+    def plate_rows(self, gear: str, arm: tuple[float, float]) -> FloatArray:
+        """Motion of the teeth of a gear by its body's modes with nodal diameters, see `PlateMode.rows`, shape (3, n)."""
+        rows = np.zeros((3, self.size))
+        for name, mode, own in self.plates:
+            if name == gear:
+                rows[:, own] = mode.rows(arm)
         return rows
 
     @cached_property
@@ -352,8 +395,10 @@ def rotor_component(
         [I, τᵀ S; S τ, J_r] [q''; φ''] + [K, 0; 0, k] [q; φ] = f.
 
     The component's coordinates are the natural modes of this: in torsion, the rigid rotation of all first, and alike in
-    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Of a shaft with rims the
-    coordinates above its own highest mode are of the kind ``residual``, as attachment modes of the housing are: hubs
+    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Rims that tilt and move
+    along the axis on thin webs join in the same way, the tilt with its part in the gyroscopic moment, and a body's
+    modes with nodal diameters, which no motion of the hub excites, stand by themselves. Of a shaft with rims the
+    coordinates above its own highest mode, and above the limit of the bodies out of the plane, are of the kind ``residual``, as attachment modes of the housing are: hubs
     between shaft and rims vibrate there, and no step in time is refined for them.
 
     An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
@@ -363,8 +408,9 @@ def rotor_component(
     ----------
     name : str
     modal : ModalRotor
-        m planar, t torsional and a axial modes, vectors included. With s shifts and g rotations of rims the component
-        has 2 (m + s) + t + g + a coordinates.
+        m planar, t torsional and a axial modes, vectors included. With s shifts and tilts, g rotations and u axial
+        motions of rims, and p modes with nodal diameters, the component has 2 (m + s) + t + g + a + u + 2 p
+        coordinates.
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
@@ -374,28 +420,36 @@ def rotor_component(
     bodies : sequence of GearBody
         Gears on the rotor whose rims move on their hubs.
     """
-    lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
+    lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
+    along, axial_basis = _axial_with_rims(modal, bodies)
     plane_basis, plane_stiffness, bending = _free_plane(lateral, bodies)
-    m, size = lateral.count, len(plane_basis)
-    n = 2 * size + len(twisting) + len(along)
-    stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2]))
+    plates = np.array([mode.frequency for body in bodies for mode in body.plates for _ in range(2)])
+    size = len(plane_basis)
+    n = 2 * size + len(twisting) + len(along) + len(plates)
+    stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2, plates**2]))
     stiffness[:size, :size] = stiffness[size : 2 * size, size : 2 * size] = plane_stiffness
     # Zeros for motions as a whole: they strain no material, though an axial force may resist the tilt or drive it.
-    damped = np.concatenate([bending, bending, twisting, along])
+    damped = np.concatenate([bending, bending, twisting, along, plates])
     gyroscopic = np.zeros((n, n))
-    gyroscopic[: 2 * size, : 2 * size] = gyroscopic_matrix(
-        plane_basis[:m].T @ lateral.polar_inertia_matrix @ plane_basis[:m]
-    )
+    gyroscopic[: 2 * size, : 2 * size] = gyroscopic_matrix(_plane_spin(lateral, bodies, plane_basis))
     # Modes of the shaft are certified up to these; what lies above is static, hubs between shaft and rims among it.
+    limit = max((body.limit for body in bodies), default=0.0)
     own, own_bending = (
-        float(modes.frequencies[: modes.certificate.found].max(initial=0.0)) if bodies else np.inf
+        max(float(modes.frequencies[: modes.certificate.found].max(initial=0.0)), limit) if bodies else np.inf
         for modes in (modal.torsional, lateral)
     )
     plane_kinds = _kinds("rotor", bending, own_bending)
+    axial_kinds = ("axial",) * len(along) if modal.axial is None else _axial_kinds(along, modal.axial, limit)
     return RotorComponent(
         name=name,
-        kinds=(*plane_kinds, *plane_kinds, *_kinds("torsion", twisting, own), *("axial",) * len(along)),
+        kinds=(
+            *plane_kinds,
+            *plane_kinds,
+            *_kinds("torsion", twisting, own),
+            *axial_kinds,
+            *_kinds("body", plates, limit),
+        ),
         stiffness=stiffness,
         damping=np.diag(2.0 * damping_ratio * damped),
         gyroscopic=gyroscopic,
@@ -403,8 +457,10 @@ def rotor_component(
         start=start,
         plane_basis=plane_basis,
         torsion_basis=torsion_basis,
+        axial_basis=axial_basis,
         axis=axis,
         bodies=tuple(bodies),
+        damping_ratio=damping_ratio,
     )
 
 
@@ -427,6 +483,42 @@ def _torsion_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[F
     values, vectors = np.linalg.eigh(stiffness[1:, 1:])
     basis[:, 1:] = basis[:, 1:] @ vectors
     return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
+
+
+def _axial_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (a + u,) [rad/s] and modes (a + u, a + u) of the shaft along its axis with rims on hubs."""
+    if modal.axial is None:
+        return np.zeros(0), np.zeros((0, 0))
+    frequencies = modal.axial.frequencies
+    rims = [(body.at, body.axial) for body in bodies if body.axial is not None]
+    if not rims:
+        return frequencies, np.eye(frequencies.size)
+    basis, stiffness = _with_rims(np.diag(frequencies**2), modal.axial.evaluate([at for at, _ in rims]), rims)
+    # The first coordinate is the motion of all as one body.
+    values, vectors = np.linalg.eigh(stiffness[1:, 1:])
+    basis[:, 1:] = basis[:, 1:] @ vectors
+    return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
+
+
+def _axial_kinds(frequencies: FloatArray, axial: AxialModes, limit: float) -> tuple[str, ...]:
+    """Kinds of the axial coordinates; of a shaft without axial rims all are axial."""
+    highest = max(float(axial.frequencies.max(initial=0.0)), limit)
+    return _kinds("axial", frequencies, np.inf if frequencies.size == axial.count else highest)
+
+
+def _plane_spin(lateral: LateralModes, bodies: Sequence[GearBody], basis: FloatArray) -> FloatArray:
+    """Polar inertia over a plane's coordinates (m + s, m + s): of the shaft, and of rims that tilt on their hubs."""
+    m, tilts = lateral.count, [(body.at, body.tilt) for body in bodies if body.tilt is not None]
+    if not tilts:
+        return np.asarray(basis[:m].T @ lateral.polar_inertia_matrix @ basis[:m])
+    spin = np.zeros((len(basis), len(basis)))
+    first = len(basis) - len(tilts)
+    spin[:m, :m] = lateral.polar_inertia_matrix
+    slopes = lateral.evaluate([at for at, _ in tilts])[1]
+    spin[:m, first:] = slopes * [spring.coupling_spin for _, spring in tilts]
+    spin[first:, :m] = spin[:m, first:].T
+    spin[first:, first:] = np.diag([spring.rim_spin for _, spring in tilts])
+    return np.asarray(basis.T @ spin @ basis)
 
 
 def _with_rims(
@@ -469,10 +561,13 @@ def _free_plane(lateral: LateralModes, bodies: Sequence[GearBody]) -> tuple[Floa
     """
     whole, free = lateral.rigid_motions, lateral.free_stiffness
     count, unresisted = whole.shape[1], lateral.unresisted_motions
-    rims = [(body.at, body.shift) for body in bodies if body.shift is not None]
+    shifts = [(body.at, body.shift) for body in bodies if body.shift is not None]
+    tilts = [(body.at, body.tilt) for body in bodies if body.tilt is not None]
+    rims = [*shifts, *tilts]
     joined = np.eye(lateral.count)
     if rims:
-        joined, free = _with_rims(free, lateral.evaluate([at for at, _ in rims])[0], rims)
+        hubs = [lateral.evaluate([at for at, _ in some])[row] for row, some in enumerate((shifts, tilts)) if some]
+        joined, free = _with_rims(free, np.hstack(hubs), rims)
         whole = np.vstack([whole, np.zeros((len(rims), count))])
     beside = np.linalg.qr(whole, mode="complete")[0][:, count:]
     values, vectors = np.linalg.eigh(beside.T @ free @ beside)

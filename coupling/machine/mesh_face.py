@@ -187,14 +187,18 @@ def mesh_face(
     for mounted, at, flank in zip((mesh.driver, mesh.driven), mesh.stations, (line.driver, line.driven), strict=True):
         rotor = coordinates.rotor(mounted.rotor)
         here, turned = rotor.motions(at), rotor.rotation(at)
+        # Beside its shaft the rim tilts, and a body with nodal diameters bends over the face.
+        rim = flank.tilting(rotor.rim_section(mounted.name, at)[:5] - here)
+        plates = flank.across(rotor.plate_rows(mounted.name, flank.arm)[1:])
         rows = []
         for station in (at + stations).tolist():
             carrier = min(max(station, mounted.carried[0]), mounted.carried[1]) if mounted.carried else at
             section = rotor.motions(carrier)
             moved = flank.across(section) - flank.across(here) + (station - carrier) * flank.tilting(section)
+            moved = moved + (station - at) * (rim + plates)
             rows.append(moved + flank.turning(rotor.rotation(carrier) - turned))
         over += coordinates.rows(mounted.rotor, np.array(rows))
-        tilt += coordinates.rows(mounted.rotor, flank.tilting(here))
+        tilt += coordinates.rows(mounted.rotor, flank.tilting(here) + rim)
     slices = contact.faces or mesh.faces
     flanks = None
     z = stations

@@ -284,14 +284,21 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
     return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
-def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float]:
-    """Mass [kg] and polar inertia [kg m²] of a gear's body beside those of its shaft: of its disc, or others there."""
+def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float, float]:
+    """Inertia of a gear's body beside that of its shaft: of its disc, or others there.
+
+    Mass [kg], polar and diametral inertia [kg m²].
+    """
     disc = gear_disc(gear, rotor)
-    own = (disc.mass, disc.polar_inertia)
+    own = (disc.mass, disc.polar_inertia, disc.diametral_inertia)
     if any(own):
         return own
     there = _discs_at(gear, rotor)
-    return sum(one.mass for one in there), sum(one.polar_inertia for one in there)
+    return (
+        sum(one.mass for one in there),
+        sum(one.polar_inertia for one in there),
+        sum(one.diametral_inertia for one in there),
+    )
 
 
 def _discs_at(gear: ShaftGear, rotor: Rotor) -> list[Disc]:

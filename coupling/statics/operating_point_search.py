@@ -73,7 +73,8 @@ def solve_operating_point(
     forces : sequence of ShaftForce
         Constant ones.
     rims : sequence of GearBody
-        Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact.
+        Rims that move on their hubs: those of gears that several pairs share, whose twist and shift are in the contact
+        of one pair alone, and those that tilt and move along the axis.
 
     Raises
     ------
@@ -97,6 +98,10 @@ class _StaticModel:
         First coordinate of the housing's modes, and of each pedestal's motion along x and y.
     rims : dict of str to ndarray, shape (6, n)
         Motion of each rim on its hub along and about x, y, z by all coordinates, by gear; they are the last ones.
+    rims_first : int
+        First coordinate of the rims.
+    plates : list of (str, PlateMode, slice)
+        Modes of gear bodies with nodal diameters: gear, mode, and coordinates.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
@@ -143,16 +148,21 @@ class _StaticModel:
         springs = [
             (rim.gear, axis, spring.stiffness)
             for rim in rims
-            for spring, axes in ((rim.shift, (0, 1)), (rim.twist, (5,)))
+            for spring, axes in ((rim.shift, (0, 1)), (rim.axial, (2,)), (rim.tilt, (3, 4)), (rim.twist, (5,)))
             if spring is not None
             for axis in axes
         ]
-        self.size = size + len(springs)
+        plates = [(rim.gear, mode) for rim in rims for mode in rim.plates]
+        firsts = range(size + len(springs), size + len(springs) + 2 * len(plates), 2)
+        self.plates = [(gear, mode, slice(at, at + 2)) for (gear, mode), at in zip(plates, firsts, strict=True)]
+        self.rims_first, self.size = size, firsts.stop
         self.stiffness = self._linear_stiffness()
         self.rims = {rim.gear: np.zeros((6, self.size)) for rim in rims}
         for number, (gear, axis, stiffness) in enumerate(springs, size):
             self.stiffness[number, number] = stiffness
             self.rims[gear][axis, number] = 1.0
+        for _, mode, own in self.plates:
+            self.stiffness[own, own] = mode.frequency**2 * np.eye(2)
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -251,7 +261,13 @@ class _StaticModel:
             rows[-1] += flank.tilting(middle)
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
-                rows[:-1] += flank.across(rim) + flank.turning(rim[5])
+                rows[:-1] += flank.across(rim) + flank.turning(rim[5]) + flank.axial(rim)
+                rows[:-1] += np.outer(gear.arms, flank.tilting(rim))
+                rows[-1] += flank.tilting(rim)
+            for name, mode, own in self.plates:
+                if name == gear.name:
+                    axial, *slopes = mode.rows(flank.arm)
+                    rows[:-1, own] += flank.along(axial) + np.outer(gear.arms, flank.across(np.array(slopes)))
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -457,7 +473,8 @@ class _StaticModel:
         weights; it is linear in the motions of the seats and the deflections of the bearings. The rest is elastic.
         `_pair` separates the twist.
         """
-        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing")}
+        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing", "bodies")}
+        parts["bodies"][self.rims_first :] = x[self.rims_first :]
         for part in self.shafts:
             columns = self._own(part.name)
             places = part.shaft.places
@@ -492,7 +509,7 @@ class _StaticModel:
         by_cause = {cause: float(slope @ part) for cause, part in causes.items()}
         twist = float(slope @ twisted)
         by_cause["shafts"] -= twist
-        by_cause["bodies"] = twist
+        by_cause["bodies"] += twist
         touched = approach - pair.clearance * contact.uniform
         force = pair.between_rims.at(touched).force
         # The rims on their hubs are a part of the approach by the complete contact.
