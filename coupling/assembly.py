@@ -369,13 +369,13 @@ def _bearing(
 def _transports(
     coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
 ) -> list[LinearConnector]:
-    """Rotation of the gear bodies' modes with nodal diameters, which an observer at rest sees (`gear_bodies`)."""
+    """Rotation of the gear bodies' modes with two nodal diameters or more, which an observer at rest sees (`gear_bodies`)."""
     connectors = []
     for gear, mode, own in rotor.plates:
         if speed == 0.0:
             break
         directions = coordinates.rows(rotor.name, np.eye(rotor.size)[own]).T
-        name = f"rotation of {gear}, {mode.nodal_diameters} nodal diameters"
+        name = f"rotation of {gear}, {mode.name}"
         ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
         laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]
         table = SpeedTable(ratios, *(np.array(part) for part in zip(*laws, strict=True))) if len(laws) > 1 else None
@@ -572,10 +572,10 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
     sides = ((mesh.driver, mesh.geometry.driver, line.driver), (mesh.driven, mesh.geometry.driven, line.driven))
     for (mounted, gear, flank), at in zip(sides, mesh.stations, strict=True):
         rotor = coordinates.rotor(mounted.rotor)
-        rim = rotor.rim_section(mounted.name, at)
-        compression = flank.turning(rim[5]) + flank.across(rim) + flank.axial(rim)
-        if rotor.plates:
-            compression += flank.along(rotor.plate_rows(mounted.name, flank.arm)[0])
+        section, rim = rotor.motions(at), rotor.rim_section(mounted.name, at)
+        compression = flank.turning(rim[5]) + flank.across(rim) + flank.axial(section)
+        axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
+        compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

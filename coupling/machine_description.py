@@ -276,8 +276,8 @@ class Machine:
             if mounted.name in states:
                 shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
             body = GearBody(mounted.name, mounted.at, twist, shift)
-            if outward is not None and any(motion.kept for motion in outward.motions):
-                body = replace(body, axial=outward.axial, tilt=outward.tilt, plates=outward.plates, limit=own)
+            if outward is not None and outward.kept:
+                body = replace(body, plates=outward.kept, limit=own)
             elif twist is None and shift is None:
                 continue
             bodies.append(body)
@@ -285,7 +285,7 @@ class Machine:
 
     @cached_property
     def bodies_out_of_plane(self) -> dict[str, BodyOutOfPlane]:
-        """Motions out of the plane of the gears with a body on a hub, and which of them the machine follows."""
+        """Modes out of the plane of the gears with a body on a hub, and which of them the machine follows."""
         bodies = {}
         for mounted in self.gears:
             shaft = self.shaft(mounted.shaft)
@@ -420,8 +420,8 @@ class Machine:
         """
         pairs = []
         shared = [body for body in self.gear_bodies if self._pair_count(body.gear) > 1]
-        outward = [body.out_of_plane for body in self.gear_bodies if self._pair_count(body.gear) == 1]
-        rims = {body.gear: body for body in (*shared, *outward) if body is not None}
+        alone = [replace(body, twist=None, shift=None) for body in self.gear_bodies if body not in shared]
+        rims = {body.gear: body for body in (*shared, *alone) if body in shared or body.plates}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if not carrying:

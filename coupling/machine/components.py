@@ -105,7 +105,7 @@ class RotorComponent(Component):
 
     The modes are those of the shaft with the rims of its gears on their hubs, see :func:`rotor_component`.
 
-    Last are the cosine and the sine of each mode of a gear's body with nodal diameters.
+    Last are the cosine and the sine of each mode of a gear's body with two nodal diameters or more.
 
     Attributes
     ----------
@@ -114,14 +114,14 @@ class RotorComponent(Component):
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m + s, m + s)
-        The m planar modes of ``modal`` and the shifts and tilts of s rims on their hubs, in terms of a plane's coordinates:
+        The m planar modes of ``modal`` and the s shifts of rims and tilting modes of gear bodies, in terms of a plane's coordinates:
         shift, tilt and bending of the free shaft. Without rims it is orthogonal.
     torsion_basis : ndarray, shape (t + g, t + g)
         The t torsional modes of ``modal`` and the rotations of g rims against their hubs, in terms of the component's
         torsional coordinates.
     axial_basis : ndarray, shape (a + u, a + u)
-        The a axial modes of ``modal`` and the motions of u rims along the axis against their hubs, in terms of the
-        component's axial coordinates.
+        The a axial modes of ``modal`` and u umbrella modes of gear bodies, in terms of the component's axial
+        coordinates.
     axis : tuple of float
         x and y of the shaft's line [m].
     bodies : tuple of GearBody
@@ -188,8 +188,8 @@ class RotorComponent(Component):
 
     @property
     def plates(self) -> tuple[tuple[str, PlateMode, slice], ...]:
-        """Modes of gear bodies with nodal diameters: gear, mode, and coordinates of its cosine and sine."""
-        modes = [(body.gear, mode) for body in self.bodies for mode in body.plates]
+        """Modes of gear bodies with two nodal diameters or more: gear, mode, and coordinates of its cosine and sine."""
+        modes = [(body.gear, mode) for body in self.bodies for mode in body.plates if mode.nodal_diameters > 1]
         firsts = range(self.axial.stop, self.size, 2)
         return tuple((gear, mode, slice(at, at + 2)) for (gear, mode), at in zip(modes, firsts, strict=True))
 
@@ -205,35 +205,47 @@ class RotorComponent(Component):
         body = next((body for body in self.bodies if body.gear == gear), None)
         if body is None:
             return self._section(at)
-        rows, (x, y) = self._section(at).copy(), self._planes
+        rows = self._section(at).copy()
         if body.twist is not None:
-            rows[5, self._torsion] += self.torsion_basis[self.modal.torsional.count + self._rim(gear, "twist")]
+            number = [one.gear for one in self.bodies if one.twist is not None].index(gear)
+            rows[5, self._torsion] += self.torsion_basis[self.modal.torsional.count + number]
         if body.shift is not None:
-            moved = self.plane_basis[self.modal.lateral.count + self._rim(gear, "shift")]
-            rows[0, x] += moved
-            rows[1, y] += moved
-        if body.tilt is not None:
-            shifts = sum(one.shift is not None for one in self.bodies)
-            tilted = self.plane_basis[self.modal.lateral.count + shifts + self._rim(gear, "tilt")]
-            rows[4, x] += tilted
-            rows[3, y] -= tilted
-            rows[0, x] += (at - body.at) * tilted
-            rows[1, y] += (at - body.at) * tilted
-        if body.axial is not None and self.modal.axial is not None:
-            rows[2, self.axial] += self.axial_basis[self.modal.axial.count + self._rim(gear, "axial")]
+            number = [one.gear for one in self.bodies if one.shift is not None].index(gear)
+            for row, own in zip(rows, self._planes, strict=False):
+                row[own] += self.plane_basis[self.modal.lateral.count + number]
         return rows
-
-    def _rim(self, gear: str, motion: str) -> int:
-        """Number of a gear among those whose rims have a motion on their hubs."""
-        return [one.gear for one in self.bodies if getattr(one, motion) is not None].index(gear)
 
     def plate_rows(self, gear: str, arm: tuple[float, float]) -> FloatArray:
-        """Motion of the teeth of a gear by its body's modes with nodal diameters, see `PlateMode.rows`, shape (3, n)."""
-        rows = np.zeros((3, self.size))
-        for name, mode, own in self.plates:
+        """Motion of the teeth of a gear by the modes of its body out of the plane, shape (5, n): `PlateMode.rows`."""
+        rows = np.zeros((5, self.size))
+        for name, mode, coordinates in self._plate_coordinates:
             if name == gear:
-                rows[:, own] = mode.rows(arm)
+                rows += mode.rows(arm) @ coordinates
         return rows
+
+    @cached_property
+    def _plate_coordinates(self) -> list[tuple[str, PlateMode, FloatArray]]:
+        """Gear, mode, and cosine and sine by the coordinates (2, n) of the modes out of the plane."""
+        found = []
+        shifts = sum(body.shift is not None for body in self.bodies)
+        umbrellas, tilts = 0 if self.modal.axial is None else self.modal.axial.count, self.modal.lateral.count + shifts
+        pairs = {id(mode): own for _, mode, own in self.plates}
+        for body in self.bodies:
+            for mode in body.plates:
+                rows = np.zeros((mode.size, self.size))
+                if mode.nodal_diameters == 0:
+                    if self.modal.axial is None:
+                        continue
+                    rows[0, self.axial] = self.axial_basis[umbrellas]
+                    umbrellas += 1
+                elif mode.nodal_diameters == 1:
+                    for row, own in zip(rows, self._planes, strict=True):
+                        row[own] = self.plane_basis[tilts]
+                    tilts += 1
+                else:
+                    rows[:, pairs[id(mode)]] = np.eye(2)
+                found.append((body.gear, mode, rows))
+        return found
 
     @cached_property
     def turning(self) -> FloatArray:
@@ -395,10 +407,11 @@ def rotor_component(
         [I, τᵀ S; S τ, J_r] [q''; φ''] + [K, 0; 0, k] [q; φ] = f.
 
     The component's coordinates are the natural modes of this: in torsion, the rigid rotation of all first, and alike in
-    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Rims that tilt and move
-    along the axis on thin webs join in the same way, the tilt with its part in the gyroscopic moment, and a body's
-    modes with nodal diameters, which no motion of the hub excites, stand by themselves. Of a shaft with rims the
-    coordinates above its own highest mode, and above the limit of the bodies out of the plane, are of the kind ``residual``, as attachment modes of the housing are: hubs
+    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Modes of
+    gear bodies without and with one nodal diameter join the motion along the axis and the tilts in the same way, with
+    1, Γ and ω² in place of J_r, S and k, and with their part in the gyroscopic moment; those with more, which no motion
+    of the hub excites, stand by themselves. Of a shaft with rims the coordinates above its own highest mode, and above
+    the limit of the bodies, are of the kind ``residual``, as attachment modes of the housing are: hubs
     between shaft and rims vibrate there, and no step in time is refined for them.
 
     An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
@@ -408,8 +421,8 @@ def rotor_component(
     ----------
     name : str
     modal : ModalRotor
-        m planar, t torsional and a axial modes, vectors included. With s shifts and tilts, g rotations and u axial
-        motions of rims, and p modes with nodal diameters, the component has 2 (m + s) + t + g + a + u + 2 p
+        m planar, t torsional and a axial modes, vectors included. With s shifts and tilting modes, g rotations, u
+        umbrella modes, and p modes with more nodal diameters, the component has 2 (m + s) + t + g + a + u + 2 p
         coordinates.
     start : float
         z of the rotor's left end [m].
@@ -424,7 +437,8 @@ def rotor_component(
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
     along, axial_basis = _axial_with_rims(modal, bodies)
     plane_basis, plane_stiffness, bending = _free_plane(lateral, bodies)
-    plates = np.array([mode.frequency for body in bodies for mode in body.plates for _ in range(2)])
+    pairs = [mode for body in bodies for mode in body.plates if mode.nodal_diameters > 1]
+    plates = np.repeat([mode.frequency for mode in pairs], 2)
     size = len(plane_basis)
     n = 2 * size + len(twisting) + len(along) + len(plates)
     stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2, plates**2]))
@@ -490,7 +504,7 @@ def _axial_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[Flo
     if modal.axial is None:
         return np.zeros(0), np.zeros((0, 0))
     frequencies = modal.axial.frequencies
-    rims = [(body.at, body.axial) for body in bodies if body.axial is not None]
+    rims = _plates_as_springs(bodies, 0)
     if not rims:
         return frequencies, np.eye(frequencies.size)
     basis, stiffness = _with_rims(np.diag(frequencies**2), modal.axial.evaluate([at for at, _ in rims]), rims)
@@ -500,6 +514,15 @@ def _axial_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[Flo
     return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
 
 
+def _plates_as_springs(bodies: Sequence[GearBody], nodal_diameters: int) -> list[tuple[float, RimSpring]]:
+    """Stations and springs of the bodies' modes with a number of nodal diameters; their modal mass is 1."""
+    return [
+        (body.at, RimSpring(mode.frequency**2, mode.coupling, 1.0))
+        for body in bodies
+        for mode in body.plates_with(nodal_diameters)
+    ]
+
+
 def _axial_kinds(frequencies: FloatArray, axial: AxialModes, limit: float) -> tuple[str, ...]:
     """Kinds of the axial coordinates; of a shaft without axial rims all are axial."""
     highest = max(float(axial.frequencies.max(initial=0.0)), limit)
@@ -507,17 +530,17 @@ def _axial_kinds(frequencies: FloatArray, axial: AxialModes, limit: float) -> tu
 
 
 def _plane_spin(lateral: LateralModes, bodies: Sequence[GearBody], basis: FloatArray) -> FloatArray:
-    """Polar inertia over a plane's coordinates (m + s, m + s): of the shaft, and of rims that tilt on their hubs."""
-    m, tilts = lateral.count, [(body.at, body.tilt) for body in bodies if body.tilt is not None]
+    """Polar inertia over a plane's coordinates (m + s, m + s): of the shaft, and of tilting modes of gear bodies."""
+    m, tilts = lateral.count, [(body.at, mode) for body in bodies for mode in body.plates_with(1)]
     if not tilts:
         return np.asarray(basis[:m].T @ lateral.polar_inertia_matrix @ basis[:m])
     spin = np.zeros((len(basis), len(basis)))
     first = len(basis) - len(tilts)
     spin[:m, :m] = lateral.polar_inertia_matrix
     slopes = lateral.evaluate([at for at, _ in tilts])[1]
-    spin[:m, first:] = slopes * [spring.coupling_spin for _, spring in tilts]
+    spin[:m, first:] = slopes * [mode.coupling_spin for _, mode in tilts]
     spin[first:, :m] = spin[:m, first:].T
-    spin[first:, first:] = np.diag([spring.rim_spin for _, spring in tilts])
+    spin[first:, first:] = np.diag([2.0 * mode.rotation for _, mode in tilts])
     return np.asarray(basis.T @ spin @ basis)
 
 
@@ -562,7 +585,7 @@ def _free_plane(lateral: LateralModes, bodies: Sequence[GearBody]) -> tuple[Floa
     whole, free = lateral.rigid_motions, lateral.free_stiffness
     count, unresisted = whole.shape[1], lateral.unresisted_motions
     shifts = [(body.at, body.shift) for body in bodies if body.shift is not None]
-    tilts = [(body.at, body.tilt) for body in bodies if body.tilt is not None]
+    tilts = _plates_as_springs(bodies, 1)
     rims = [*shifts, *tilts]
     joined = np.eye(lateral.count)
     if rims:

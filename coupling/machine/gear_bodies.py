@@ -17,22 +17,23 @@ the shaft that it could move. Of a gear in one pair it stays there also where th
 above the frequencies of the shaft's modes: it responds statically in any place then. The frequency f of a mesh mode
 errs by about half of (f / f_rim)² of itself.
 
-*Out of the plane* the rim of a wheel with a web moves along the axis (umbrella) and tilts, and has modes with two and
-three nodal diameters (:mod:`coupling.gears.stiffness.wheel_modes`). Those whose frequency on a hub at rest is below
-`KEPT_BELOW` times the limit of the shaft's modes are kept; above, and of a disc without a web, the body is rigid in
-them. Axial motion and tilt are springs of the rim as the rotation and the shift are, and the static machine has them
-too: helical teeth tilt a thin wheel. A mode with nodal diameters is a cosine and a sine in directions at rest. Its
-shape rotates with the body, so the rates in the body are D q = q' + n Ω J q, J = [0, 1; -1, 0], and with g of
-:mod:`coupling.gears.stiffness.wheel_modes`, the part c = n - g of the Coriolis force, and the damping ζ of its
-material,
+*Out of the plane* a wheel with a web has modes on its hub (:mod:`coupling.gears.stiffness.wheel_modes`): the umbrella,
+tilt and others with nodal diameters. Those below `KEPT_BELOW` times the limit of the shaft's modes are kept; in the
+others, and in all of a disc without a web, the body is rigid. The static machine has them, too: helical teeth tilt a
+thin wheel. The umbrella joins the motion of the shaft along its axis and one nodal diameter its tilt in both planes,
+with their coupling inertia and gyroscopic moment, as rims do. A mode with more nodal diameters is a cosine and a sine in
+directions at rest. Its shape rotates with the body, so the rates in the body are D q = q' + n Ω J q, J = [0, 1; -1, 0],
+and with g of :mod:`coupling.gears.stiffness.wheel_modes`, the part c = n - g of the Coriolis force, and the damping ζ
+of its material,
 
     q'' + 2 ζ ω q' + ω² q + 2 Ω g J q' + (n² - 2 n g) Ω² q + 2 ζ ω n Ω J q = f.
 
-Without Coriolis force g = n: an observer at rest sees a standing wave of the body as two, at ω ± n Ω.
+Without Coriolis force g = n: an observer at rest sees a standing wave of the body as two, at ω ± n Ω. Of one nodal
+diameter the term of Ω² is left out: what the centrifugal force does to a rim that tilts rigidly cancels it.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf, pi, sqrt
 
 import numpy as np
@@ -40,7 +41,7 @@ import numpy.typing as npt
 
 from coupling.gears import Gear
 from coupling.gears.stiffness.rim_on_hub import RimShares
-from coupling.gears.stiffness.wheel_modes import PlateMode, RimMotion, WheelModes, wheel_modes, wheel_section
+from coupling.gears.stiffness.wheel_modes import PlateMode, wheel_modes, wheel_section
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,25 +54,21 @@ KEPT_BELOW = 2.0
 
 @dataclass(frozen=True)
 class RimSpring:
-    """A motion of a rim on its hub: rotation about the shaft, shift across it, motion along it, or tilt.
+    """A motion of a rim on its hub: rotation about the shaft, or shift across it.
 
     Attributes
     ----------
     stiffness : float
-        [N m] of a rotation or a tilt, [N/m] of a shift.
+        [N m] of a rotation, [N/m] of a shift.
     coupling_inertia : float
         S [kg m²] or [kg], see :mod:`coupling.gears.stiffness.rim_on_hub`.
     rim_inertia : float
         J_r [kg m²] or M_r [kg].
-    coupling_spin, rim_spin : float
-        The same of the gyroscopic moment of a tilt [kg m²].
     """
 
     stiffness: float
     coupling_inertia: float
     rim_inertia: float
-    coupling_spin: float = 0.0
-    rim_spin: float = 0.0
 
     @property
     def frequency_hz(self) -> float:
@@ -91,29 +88,22 @@ class GearBody:
         Station of the hub, from the left end of the shaft [m].
     twist, shift : RimSpring or None
         Rotation about the shaft, and shift along any direction across it; None where it is static.
-    axial, tilt : RimSpring or None
-        Motion along the shaft, and tilt about any direction across it; None where the body is rigid in it.
     plates : tuple of PlateMode
-        Modes with two nodal diameters or more, on a hub at rest.
+        Modes out of the plane on a hub at rest that are kept.
     limit : float
-        Frequency below which motions out of the plane vibrate, and above which they respond statically [rad/s].
+        Frequency below which these vibrate, and above which they respond statically [rad/s].
     """
 
     gear: str
     at: float
     twist: RimSpring | None
     shift: RimSpring | None
-    axial: RimSpring | None = None
-    tilt: RimSpring | None = None
     plates: tuple[PlateMode, ...] = ()
     limit: float = 0.0
 
-    @property
-    def out_of_plane(self) -> "GearBody | None":
-        """The body with its motions out of the plane alone; None without any."""
-        if self.axial is None and self.tilt is None and not self.plates:
-            return None
-        return replace(self, twist=None, shift=None)
+    def plates_with(self, nodal_diameters: int) -> list[PlateMode]:
+        """Modes with a number of nodal diameters."""
+        return [mode for mode in self.plates if mode.nodal_diameters == nodal_diameters]
 
     def compliance(self, base_radius: float) -> float:
         """Motion of the teeth by that of the rim on the hub, along the line of action [m/N]."""
@@ -145,85 +135,28 @@ def stiffest(compliances: Sequence[float]) -> float:
 
 
 @dataclass(frozen=True)
-class BodyMotion:
-    """A motion of a gear's body out of the plane, on its hub at rest.
-
-    Attributes
-    ----------
-    name : str
-        ``umbrella``, ``1 nodal diameter``, ``2 nodal diameters``, ...
-    frequency : float
-        Natural frequency [rad/s].
-    kept : bool
-        Whether the machine follows it; else the body is rigid in it.
-    """
-
-    name: str
-    frequency: float
-    kept: bool
-
-
-@dataclass(frozen=True)
 class BodyOutOfPlane:
-    """Motions of a gear's body out of the plane, by its inertia on the shaft.
+    """Modes of a gear's body out of the plane, on its hub at rest.
 
     Attributes
     ----------
-    modes : WheelModes
-    inertia : tuple of float
-        Mass [kg], polar and diametral inertia [kg m²] beside those of the shaft.
-    mass_ratio : float
-        Mass over that of the body's geometry.
-    limit : float
-        Limit of the shaft's modes [rad/s].
-    flexible : bool
-        Whether the body has a web.
+    modes : tuple of PlateMode
+        The first one with up to three nodal diameters, and all that are kept.
+    below : float
+        Frequency below which they are kept [rad/s]; 0 of a rigid body.
     """
 
-    modes: WheelModes
-    inertia: tuple[float, float, float]
-    mass_ratio: float
-    limit: float
-    flexible: bool
-
-    def _keeps(self, frequency: float) -> bool:
-        return self.flexible and frequency < KEPT_BELOW * self.limit * sqrt(self.mass_ratio)
+    modes: tuple[PlateMode, ...]
+    below: float
 
     @property
-    def motions(self) -> tuple[BodyMotion, ...]:
-        """All motions, by their nodal diameters."""
-        frequencies = [self.modes.axial.frequency, self.modes.tilt.frequency]
-        frequencies += [mode.frequency for mode in self.modes.plates]
-        names = ["umbrella", *(f"{n} nodal diameter{'s' * (n > 1)}" for n in range(1, len(frequencies)))]
-        return tuple(
-            BodyMotion(name, frequency / sqrt(self.mass_ratio), self._keeps(frequency))
-            for name, frequency in zip(names, frequencies, strict=True)
-        )
-
-    @property
-    def axial(self) -> RimSpring | None:
-        """Spring of the rim's motion along the axis, where it is kept."""
-        return self._spring(self.modes.axial, self.inertia[0], 0.0)
-
-    @property
-    def tilt(self) -> RimSpring | None:
-        """Spring of the rim's tilt, where it is kept."""
-        return self._spring(self.modes.tilt, self.inertia[2], self.inertia[1])
-
-    @property
-    def plates(self) -> tuple[PlateMode, ...]:
-        """Modes with two nodal diameters or more that are kept."""
-        return tuple(mode.scaled(self.mass_ratio) for mode in self.modes.plates if self._keeps(mode.frequency))
-
-    def _spring(self, motion: RimMotion, inertia: float, polar: float) -> RimSpring | None:
-        if inertia <= 0.0 or not self._keeps(motion.frequency):
-            return None
-        inertias = motion.coupling * inertia, motion.rim * inertia
-        return RimSpring(motion.stiffness, *inertias, motion.coupling_spin * polar, motion.rim_spin * polar)
+    def kept(self) -> tuple[PlateMode, ...]:
+        """Modes that the machine follows; in the others the body is rigid."""
+        return tuple(mode for mode in self.modes if mode.frequency < self.below)
 
 
 def body_out_of_plane(gear: Gear, inertia: tuple[float, float, float], limit: float) -> BodyOutOfPlane | None:
-    """Motions of a gear's body out of the plane; None of a gear without inertia, or in one piece with its shaft.
+    """Modes of a gear's body out of the plane; None of a gear without inertia, or in one piece with its shaft.
 
     Parameters
     ----------
@@ -236,9 +169,12 @@ def body_out_of_plane(gear: Gear, inertia: tuple[float, float, float], limit: fl
     section = wheel_section(gear)
     if section is None or min(inertia) <= 0.0:
         return None
-    return BodyOutOfPlane(
-        wheel_modes(section), inertia, inertia[0] / gear.mass, limit, flexible=gear.web_thickness is not None
-    )
+    below = KEPT_BELOW * limit if gear.web_thickness is not None else 0.0
+    ratio = inertia[0] / gear.mass
+    found = wheel_modes(section, below * sqrt(ratio))
+    tilting = inertia[2] / found.diametral_inertia
+    modes = (mode.scaled(tilting if mode.nodal_diameters == 1 else ratio) for mode in found.modes)
+    return BodyOutOfPlane(tuple(modes), below)
 
 
 def transport(mode: PlateMode, damping_ratio: float, speed: float) -> tuple[FloatArray, FloatArray]:

@@ -6,6 +6,7 @@ and two of each pedestal. Connectors are bearings, gear pairs and pedestals (:mo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -73,8 +74,8 @@ def solve_operating_point(
     forces : sequence of ShaftForce
         Constant ones.
     rims : sequence of GearBody
-        Rims that move on their hubs: those of gears that several pairs share, whose twist and shift are in the contact
-        of one pair alone, and those that tilt and move along the axis.
+        Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact. And
+        bodies with modes out of the plane.
 
     Raises
     ------
@@ -101,7 +102,7 @@ class _StaticModel:
     rims_first : int
         First coordinate of the rims.
     plates : list of (str, PlateMode, slice)
-        Modes of gear bodies with nodal diameters: gear, mode, and coordinates.
+        Modes of gear bodies out of the plane: gear, mode, and coordinates.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
@@ -148,21 +149,23 @@ class _StaticModel:
         springs = [
             (rim.gear, axis, spring.stiffness)
             for rim in rims
-            for spring, axes in ((rim.shift, (0, 1)), (rim.axial, (2,)), (rim.tilt, (3, 4)), (rim.twist, (5,)))
+            for spring, axes in ((rim.shift, (0, 1)), (rim.twist, (5,)))
             if spring is not None
             for axis in axes
         ]
         plates = [(rim.gear, mode) for rim in rims for mode in rim.plates]
-        firsts = range(size + len(springs), size + len(springs) + 2 * len(plates), 2)
-        self.plates = [(gear, mode, slice(at, at + 2)) for (gear, mode), at in zip(plates, firsts, strict=True)]
-        self.rims_first, self.size = size, firsts.stop
+        ends = size + len(springs) + np.cumsum([0, *(mode.size for _, mode in plates)])
+        self.plates = [
+            (gear, mode, slice(*own)) for (gear, mode), own in zip(plates, pairwise(ends.tolist()), strict=True)
+        ]
+        self.rims_first, self.size = size, int(ends[-1])
         self.stiffness = self._linear_stiffness()
         self.rims = {rim.gear: np.zeros((6, self.size)) for rim in rims}
         for number, (gear, axis, stiffness) in enumerate(springs, size):
             self.stiffness[number, number] = stiffness
             self.rims[gear][axis, number] = 1.0
         for _, mode, own in self.plates:
-            self.stiffness[own, own] = mode.frequency**2 * np.eye(2)
+            self.stiffness[own, own] = mode.frequency**2 * np.eye(mode.size)
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -261,13 +264,12 @@ class _StaticModel:
             rows[-1] += flank.tilting(middle)
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
-                rows[:-1] += flank.across(rim) + flank.turning(rim[5]) + flank.axial(rim)
-                rows[:-1] += np.outer(gear.arms, flank.tilting(rim))
-                rows[-1] += flank.tilting(rim)
+                rows[:-1] += flank.across(rim) + flank.turning(rim[5])
             for name, mode, own in self.plates:
                 if name == gear.name:
-                    axial, *slopes = mode.rows(flank.arm)
-                    rows[:-1, own] += flank.along(axial) + np.outer(gear.arms, flank.across(np.array(slopes)))
+                    body = mode.rows(flank.arm)
+                    rows[:-1, own] += flank.along(body[0]) + np.outer(gear.arms, flank.across(body[1:3]))
+                    rows[-1, own] += flank.across(body[3:])
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:

@@ -14,22 +14,22 @@ A section that is symmetric about the middle of the face has motions in its plan
 Those in the plane are in :mod:`coupling.gears.stiffness.rim_on_hub` and, beyond rotation and shift, in the static
 compliance of the teeth. Out of the plane, with U = V = 0 at z = 0, are
 
-- n = 0, the *umbrella*: the rim moves along the axis,
-- n = 1, one nodal diameter: the rim tilts,
-- n = 2, 3, two and three nodal diameters.
+- n = 0, the *umbrella*: the rim moves along the axis, which exchanges a force with the hub,
+- n = 1, one nodal diameter: the rim tilts, which exchanges a moment with the hub,
+- n = 2, 3, ... nodal diameters, which balance themselves.
 
-The first two exchange force or moment with the hub. They have the static shape x of a force, or moment, spread over the
-root circle as the rigid motion r of the rim spreads, whose conjugate motion is 1: the stiffness k is exact, and the
-inertias are S = r M x and J_r = x M x (Guyan 1965; Craig & Bampton 1968 with static shapes for the ports). The others
-have their natural modes φ on the hub at rest, of unit modal mass.
+Each is followed by modes with nodal circles, the first of them the roll of the rim's section. All are natural modes φ
+on a hub at rest, of unit modal mass (fixed-interface modes of Craig & Bampton 1968). With the rigid motion r of the
+body by its hub, along the axis or a tilt, the coupling inertia is Γ = r M φ.
 
 In a body that rotates at Ω, a cosine and a sine in directions at rest have the gyroscopic term 2 Ω g between them,
 
     g = ∫ ρ u_c · ∂u_s/∂θ dV = π ∫ ρ [n (U² + V² + W²) + 2 U V] r dr dz,
 
-the derivative that of the vector: n by transport less the part c = -2π ∫ ρ U V r dr dz of the Coriolis force. A rim that
-tilts rigidly has 2 g = J_p. What the rotation adds to the stiffness of the body itself is neglected: it changes a
-natural frequency ω by some n² Ω²/(2 ω²) of itself (Lamb & Southwell 1921).
+the derivative that of the vector: n by transport less the part c = -2π ∫ ρ U V r dr dz of the Coriolis force. For one
+nodal diameter 2 g takes the place of the polar inertia in the gyroscopic moment, and Γ_p = r G φ that of Γ. Coriolis
+force between different modes is neglected, and so is what the rotation adds to the stiffness of the body itself: it
+changes a natural frequency ω by some n² Ω²/(2 ω²) of itself (Lamb & Southwell 1921).
 
 Teeth are a mass on the root circle.
 """
@@ -37,24 +37,22 @@ Teeth are a mass on the root circle.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
+from scipy import linalg, sparse
 
 from coupling.gears.geometry.gear import Gear
 from coupling.gears.stiffness.foundation import held_radius
 
-if TYPE_CHECKING:
-    from skfem import Basis
-
 FloatArray = npt.NDArray[np.float64]
 
-MOST_NODAL_DIAMETERS = 3
-_ALONG, _THROUGH = 6, 2  # elements of second order along a ring and through half its width
+_FIRST, _MOST = 3, 12  # nodal diameters that are always solved, and the most
+_ALONG, _THROUGH = 8, 2  # elements of second order along web or disc, and along the rim and through half a width
+_MODES = 6  # most modes of a harmonic
 
 
 @dataclass(frozen=True)
@@ -85,84 +83,94 @@ class WheelSection:
 
 
 @dataclass(frozen=True)
-class RimMotion:
-    """Motion of the rim out of the plane as one body: along the axis, or tilt.
-
-    Attributes
-    ----------
-    stiffness : float
-        k [N/m] or [N m].
-    coupling, rim : float
-        S and J_r over the body's mass or diametral inertia.
-    coupling_spin, rim_spin : float
-        The same of the gyroscopic moment, over the body's polar inertia; 0 along the axis.
-    frequency : float
-        Natural frequency of the body on a hub at rest in this harmonic [rad/s].
-    """
-
-    stiffness: float
-    coupling: float
-    rim: float
-    coupling_spin: float
-    rim_spin: float
-    frequency: float
-
-
-@dataclass(frozen=True)
 class PlateMode:
-    """Natural mode of the body with two nodal diameters or more on a hub at rest: a cosine and a sine.
+    """Natural mode of a body out of its plane on a hub at rest: a cosine and a sine; without nodal diameter one alone.
 
     Attributes
     ----------
-    nodal_diameters : int
-        n.
+    nodal_diameters, nodal_circles : int
+        n, and the number of the mode in its harmonic.
     frequency : float
         ω [rad/s].
+    coupling : float
+        Γ [√kg] of the umbrella, [√kg m] with one nodal diameter; 0 beyond.
+    coupling_spin : float
+        Γ_p [√kg m] with one nodal diameter; 0 otherwise.
     rotation : float
         g.
     axial : float
         W at the root circle in the middle of the face [1/√kg].
     slopes : tuple of float
         Slopes U_z and V_z of the root circle over the face [1/(m √kg)].
+    radius : float
+        Root circle radius [m].
     """
 
     nodal_diameters: int
+    nodal_circles: int
     frequency: float
+    coupling: float
+    coupling_spin: float
     rotation: float
     axial: float
     slopes: tuple[float, float]
+    radius: float
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates: cosine and sine, or one."""
+        return 2 if self.nodal_diameters else 1
+
+    @property
+    def name(self) -> str:
+        """Name in words: ``umbrella``, ``2 nodal diameters``, ``umbrella, 1 nodal circle``."""
+        n, circles = self.nodal_diameters, self.nodal_circles
+        diameters = f"{n} nodal diameter{'s' * (n > 1)}" if n else "umbrella"
+        return f"{diameters}, {circles} nodal circle{'s' * (circles > 1)}" if circles else diameters
 
     def rows(self, arm: tuple[float, float]) -> FloatArray:
-        """Motion of the root circle by the cosine and the sine, shape (3, 2) [1/√kg, 1/(m √kg)].
+        """Motion of the root circle by the coordinates, shape (5, 2) or (5, 1) [1/√kg, 1/(m √kg)].
 
-        Along z in the middle of the face, and slopes of the motions along x and y over the face, at a point that lies
-        at ``arm`` from the centre along x and y [m].
+        Along z in the middle of the face; slopes of the motions along x and y over the face; slopes along x and y of
+        the motion against z, at a point that lies at ``arm`` from the centre along x and y [m]. In a body that tilts
+        rigidly both slopes are its tilt.
         """
-        angle = math.atan2(arm[1], arm[0])
-        cosine, sine = math.cos(self.nodal_diameters * angle), math.sin(self.nodal_diameters * angle)
-        radial, tangential = self.slopes[0] * np.array([cosine, sine]), self.slopes[1] * np.array([sine, -cosine])
-        return np.array(
-            [
-                self.axial * np.array([cosine, sine]),
-                math.cos(angle) * radial - math.sin(angle) * tangential,
-                math.sin(angle) * radial + math.cos(angle) * tangential,
-            ]
-        )
+        n, angle = self.nodal_diameters, math.atan2(arm[1], arm[0])
+        cosine, sine = math.cos(n * angle), math.sin(n * angle)
+        along, around = np.array([cosine, sine]), np.array([sine, -cosine])
+        outward, onward = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+        radial, tangential = np.outer(outward, self.slopes[0] * along), self.slopes[1] * np.outer(onward, around)
+        across = n * self.axial / self.radius * np.outer(onward, around)
+        return np.vstack([self.axial * along, radial + tangential, radial + across])[:, : self.size]
 
-    def scaled(self, mass_ratio: float) -> PlateMode:
+    def scaled(self, ratio: float) -> PlateMode:
         """Return the mode of a body whose density is this times as high."""
-        root = math.sqrt(mass_ratio)
-        slopes = self.slopes[0] / root, self.slopes[1] / root
-        return PlateMode(self.nodal_diameters, self.frequency / root, self.rotation, self.axial / root, slopes)
+        root = math.sqrt(ratio)
+        return replace(
+            self,
+            frequency=self.frequency / root,
+            coupling=self.coupling * root,
+            coupling_spin=self.coupling_spin * root,
+            axial=self.axial / root,
+            slopes=(self.slopes[0] / root, self.slopes[1] / root),
+        )
 
 
 @dataclass(frozen=True)
 class WheelModes:
-    """Out-of-plane motions of a body: of its rim as one body, and modes with two and three nodal diameters."""
+    """Modes of a body out of its plane, by nodal diameters, and its inertia by its elements.
 
-    axial: RimMotion
-    tilt: RimMotion
-    plates: tuple[PlateMode, ...]
+    Attributes
+    ----------
+    modes : tuple of PlateMode
+        The first one with up to three nodal diameters, and all below a limit.
+    mass, diametral_inertia : float
+        [kg] and [kg m²].
+    """
+
+    modes: tuple[PlateMode, ...]
+    mass: float
+    diametral_inertia: float
 
 
 def wheel_section(gear: Gear) -> WheelSection | None:
@@ -178,8 +186,8 @@ def wheel_section(gear: Gear) -> WheelSection | None:
 
 
 @lru_cache(maxsize=64)
-def wheel_modes(section: WheelSection) -> WheelModes:
-    """Solve the out-of-plane motions of a body, once for a section.
+def wheel_modes(section: WheelSection, limit: float = 0.0) -> WheelModes:
+    """Solve the modes of a body out of its plane below a limit [rad/s], once for a section.
 
     Raises
     ------
@@ -188,19 +196,55 @@ def wheel_modes(section: WheelSection) -> WheelModes:
     """
     if not 0.0 < section.hub < section.rim <= section.root:
         raise ValueError(f"radii {section.hub:g}, {section.rim:g} and {section.root:g} m of a wheel do not ascend")
-    basis = _section_basis(section)
-    plates = [_plate_mode(section, basis, n) for n in range(2, MOST_NODAL_DIAMETERS + 1)]
-    return WheelModes(_rim_motion(section, basis, 0), _rim_motion(section, basis, 1), tuple(plates))
+    elements = _section_elements(section)
+    modes, inertias = list[PlateMode](), list[float]()
+    for n in range(_MOST + 1):
+        found, inertia = _harmonic(section, elements, n, limit)
+        if n > _FIRST and not found:
+            break
+        modes += found
+        inertias.append(inertia)
+    return WheelModes(tuple(modes), *inertias[:2])
 
 
-def _section_basis(section: WheelSection) -> Basis:
-    """Finite elements over half the section, with U, V, W at each node."""
+@dataclass(frozen=True)
+class _Elements:
+    """Finite elements over half the section: shapes of e freedoms at q points.
+
+    Attributes
+    ----------
+    r, z : ndarray, shape (e,)
+        Places of the freedoms [m].
+    at : ndarray, shape (q,)
+        Radii of the points [m].
+    area : ndarray, shape (q,)
+        Their weights times the radius [m³].
+    value, along_r, along_z : sparse matrix, shape (q, e)
+        Shapes and their derivatives.
+    rim_value, rim_area : sparse matrix and ndarray
+        Shapes and weights on the root circle.
+    """
+
+    r: FloatArray
+    z: FloatArray
+    at: FloatArray
+    area: FloatArray
+    value: sparse.csr_matrix
+    along_r: sparse.csr_matrix
+    along_z: sparse.csr_matrix
+    rim_value: sparse.csr_matrix
+    rim_area: FloatArray
+
+
+def _section_elements(section: WheelSection) -> _Elements:
     import skfem
 
     def cuts(start: float, end: float, count: int) -> FloatArray:
         return np.linspace(start, end, count + 1)
 
-    r, z = cuts(section.hub, section.rim, _ALONG), cuts(0.0, 0.5 * section.web, _THROUGH)
+    # Narrower towards the hub and the rim, where the web bends most.
+    web = 0.5 * (1.0 - np.cos(np.pi * np.arange(_ALONG + 1) / _ALONG))
+    r, z = section.hub + (section.rim - section.hub) * web, cuts(0.0, 0.5 * section.web, _THROUGH)
     if section.rim < section.root:
         r = np.append(r, cuts(section.rim, section.root, _THROUGH)[1:])
     if section.web < section.face:
@@ -208,121 +252,89 @@ def _section_basis(section: WheelSection) -> Basis:
     mesh = skfem.MeshQuad.init_tensor(r, z)
     at_r, at_z = mesh.p[:, mesh.t].mean(axis=1)
     mesh = mesh.restrict(np.flatnonzero((at_r > section.rim) | (at_z < 0.5 * section.web)))
-    return skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2(), 3))
-
-
-def _matrices(section: WheelSection, basis: Basis, n: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Stiffness, mass and spin (2 g) of a harmonic over the freedoms of half the section, for the whole body."""
-    import skfem
-
-    shear = section.youngs_modulus / (2.0 * (1.0 + section.poisson_ratio))
-    lame = 2.0 * shear * section.poisson_ratio / (1.0 - 2.0 * section.poisson_ratio)
-    around = 2.0 * (2.0 * math.pi if n == 0 else math.pi)  # both halves, and the mean of cos² over the angle
-
-    def strains(u: Any, r: Any) -> tuple[Any, ...]:
-        value, slope = u, u.grad
-        direct = slope[0, 0], (value[0] + n * value[1]) / r, slope[2, 1]
-        return (
-            *direct,
-            slope[0, 1] + slope[2, 0],
-            slope[1, 0] - (value[1] + n * value[0]) / r,
-            slope[1, 1] - n * value[2] / r,
-        )
-
-    def elastic(u: Any, v: Any, w: Any) -> Any:
-        a, b = strains(u, w.x[0]), strains(v, w.x[0])
-        normal = lame * sum(a[:3]) * sum(b[:3]) + 2.0 * shear * sum(p * q for p, q in zip(a[:3], b[:3], strict=True))
-        return around * w.x[0] * (normal + shear * sum(p * q for p, q in zip(a[3:], b[3:], strict=True)))
-
-    def product(u: Any, v: Any) -> Any:
-        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-    def spinning(u: Any, v: Any) -> Any:
-        return 2.0 * (n * product(u, v) + u[0] * v[1] + u[1] * v[0])
-
-    teeth = section.teeth / (2.0 * math.pi * section.root * section.face)
+    basis = skfem.Basis(mesh, skfem.ElementQuad2())
     rim = basis.boundary(lambda x: np.isclose(x[0], section.root))
-    stiffness = skfem.BilinearForm(elastic).assemble(basis).toarray()
-    inertias = [
-        skfem.BilinearForm(lambda u, v, w, form=form: around * section.density * w.x[0] * form(u, v)).assemble(basis)
-        + skfem.BilinearForm(lambda u, v, w, form=form: around * teeth * w.x[0] * form(u, v)).assemble(rim)
-        for form in (product, spinning)
-    ]
-    return stiffness, inertias[0].toarray(), inertias[1].toarray()
 
+    def operator(of: Any, fields: list[FloatArray]) -> sparse.csr_matrix:
+        """Shapes, (cells, points) each, as a matrix from freedoms to points."""
+        points = np.arange(fields[0].size)
+        columns = [np.repeat(freedoms, fields[0].shape[1]) for freedoms in of.element_dofs]
+        entries = np.concatenate([field.ravel() for field in fields])
+        rows = np.tile(points, len(fields))
+        return sparse.csr_matrix((entries, (rows, np.concatenate(columns))), shape=(points.size, of.N))
 
-def _free(section: WheelSection, basis: Basis, n: int) -> npt.NDArray[np.int64]:
-    """Freedoms that move out of the plane on a hub at rest."""
-    r, z = basis.doflocs
-    part = np.zeros(basis.N, dtype=np.int64)
-    for number in range(3):
-        part[_of_component(basis, number)] = number
-    held = np.isclose(r, section.hub) | (np.isclose(z, 0.0, atol=1e-12) & (part < 2)) | ((part == 1) & (n == 0))
-    return np.flatnonzero(~held)
-
-
-def _of_component(basis: Basis, number: int) -> npt.NDArray[np.int64]:
-    """Freedoms of U, V or W: those of each node follow each other."""
-    return np.sort(np.concatenate([kind[number::3].ravel() for kind in _kinds_of_freedoms(basis) if kind.size]))
-
-
-def _kinds_of_freedoms(basis: Basis) -> list[npt.NDArray[np.int64]]:
-    return [basis.dofs.nodal_dofs, basis.dofs.facet_dofs, basis.dofs.interior_dofs]
-
-
-def _rigid(basis: Basis, n: int) -> FloatArray:
-    """Rigid motion of the whole body: along the axis for n = 0, tilt for n = 1."""
-    motion = np.zeros(basis.N)
-    r, z = basis.doflocs
-    for number, values in enumerate((0.0 * z, 0.0 * z, 1.0 + 0.0 * z) if n == 0 else (z, -z, -r)):
-        of = _of_component(basis, number)
-        motion[of] = values[of]
-    return motion
-
-
-def _rim_motion(section: WheelSection, basis: Basis, n: int) -> RimMotion:
-    import skfem
-
-    stiffness, mass, spin = _matrices(section, basis, n)
-    free, rigid = _free(section, basis, n), _rigid(basis, n)
-    around = 2.0 * (2.0 * math.pi if n == 0 else math.pi)
-    rim = basis.boundary(lambda x: np.isclose(x[0], section.root))
-    spread = skfem.BilinearForm(lambda u, v, w: around * w.x[0] * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]))
-    load = spread.assemble(rim) @ rigid
-    load /= rigid @ load  # conjugate to a motion that is 1 where the rim moves rigidly
-    among = np.ix_(free, free)
-    shape = np.zeros(basis.N)
-    shape[free] = linalg.solve(stiffness[among], load[free], assume_a="pos")
-    compliance = float(load @ shape)
-    shape /= compliance
-    whole, polar = float(rigid @ mass @ rigid), float(rigid @ spin @ rigid)
-    first = float(linalg.eigh(stiffness[among], mass[among], eigvals_only=True, subset_by_index=[0, 0])[0])
-    return RimMotion(
-        1.0 / compliance,
-        float(rigid @ mass @ shape) / whole,
-        float(shape @ mass @ shape) / whole,
-        0.0 if n == 0 else float(rigid @ spin @ shape) / polar,
-        0.0 if n == 0 else float(shape @ spin @ shape) / polar,
-        math.sqrt(first),
+    shapes, rim_shapes = ([part[0] for part in of.basis] for of in (basis, rim))
+    at = np.asarray(basis.global_coordinates())[0]
+    return _Elements(
+        *basis.doflocs,
+        at.ravel(),
+        (basis.dx * at).ravel(),
+        operator(basis, [np.asarray(shape) for shape in shapes]),
+        *(operator(basis, [np.asarray(shape.grad)[axis] for shape in shapes]) for axis in (0, 1)),
+        operator(rim, [np.asarray(shape) for shape in rim_shapes]),
+        (rim.dx * section.root).ravel(),
     )
 
 
-def _plate_mode(section: WheelSection, basis: Basis, n: int) -> PlateMode:
-    stiffness, mass, spin = _matrices(section, basis, n)
-    free = _free(section, basis, n)
+def _matrices(section: WheelSection, elements: _Elements, n: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Stiffness, mass and spin (2 g) of a harmonic over U, V and W at the freedoms of half a section, for the body."""
+    shear = section.youngs_modulus / (2.0 * (1.0 + section.poisson_ratio))
+    lame = 2.0 * shear * section.poisson_ratio / (1.0 - 2.0 * section.poisson_ratio)
+    around = 2.0 * (2.0 * math.pi if n == 0 else math.pi)  # both halves, and the mean of cos² over the angle
+    by_r, by_z = elements.along_r, elements.along_z
+    over_r = sparse.diags(1.0 / elements.at) @ elements.value
+    strains = (
+        [by_r, None, None],
+        [over_r, n * over_r, None],
+        [None, None, by_z],
+        [by_z, None, by_r],
+        [-n * over_r, by_r - over_r, None],
+        [None, by_z, -n * over_r],
+    )
+    empty = 0.0 * by_r
+    rows = [sparse.hstack([empty if part is None else part for part in strain]).tocsr() for strain in strains]
+    weights = sparse.diags(around * elements.area)
+    dilation = rows[0] + rows[1] + rows[2]
+    stiffness = lame * dilation.T @ weights @ dilation
+    for row, modulus in zip(rows, (2.0, 2.0, 2.0, 1.0, 1.0, 1.0), strict=True):
+        stiffness = stiffness + modulus * shear * row.T @ weights @ row
+    teeth = section.teeth / (2.0 * math.pi * section.root * section.face)
+    inertia = section.density * elements.value.T @ weights @ elements.value
+    inertia = inertia + teeth * elements.rim_value.T @ sparse.diags(around * elements.rim_area) @ elements.rim_value
+    spin = np.array([[n, 1.0, 0.0], [1.0, n, 0.0], [0.0, 0.0, n]])
+    dense = inertia.toarray()
+    return stiffness.toarray(), np.kron(np.eye(3), dense), np.kron(2.0 * spin, dense)
+
+
+def _harmonic(section: WheelSection, elements: _Elements, n: int, limit: float) -> tuple[list[PlateMode], float]:
+    """Modes of a harmonic below a limit, of the first few harmonics one at least; inertia of the rigid motion."""
+    stiffness, mass, spin = _matrices(section, elements, n)
+    r, z = elements.r, elements.z
+    held, middle = np.isclose(r, section.hub), np.isclose(z, 0.0, atol=1e-12)
+    free = np.flatnonzero(~np.concatenate([held | middle, held | middle | (n == 0), held]))
+    rigid = np.concatenate({0: (0.0 * z, 0.0 * z, 1.0 + 0.0 * z), 1: (z, -z, -r)}.get(n, (0.0 * z,) * 3))
     among = np.ix_(free, free)
-    values, vectors = linalg.eigh(stiffness[among], mass[among], subset_by_index=[0, 0])
-    shape = np.zeros(basis.N)
-    shape[free] = vectors[:, 0]
-    r, z = basis.doflocs
-
-    def at_root(component: int, height: float) -> float:
-        of = _of_component(basis, component)
-        place = np.isclose(r[of], section.root) & np.isclose(z[of], height, atol=1e-12)
-        return float(shape[of[place]][0])
-
-    half = 0.5 * section.face
-    axial = at_root(2, 0.0)
-    turned = math.copysign(1.0, axial)
-    slopes = turned * at_root(0, half) / half, turned * at_root(1, half) / half
-    return PlateMode(n, math.sqrt(float(values[0])), 0.5 * float(shape @ spin @ shape), abs(axial), slopes)
+    values, vectors = linalg.eigh(stiffness[among], mass[among], subset_by_index=[0, _MODES - 1])
+    half, outside = 0.5 * section.face, np.isclose(r, section.root)
+    edge = int(np.flatnonzero(outside & np.isclose(z, half))[0])
+    centre = 2 * r.size + int(np.flatnonzero(outside & middle)[0])
+    modes = []
+    for number, frequency in enumerate(np.sqrt(values).tolist()):
+        if frequency >= limit and (number or n > _FIRST):
+            break
+        shape = np.zeros(3 * r.size)
+        shape[free] = vectors[:, number]
+        shape *= math.copysign(1.0, shape[centre])
+        mode = PlateMode(
+            n,
+            number,
+            frequency,
+            float(rigid @ mass @ shape),
+            float(rigid @ spin @ shape) if n == 1 else 0.0,
+            0.5 * float(shape @ spin @ shape),
+            float(shape[centre]),
+            (float(shape[edge]) / half, float(shape[r.size + edge]) / half),
+            section.root,
+        )
+        modes.append(mode)
+    return modes, float(rigid @ mass @ rigid)
