@@ -68,7 +68,8 @@ class CoupledMachine:
     meshes : tuple of GearMesh
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
-        couplings, rotation of gear bodies, slopes of torques, tilting of meshes; contacts in the order drive flanks of ``meshes``, back flanks.
+        couplings, rotation of gear bodies, slopes of torques, tilting of meshes; contacts in the order
+        drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
@@ -369,7 +370,7 @@ def _bearing(
 def _transports(
     coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
 ) -> list[LinearConnector]:
-    """Rotation of the gear bodies' modes with two nodal diameters or more, which an observer at rest sees (`gear_bodies`)."""
+    """Rotation of gear bodies' modes with two nodal diameters or more, see :mod:`coupling.machine.gear_bodies`."""
     connectors = []
     for gear, mode, own in rotor.plates:
         if speed == 0.0:

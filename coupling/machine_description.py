@@ -86,9 +86,6 @@ from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
-LATERAL_LIMIT_HZ = 8000.0
-"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
-
 
 @dataclass(frozen=True, repr=False)
 class Machine:
@@ -268,7 +265,7 @@ class Machine:
             if twisting == shifting == np.inf and outward is None:
                 continue
             shaft = self.shaft(mounted.shaft)
-            own = self._mode_limit(shaft)
+            own = shaft.mode_limit
             limit = own if len(of_gear) == 1 else np.inf
             mass, polar, _ = gear_inertia_on_shaft(mounted, shaft.rotor)
             twist = rim_spring(twisting, polar, rotation_shares(mounted.gear), limit)
@@ -290,15 +287,10 @@ class Machine:
         for mounted in self.gears:
             shaft = self.shaft(mounted.shaft)
             inertia = gear_inertia_on_shaft(mounted, shaft.rotor)
-            body = body_out_of_plane(mounted.gear, inertia, self._mode_limit(shaft))
+            body = body_out_of_plane(mounted.gear, inertia, shaft.mode_limit)
             if body is not None:
                 bodies[mounted.name] = body
         return bodies
-
-    @staticmethod
-    def _mode_limit(shaft: Shaft) -> float:
-        """Limit of a shaft's modes [rad/s]."""
-        return 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -716,7 +708,7 @@ class Machine:
         bearings = self._bearings_on(shaft.name)
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
-            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
+            limit = shaft.mode_limit
         if shaft.rotor.mass_model == "distributed":
             # A lumped rotor has no more modes than its masses allow.
             limit = None if limit is None else limit_factor * limit

@@ -212,9 +212,9 @@ class CoupledModes:
     left : ndarray of complex, shape (m, n)
         Left vectors p with pᴴ (2 λ I + C) q = 1; NaN for rigid motions, whose double zeros have none such.
     kinds : tuple of str
-        Kind of motion: ``housing``, ``rotor``, ``torsion``, ``axial``, ``body``, ``pedestal``, ``mesh``, or ``rigid`` where
-        nothing resists; ``residual`` for the local compliance beside the housing's modes, whose frequency means
-        nothing.
+        Kind of motion: ``housing``, ``rotor``, ``torsion``, ``axial``, ``body`` (a gear's), ``pedestal``, ``mesh``, or
+        ``rigid`` where nothing resists; ``residual`` for the local compliance beside the housing's modes,
+        whose frequency means nothing.
     where : tuple of str
         The component that moves most in coordinates of that kind; of a mesh mode the contact strained most.
     energy : tuple of dict

@@ -41,8 +41,9 @@ class Component:
     name : str
     kinds : tuple of str
         Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``body`` (a gear's
-        body with nodal diameters), ``pedestal``, or ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
-        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
+        body with nodal diameters), ``pedestal``, or ``residual``: a residual attachment mode of the housing, the static
+        response of its truncated modes. Its own frequency is no natural frequency of the housing, and motion at that
+        frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
     damping : ndarray, shape (n, n)
@@ -114,8 +115,8 @@ class RotorComponent(Component):
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m + s, m + s)
-        The m planar modes of ``modal`` and the s shifts of rims and tilting modes of gear bodies, in terms of a plane's coordinates:
-        shift, tilt and bending of the free shaft. Without rims it is orthogonal.
+        The m planar modes of ``modal`` and the s shifts of rims and tilting modes of gear bodies, in terms of a
+        plane's coordinates: shift, tilt and bending of the free shaft. Without rims it is orthogonal.
     torsion_basis : ndarray, shape (t + g, t + g)
         The t torsional modes of ``modal`` and the rotations of g rims against their hubs, in terms of the component's
         torsional coordinates.

@@ -19,17 +19,20 @@ errs by about half of (f / f_rim)² of itself.
 
 *Out of the plane* a wheel with a web has modes on its hub (:mod:`coupling.gears.stiffness.wheel_modes`): the umbrella,
 tilt and others with nodal diameters. Those below `KEPT_BELOW` times the limit of the shaft's modes are kept; in the
-others, and in all of a disc without a web, the body is rigid. The static machine has them, too: helical teeth tilt a
+others the body is rigid, as a disc without a web is. The static machine has them, too: helical teeth tilt a
 thin wheel. The umbrella joins the motion of the shaft along its axis and one nodal diameter its tilt in both planes,
-with their coupling inertia and gyroscopic moment, as rims do. A mode with more nodal diameters is a cosine and a sine in
-directions at rest. Its shape rotates with the body, so the rates in the body are D q = q' + n Ω J q, J = [0, 1; -1, 0],
-and with g of :mod:`coupling.gears.stiffness.wheel_modes`, the part c = n - g of the Coriolis force, and the damping ζ
-of its material,
+with their coupling inertia and gyroscopic moment, as rims do. A mode with more nodal diameters is a cosine and a sine
+in directions at rest. Its shape rotates with the body, so the rates in the body are D q = q' + n Ω J q, with
+J = [0, 1; -1, 0], and with g of :mod:`coupling.gears.stiffness.wheel_modes`, the part c = n - g of the Coriolis force,
+and the damping ζ of its material,
 
     q'' + 2 ζ ω q' + ω² q + 2 Ω g J q' + (n² - 2 n g) Ω² q + 2 ζ ω n Ω J q = f.
 
 Without Coriolis force g = n: an observer at rest sees a standing wave of the body as two, at ω ± n Ω. Of one nodal
 diameter the term of Ω² is left out: what the centrifugal force does to a rim that tilts rigidly cancels it.
+
+The laws of contact count, under loads that vary over the face, the tilt of a body of the full face width
+(:mod:`coupling.gears.stiffness.body_over_face`), beside that of the web here: in the order of (web / face)³ of it twice.
 """
 
 from collections.abc import Sequence
@@ -143,7 +146,7 @@ class BodyOutOfPlane:
     modes : tuple of PlateMode
         The first one with up to three nodal diameters, and all that are kept.
     below : float
-        Frequency below which they are kept [rad/s]; 0 of a rigid body.
+        Frequency below which they are kept [rad/s].
     """
 
     modes: tuple[PlateMode, ...]
@@ -156,7 +159,7 @@ class BodyOutOfPlane:
 
 
 def body_out_of_plane(gear: Gear, inertia: tuple[float, float, float], limit: float) -> BodyOutOfPlane | None:
-    """Modes of a gear's body out of the plane; None of a gear without inertia, or in one piece with its shaft.
+    """Modes of a gear's body out of the plane; None of a gear without a web on a hub, or without inertia.
 
     Parameters
     ----------
@@ -167,9 +170,9 @@ def body_out_of_plane(gear: Gear, inertia: tuple[float, float, float], limit: fl
         Limit of the shaft's modes [rad/s].
     """
     section = wheel_section(gear)
-    if section is None or min(inertia) <= 0.0:
+    if gear.web_thickness is None or section is None or min(inertia) <= 0.0:
         return None
-    below = KEPT_BELOW * limit if gear.web_thickness is not None else 0.0
+    below = KEPT_BELOW * limit
     ratio = inertia[0] / gear.mass
     found = wheel_modes(section, below * sqrt(ratio))
     tilting = inertia[2] / found.diametral_inertia

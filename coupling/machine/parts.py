@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import hypot, pi
 from typing import Protocol
 
 from coupling.errors import CouplingError
@@ -24,6 +24,9 @@ from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
 from rotors.model.profile import StiffnessDiameter
 from rotors.model.shaft import inertia_findings
+
+LATERAL_LIMIT_HZ = 8000.0
+"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -79,6 +82,11 @@ class Shaft:
     def name(self) -> str:
         """Name of the rotor."""
         return self.rotor.name
+
+    @property
+    def mode_limit(self) -> float:
+        """Limit of the retained modes [rad/s]: its own, or the default."""
+        return 2.0 * pi * LATERAL_LIMIT_HZ if self.frequency_limit is None else self.frequency_limit
 
 
 @dataclass(frozen=True)

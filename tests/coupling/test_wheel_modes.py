@@ -1,7 +1,7 @@
 """Gear bodies out of the plane, against plates, solid finite elements and a machine with a solid wheel."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -112,7 +112,9 @@ def machine(web: float | None = 5e-3, speed: float = 1.0, limit: float | None = 
     return Machine(
         shafts,
         [
-            MountedBearing(Bearing(f"{name} {at}", at, np.diag([5e8, 5e8, thrust, 1e5, 1e5]), np.zeros((5, 5))), name, None)
+            MountedBearing(
+                Bearing(f"{name} {at}", at, np.diag([5e8, 5e8, thrust, 1e5, 1e5]), np.zeros((5, 5))), name, None
+            )
             for name in ("in", "out")
             for at, thrust in ((0.0, 3e8), (2.0 * HALF, 0.0))
         ],
@@ -147,13 +149,10 @@ def test_modes_below_twice_the_limit_are_kept_and_the_others_rigid() -> None:
     assert not any(one.plates for one in rigid.gear_bodies)
 
 
-def test_a_disc_without_a_web_is_told_and_rigid() -> None:
+def test_a_disc_without_a_web_is_rigid() -> None:
     disc = machine(web=None)
-    outward = disc.bodies_out_of_plane["wheel"]
-    assert outward.modes[0].frequency > 3.0 * webbed().bodies_out_of_plane["wheel"].modes[0].frequency
-    assert outward.kept == ()
+    assert disc.bodies_out_of_plane == {}
     assert not any(body.plates for body in disc.gear_bodies)
-    assert disc.rotor_components()[1].plates == ()
 
 
 def test_motion_has_the_load_and_the_misalignment_of_the_equilibrium() -> None:
@@ -166,9 +165,7 @@ def test_motion_has_the_load_and_the_misalignment_of_the_equilibrium() -> None:
     misalignment = point.pairs[0].misalignment
     assert abs(misalignment) > 1e-4
     assert -float(face.tilting[0] @ motion) == pytest.approx(misalignment, rel=0.02)
-    # The rim tilts under the moment that the elements of its body feel: axial force and load off the middle.
-    rigid = replace(webbed(), gears=[replace(one, gear=replace(one.gear, rim_thickness=None, web_thickness=None)) for one in webbed().gears])
-    assert abs(rigid.operating_point().pairs[0].misalignment) < 0.2 * abs(misalignment)
+    assert abs(machine(web=None).operating_point().pairs[0].misalignment) < 0.2 * abs(misalignment)
 
 
 def test_an_observer_at_rest_sees_a_standing_wave_of_the_body_as_two() -> None:
@@ -242,8 +239,13 @@ def solid_wheel(count: int, teeth: bool = True) -> Solid:
     )
     corners = plane.t[[0, 1, 3, 2]]  # a quadrilateral's corners go round; a hexahedron's lie opposite
     size = plane.p.shape[1]
-    near, after = [corners + size * s for s in range(sectors)], [corners + size * ((s + 1) % sectors) for s in range(sectors)]
-    cells = np.concatenate([np.array([a[0], a[1], a[2], b[0], a[3], b[1], b[2], b[3]]) for a, b in zip(near, after, strict=True)], axis=1)
+    near, after = (
+        [corners + size * s for s in range(sectors)],
+        [corners + size * ((s + 1) % sectors) for s in range(sectors)],
+    )
+    cells = np.concatenate(
+        [np.array([a[0], a[1], a[2], b[0], a[3], b[1], b[2], b[3]]) for a, b in zip(near, after, strict=True)], axis=1
+    )
     mesh = skfem.MeshHex(points, cells)
     basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementHex2()), intorder=4)
     from skfem.models.elasticity import lame_parameters, linear_elasticity
@@ -272,14 +274,28 @@ def solid_wheel(count: int, teeth: bool = True) -> Solid:
         for number in range(3):
             part[kind[number::3]] = number
     zero, one = np.zeros(basis.N), np.ones(basis.N)
-    fields = [(one, zero, zero), (zero, one, zero), (zero, zero, one), (zero, -height, y), (height, zero, -x), (-y, x, zero)]
+    fields = [
+        (one, zero, zero),
+        (zero, one, zero),
+        (zero, zero, one),
+        (zero, -height, y),
+        (height, zero, -x),
+        (-y, x, zero),
+    ]
     rigid = np.array([np.choose(part, field) for field in fields]).T
     assert np.abs(stiffness @ rigid).max() < 1e-9 * np.abs(stiffness).max()
     order = np.argsort(values)
     outer = np.flatnonzero((np.hypot(x, y) > 0.99 * wide * root) & (part == 0))
     at = np.array([x, y, height])[:, outer]
-    moved = np.array([[shapes[np.flatnonzero((x == a) & (y == b) & (height == c) & (part == p))[0]] for p in range(3)] for a, b, c in at.T])
-    return Solid(at, np.sqrt(values[order]), moved[:, :, order], (rigid.T @ (mass @ shapes))[:, order], rigid.T @ (mass @ rigid))
+    moved = np.array(
+        [
+            [shapes[np.flatnonzero((x == a) & (y == b) & (height == c) & (part == p))[0]] for p in range(3)]
+            for a, b, c in at.T
+        ]
+    )
+    return Solid(
+        at, np.sqrt(values[order]), moved[:, :, order], (rigid.T @ (mass @ shapes))[:, order], rigid.T @ (mass @ rigid)
+    )
 
 
 @pytest.mark.slow
@@ -360,7 +376,7 @@ def test_modes_and_response_are_those_of_the_machine_with_a_solid_wheel() -> Non
     mass, stiffness, damping, (*outputs, load) = machine_with_solid_wheel()
     own = np.sqrt(np.maximum(linalg.eigh(stiffness, mass, eigvals_only=True), 0.0)) / HERTZ
     modes = webbed().modes()
-    found = np.array(sorted({float(abs(v.imag)) / HERTZ for v, k in zip(modes.eigenvalues, modes.kinds) if k != "residual"}))
+    found = np.abs(modes.eigenvalues[[kind != "residual" for kind in modes.kinds]].imag) / HERTZ
     found, own = found[found > 1.0], own[own > 1.0]
     assert int(np.sum(found < 4000.0)) == int(np.sum(own < 4000.0)) == 13
     assert found[:13] == pytest.approx(own[:13], rel=0.02)

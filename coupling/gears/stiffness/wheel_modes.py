@@ -265,12 +265,15 @@ def _section_elements(section: WheelSection) -> _Elements:
 
     shapes, rim_shapes = ([part[0] for part in of.basis] for of in (basis, rim))
     at = np.asarray(basis.global_coordinates())[0]
+    along_r, along_z = (operator(basis, [np.asarray(shape.grad)[axis] for shape in shapes]) for axis in (0, 1))
     return _Elements(
-        *basis.doflocs,
+        basis.doflocs[0],
+        basis.doflocs[1],
         at.ravel(),
         (basis.dx * at).ravel(),
         operator(basis, [np.asarray(shape) for shape in shapes]),
-        *(operator(basis, [np.asarray(shape.grad)[axis] for shape in shapes]) for axis in (0, 1)),
+        along_r,
+        along_z,
         operator(rim, [np.asarray(shape) for shape in rim_shapes]),
         (rim.dx * section.root).ravel(),
     )
