@@ -31,8 +31,8 @@ and the damping ζ of its material,
 Without Coriolis force g = n: an observer at rest sees a standing wave of the body as two, at ω ± n Ω. Of one nodal
 diameter the term of Ω² is left out: what the centrifugal force does to a rim that tilts rigidly cancels it.
 
-The laws of contact count, under loads that vary over the face, the tilt of a body of the full face width
-(:mod:`coupling.gears.stiffness.body_over_face`), beside that of the web here: in the order of (web / face)³ of it twice.
+Laws of contact count, under loads that vary over the face, the tilt of a body of the full face width
+(:mod:`coupling.gears.stiffness.body_over_face`), beside that of the web here: about (web / face)³ of it twice.
 """
 
 from collections.abc import Sequence
