@@ -321,7 +321,8 @@ class Gear(Table):
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
-    """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
+    """Width of the disc from the rim to the bore, in the middle of the face. The wheel vibrates and tilts on it, see
+    `gear_bodies` of `check`. Default: the rim weighs alone, and is held at its inside."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
     firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
