@@ -84,8 +84,16 @@ class BaseMotion:
 
     def acceleration_at(self, position: FloatArray, direction: FloatArray, times: FloatArray) -> FloatArray:
         """Acceleration along a direction at a place that moves with the base [m/s²], shape (s,)."""
-        moment = np.cross(np.subtract(position, self.point), direction)
-        return np.asarray(self.acceleration(times) @ np.concatenate([direction, moment]))
+        return np.asarray(self.acceleration(times) @ self.row_at(position, direction))
+
+    def row_at(self, position: FloatArray, direction: FloatArray) -> FloatArray:
+        """Acceleration along a direction at a place by unit accelerations of the base, shape (6,)."""
+        return np.concatenate([direction, np.cross(np.subtract(position, self.point), direction)])
+
+    def harmonic_amplitude(self, frequency: float) -> ComplexArray:
+        """Complex amplitude of the base's acceleration at a frequency [rad/s], shape (6,) [m/s², rad/s²]."""
+        parts = (part for part in self.parts if isinstance(part, BaseHarmonic) and part.frequency == frequency)
+        return np.asarray(sum((part.amplitude for part in parts), np.zeros(6, dtype=np.complex128)))
 
 
 def base_loads(
@@ -99,7 +107,8 @@ def base_loads(
     for part in base.parts:
         if isinstance(part, BaseHarmonic):
             velocity = part.amplitude / (1j * part.frequency)
-            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - carried @ part.amplitude))
+            load = tilting @ velocity - carried @ part.amplitude
+            harmonic.append(HarmonicLoad(part.frequency, load, mechanism="base_motion"))
             continue
         moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
         timed += [TimedLoad(part.times, part.values[:, k], -carried[:, k]) for k in moved]

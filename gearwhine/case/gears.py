@@ -478,7 +478,7 @@ class ToothStiffness(Table):
 
 
 class ReliefAim(Table):
-    """Objective of the tip-relief search, in place of the peak-to-peak transmission error."""
+    """Objective of the tip-relief search: weighted harmonics, the level at a sensor, or peak to peak."""
 
     harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
     """Weights w of the transmission error's amplitudes e by the multiple of the mesh frequency, √(Σ (w e)²), such as `{
@@ -487,6 +487,8 @@ class ReliefAim(Table):
     """Sensor whose level is the objective, by the linear response to transmission error and load shuttling together, as
     in `gearwhine load --sensitivity`: root mean square over the first eight multiples of the mesh frequency below the
     housing's limit, or over those that `harmonics` weighs."""
+    peak_to_peak: bool = False
+    """Aim at the peak-to-peak transmission error."""
 
     @model_validator(mode="after")
     def _has_an_aim(self) -> ReliefAim:
@@ -495,8 +497,12 @@ class ReliefAim(Table):
                 raise wrong(
                     "multiples of the mesh frequency from 1 to 32 as keys, such as { 1 = 1, 2 = 0.5 }", "harmonics"
                 )
+        if self.peak_to_peak:
+            if self.sensor is not None or self.harmonics:
+                raise wrong("false beside 'harmonics' or 'sensor'", "peak_to_peak")
+            return self
         if self.sensor is None and not self.harmonics:
-            raise wrong("'harmonics' with weights, or 'sensor'")
+            raise wrong("'harmonics' with weights, 'sensor', or 'peak_to_peak = true'")
         if self.harmonics and not any(self.harmonics.values()):
             raise wrong("at least one weight above 0", "harmonics")
         return self
@@ -537,7 +543,9 @@ class GearPair(Table):
     friction: FrictionCoefficient = 0.0
     """Coefficient of friction between the teeth, in the transient; not with model "constant"."""
     relief_aim: ReliefAim | None = None
-    """Objective of the best tip relief of `gearwhine gears`. Default: the peak-to-peak transmission error."""
+    """Objective of the best tip relief of `gearwhine gears`. Default: the level at the sensor that this pair makes
+    loudest, where the machine turns in a housing with sensors whose modes are in the results folder, else the
+    peak-to-peak transmission error."""
 
     @model_validator(mode="after")
     def _slides(self) -> GearPair:
