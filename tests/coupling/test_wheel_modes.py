@@ -1,7 +1,7 @@
 """Gear bodies out of the plane, against plates, solid finite elements and a machine with a solid wheel."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -13,8 +13,10 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from scipy.special import ivp, jvp, kvp, yvp
 
 from coupling import Machine, MountedBearing, Shaft, ShaftGear
-from coupling.gears import Gear
+from coupling.gears import Gear, GearError
 from coupling.gears.loaded.gear_pair import GearPair
+from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
+from coupling.gears.stiffness.ring_body import twist_compliance
 from coupling.gears.stiffness.wheel_modes import WheelSection, wheel_modes, wheel_section
 from coupling.machine.components import rotor_component
 from coupling.machine.gear_bodies import transport
@@ -79,6 +81,48 @@ def test_modes_have_the_inertia_of_the_body_that_leaves_the_hub() -> None:
     # The rim tilts, and its section rolls.
     assert tilt.slopes[1] == pytest.approx(tilt.axial / tilt.radius, rel=0.02)
     assert tilt.slopes[0] < -tilt.axial / tilt.radius
+
+
+def test_a_hub_as_wide_as_the_web_is_a_part_of_it() -> None:
+    plain, hub = wheel(), replace(wheel(), hub_diameter=70e-3, hub_width=5e-3)
+    assert hub.inertia == pytest.approx(plain.inertia, rel=1e-12)
+    assert twist_compliance(hub) == pytest.approx(twist_compliance(plain), rel=1e-12)
+    assert rotation_shares(hub) == pytest.approx(rotation_shares(plain), rel=1e-12)
+    assert shift_shares(hub, "plane-stress") == pytest.approx(shift_shares(plain, "plane-stress"), rel=1e-6)
+    assert frequencies_of(hub) == pytest.approx(frequencies_of(plain), rel=0.01)
+
+
+def test_a_hub_stiffens_the_web_as_far_as_it_reaches() -> None:
+    plain, hub, held = wheel(), replace(wheel(), hub_diameter=70e-3, hub_width=30e-3), replace(wheel(), bore=70e-3)
+    ring = math.pi * DENSITY * 25e-3 * (35e-3**2 - 20e-3**2)
+    assert hub.mass == pytest.approx(plain.mass + ring, rel=1e-12)
+    assert twist_compliance(held) < twist_compliance(hub) < 0.6 * twist_compliance(plain)
+    soft, found, stiff = frequencies_of(plain), frequencies_of(hub), frequencies_of(held)
+    assert np.all(1.2 * soft[:2] < found[:2])
+    assert np.all(found < stiff)
+    # The root of the web in the hub yields.
+    assert found == pytest.approx(stiff, rel=0.08)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"hub_diameter": 39e-3}, "hub_diameter 39 mm must be between a bore, 40 mm, and the inside"),
+        ({"hub_diameter": 170e-3}, "must be between a bore"),
+        ({"hub_diameter": 60e-3, "hub_width": 4e-3}, "at least the width of the web"),
+        ({"hub_width": 30e-3}, "needs a hub_diameter"),
+        ({"hub_diameter": 60e-3, "web_thickness": None}, "needs a web_thickness"),
+    ],
+)
+def test_hubs_that_do_not_fit_are_refused(changes: dict[str, float], message: str) -> None:
+    with pytest.raises(GearError, match=message):
+        replace(wheel(), **changes)
+
+
+def frequencies_of(gear: Gear) -> FloatArray:
+    section = wheel_section(gear)
+    assert section is not None
+    return np.array([mode.frequency for mode in wheel_modes(section).modes])
 
 
 def wheel(web: float | None = 5e-3) -> Gear:

@@ -69,6 +69,8 @@ class WheelSection:
     youngs_modulus, poisson_ratio, density : float
     teeth : float
         Mass of the teeth [kg].
+    boss, boss_width : float
+        Outer radius and width of the ring around the bore [m]; 0 where the web begins at the bore.
     """
 
     hub: float
@@ -80,6 +82,8 @@ class WheelSection:
     poisson_ratio: float
     density: float
     teeth: float = 0.0
+    boss: float = 0.0
+    boss_width: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -182,7 +186,8 @@ def wheel_section(gear: Gear) -> WheelSection | None:
     teeth = gear.density * math.pi * face * (gear.pitch_radius**2 - root**2)
     rim = gear.rim_inner_radius or root
     material = gear.youngs_modulus, gear.poisson_ratio, gear.density
-    return WheelSection(hub, rim, root, gear.web_thickness or face, face, *material, max(teeth, 0.0))
+    boss = (0.0, 0.0) if gear.hub_diameter is None else (0.5 * gear.hub_diameter, gear.hub_width or face)
+    return WheelSection(hub, rim, root, gear.web_thickness or face, face, *material, max(teeth, 0.0), *boss)
 
 
 @lru_cache(maxsize=64)
@@ -244,14 +249,18 @@ def _section_elements(section: WheelSection) -> _Elements:
 
     # Narrower towards the hub and the rim, where the web bends most.
     web = 0.5 * (1.0 - np.cos(np.pi * np.arange(_ALONG + 1) / _ALONG))
-    r, z = section.hub + (section.rim - section.hub) * web, cuts(0.0, 0.5 * section.web, _THROUGH)
+    inside = max(section.hub, section.boss)
+    r, z = inside + (section.rim - inside) * web, np.zeros(1)
     if section.rim < section.root:
         r = np.append(r, cuts(section.rim, section.root, _THROUGH)[1:])
-    if section.web < section.face:
-        z = np.append(z, cuts(0.5 * section.web, 0.5 * section.face, _THROUGH)[1:])
+    if section.hub < inside:
+        r = np.append(cuts(section.hub, inside, _THROUGH)[:-1], r)
+    for width in sorted({section.web, section.face, section.boss_width} - {0.0}):
+        z = np.append(z, cuts(z[-1], 0.5 * width, _THROUGH)[1:])
     mesh = skfem.MeshQuad.init_tensor(r, z)
     at_r, at_z = mesh.p[:, mesh.t].mean(axis=1)
-    mesh = mesh.restrict(np.flatnonzero((at_r > section.rim) | (at_z < 0.5 * section.web)))
+    width = np.select([at_r > section.rim, at_r < inside], [section.face, section.boss_width], section.web)
+    mesh = mesh.restrict(np.flatnonzero(at_z < 0.5 * width))
     basis = skfem.Basis(mesh, skfem.ElementQuad2())
     rim = basis.boundary(lambda x: np.isclose(x[0], section.root))
 
