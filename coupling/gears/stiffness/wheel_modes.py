@@ -259,8 +259,8 @@ def _section_elements(section: WheelSection) -> _Elements:
         z = np.append(z, cuts(z[-1], 0.5 * width, _THROUGH)[1:])
     mesh = skfem.MeshQuad.init_tensor(r, z)
     at_r, at_z = mesh.p[:, mesh.t].mean(axis=1)
-    width = np.select([at_r > section.rim, at_r < inside], [section.face, section.boss_width], section.web)
-    mesh = mesh.restrict(np.flatnonzero(at_z < 0.5 * width))
+    widths = np.select([at_r > section.rim, at_r < inside], [section.face, section.boss_width], section.web)
+    mesh = mesh.restrict(np.flatnonzero(at_z < 0.5 * widths))
     basis = skfem.Basis(mesh, skfem.ElementQuad2())
     rim = basis.boundary(lambda x: np.isclose(x[0], section.root))
 
