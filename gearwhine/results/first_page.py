@@ -426,7 +426,7 @@ def _highest(rows: Sequence[Document]) -> list[str]:
     near = f", near a mode of the coupled machine ({_near(row)})" if _near(row) else ""
     by = f"; largest part by {row['by']}" if row["by"] else ""
     between = f" ({band} dB with all damping doubled or halved)" if (band := band_words(row)) else ""
-    excited = f", excited by {words}" if (words := mechanism_words(row)) != NOTHING else ""
+    excited = f", excited by {words} m/s²" if (words := mechanism_words(row)) != NOTHING else ""
     return [
         f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {amplitude_words(row)} m/s² peak"
         f"{between}: "

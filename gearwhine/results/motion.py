@@ -185,7 +185,7 @@ def mechanism_words(row: Document) -> str:
 
 
 MECHANISM = Column(
-    "by [m/s²]", mechanism_words, numbers=(*(f"parts.{name}" for name in MECHANISMS), "parts_together_m_per_s2")
+    "excited by [m/s²]", mechanism_words, numbers=(*(f"parts.{name}" for name in MECHANISMS), "parts_together_m_per_s2")
 )
 """Column of a line's mechanisms."""
 CAUSE_COLUMNS = (

@@ -459,8 +459,8 @@ def report(document: Document) -> Section:
 _PICTURES = (
     Picture(
         "steady-motion",
-        "Mesh force of the motion over a period or some teeth, zero where flanks part, and its harmonics; of superposed "
-        "motions their sum, and the lines of each.",
+        "Mesh force of the motion over a period or some teeth, zero where flanks part, and its harmonics. Superposed "
+        "motions are drawn as their sum, with the lines of each.",
     ),
     Picture(
         "steady-curve",
