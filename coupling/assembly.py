@@ -32,6 +32,7 @@ from coupling.machine.components import (
 from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from coupling.machine.gear_bodies import transport
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
 from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
 from coupling.machine.mesh_face import MeshFace, mesh_face
@@ -67,7 +68,8 @@ class CoupledMachine:
     meshes : tuple of GearMesh
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
-        couplings, slopes of torques, tilting of meshes; contacts in the order drive flanks of ``meshes``, back flanks.
+        couplings, rotation of gear bodies, slopes of torques, tilting of meshes; contacts in the order
+        drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
@@ -263,6 +265,8 @@ def assemble_machine(
     for dashpot in dashpots:
         rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
+    for rotor in rotors:
+        within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
 
     senses = _senses(meshes, speeds)
     phases = mesh_phases(
@@ -370,6 +374,23 @@ def _bearing(
         bearing.name, relative[axes].T, stiffness[among], damping[among], table, axis_numbers, offset
     )
     return linear, nonlinear
+
+
+def _transports(
+    coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
+) -> list[LinearConnector]:
+    """Rotation of gear bodies' modes with two nodal diameters or more, see :mod:`coupling.machine.gear_bodies`."""
+    connectors = []
+    for gear, mode, own in rotor.plates:
+        if speed == 0.0:
+            break
+        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[own]).T
+        name = f"rotation of {gear}, {mode.name}"
+        ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
+        laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]
+        table = SpeedTable(ratios, *(np.array(part) for part in zip(*laws, strict=True))) if len(laws) > 1 else None
+        connectors.append(LinearConnector(name, directions, *transport(mode, rotor.damping_ratio, speed), table))
+    return connectors
 
 
 def _contact(
@@ -613,6 +634,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         rotor = coordinates.rotor(mounted.rotor)
         section, rim = rotor.motions(at), rotor.rim_section(mounted.name, at)
         compression = flank.turning(rim[5]) + flank.across(rim) + flank.axial(section)
+        axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
+        compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

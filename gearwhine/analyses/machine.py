@@ -25,6 +25,7 @@ from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, 
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
 from gearwhine.solve.machine import basis_error, line_mechanisms, point_of_pairs, solve_machine, solve_pairs
@@ -265,6 +266,8 @@ class _LoadedMachine:
         progress("mechanisms of the lines, and their bands by damping")
         add_mechanisms(document, line_mechanisms(self.machine, self.housing))
         document["damping"] = damping_document(self.case)
+        if bodies := gear_body_document(self.case):
+            document["gear_bodies"] = bodies
         add_warnings(document, damping_warnings(self.case))
 
     def figures(self) -> "Iterator[tuple[str, Figure]]":

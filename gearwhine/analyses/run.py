@@ -38,6 +38,7 @@ from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import basis_error, build_machine, line_mechanisms, reduce_housing, solve_pairs
@@ -166,6 +167,8 @@ def run(
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         add_mechanisms(document["system"], mechanisms)
         document["damping"] = damping_document(case)
+        if bodies := gear_body_document(case):
+            document["gear_bodies"] = bodies
         add_warnings(document, damping_warnings(case))
         timed("system", begin)
         if load is not None:

@@ -321,7 +321,12 @@ class Gear(Table):
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
-    """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
+    """Width of the disc from the rim to the hub, in the middle of the face. The wheel vibrates and tilts on it, see
+    `gear_bodies` of `check`. Default: the rim weighs alone, and is held at its inside."""
+    hub_diameter: PositiveLength | None = None
+    """Outer diameter of the hub around the bore, inside the `web`. Default: the web begins at the bore."""
+    hub_width: PositiveLength | None = None
+    """Width of the hub. Default: the face width."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
     firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
@@ -361,6 +366,10 @@ class Gear(Table):
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
             raise wrong("no web, or a rim around it", "web")
+        if self.hub_diameter is not None and (self.web is None or not 0.0 < self.bore < self.hub_diameter):
+            raise wrong("no hub, or a web around it and a smaller bore inside", "hub_diameter")
+        if self.hub_width is not None and (self.hub_diameter is None or self.hub_width < (self.web or 0.0)):
+            raise wrong("the width of a hub with a hub_diameter, at least that of the web", "hub_width")
         for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
             if deviations and len(deviations) != self.teeth:
                 raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", key)
@@ -433,6 +442,8 @@ class Gear(Table):
             helix_angle=self.helix_angle,
             rim_thickness=self.rim,
             web_thickness=self.web,
+            hub_diameter=self.hub_diameter,
+            hub_width=self.hub_width,
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
         )

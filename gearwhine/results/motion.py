@@ -114,6 +114,23 @@ def damping_sentence(document: Document) -> list[str]:
     return [f"Damping of {'; '.join(lines)}."] if lines else []
 
 
+def gear_body_lines(document: Document) -> list[str]:
+    """Return the modes of each wheel with a web in words, and which of them the machine follows."""
+    lines = []
+    for body in document.get("gear_bodies", ()):
+        first = [mode for mode in body["modes"] if "circle" not in mode["name"]][:4]
+        modes = ", ".join(f"{mode['name']} {mode['frequency_hz']:.0f} Hz" for mode in first)
+        kept, below = sum(mode["kept"] for mode in body["modes"]), f"{1e-3 * body['kept_below_hz']:.4g} kHz"
+        ratio = f"{100.0 * body['damping_ratio']:.3g} % of critical, as {body['rotor']}"
+        followed = (
+            f"the {kept} modes below {below} are followed, with {ratio}"
+            if kept
+            else f"none is below {below}, so the body is rigid in them"
+        )
+        lines.append(f"{body['gear']} on a hub at rest: {modes}; {followed}")
+    return lines
+
+
 _TIGHT, _WIDE = 0.5, 6.0  # widths of a band [dB] below which a line is shown with a digit more, and from which with one
 
 
