@@ -371,6 +371,7 @@ def _aim(pair: "PairAnalysis") -> dict[str, Any]:
         "sensor": sensor,
         "weights": None if weights is None else {str(n): weight for n, weight in weights.items()},
         "unit": "m" if sensor is None else "m/s^2",
+        "as_given": pair.aimed_as_given,
         "without_relief": float(optimum.value_unmodified[0]),
         "best": float(optimum.value[0]),
     }
@@ -689,8 +690,11 @@ def _best_relief(pair: Document) -> list[str]:
         f"{_MM * best['length_m']:.2f} mm of the line of action: {least:.2f} µm"
     )
     if aim["kind"] != "peak-to-peak":
-        without_relief, with_best = _value(aim, "without_relief"), _value(aim, "best")
-        lines.append(f"Aim, the {_aim_in_words(aim)}: {without_relief} without relief, {with_best} with the best")
+        as_given, without_relief, with_best = (_value(aim, key) for key in ("as_given", "without_relief", "best"))
+        lines.append(
+            f"Aim, the {_aim_in_words(aim)}: {as_given} as given, {without_relief} without relief, {with_best} with "
+            "the best"
+        )
         if aim["kind"] == "harmonics":
             lines.append(f"  {_ALONE}")
         return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]

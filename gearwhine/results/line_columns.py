@@ -11,7 +11,7 @@ MECHANISMS = {
     "transmission_error": "transmission error",
     "load_shuttling": "load shuttling",
     "friction": "tooth friction",
-    "pitch_errors": "pitch errors",
+    "pitch_errors": "pitch errors and runout",
     "unbalance": "unbalance",
     "shaft_bow": "shaft bow",
     "torque_ripple": "torque ripple",

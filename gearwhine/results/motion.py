@@ -131,7 +131,7 @@ def gear_body_lines(document: Document) -> list[str]:
     return lines
 
 
-_TIGHT, _WIDE = 0.5, 6.0  # widths of a band [dB] below which a line is shown with a digit more, and from which with one
+_TIGHT = 0.5  # width of a band [dB] below which a line is shown with a digit more
 
 
 def band_words(row: Document) -> str:
@@ -147,9 +147,12 @@ def _width(row: Document) -> float:
 
 
 def amplitude_words(row: Document) -> str:
-    """Return a line's amplitude with as many digits as its band by damping leaves: three, two or one."""
+    """Return a line's amplitude with two digits, or three where its band by damping is narrow.
+
+    One digit, all that a wide band leaves, would hide what a change of the machine does to the line.
+    """
     width = _width(row)
-    digits = 3 if width < _TIGHT else 2 if width < _WIDE else 1
+    digits = 3 if width < _TIGHT else 2
     amplitude = row.get("amplitude_m_per_s2")
     return NOTHING if amplitude is None else plain(amplitude, digits)
 
@@ -192,6 +195,7 @@ CAUSE_COLUMNS = (
     Column("sensor", "sensor"),
     Column("Hz", "frequency_hz", ".0f"),
     Column("m/s², peak", "amplitude_m_per_s2", shown=lambda row: amplitude_words(row)),
+    Column("damping × 2, / 2 [dB]", lambda row: band_words(row), numbers=("band_db.0", "band_db.1")),
     LINE_NAME,
     MECHANISM,
 )
@@ -250,5 +254,4 @@ def _line(line: Document) -> str:
     """Return a sensor's line, such as ``733 (0.58)``, with its modal truncation error where that is large."""
     error = line.get("uncertainty", 0.0)
     beside = "" if error <= _LEAST_ERROR else f" ± {100.0 * error:.0f} %" if error < 1.0 else ", unsure"
-    digits = 2 if _width(line) < _WIDE else 1
-    return f"{line['frequency_hz']:.0f} ({plain(line['amplitude_m_per_s2'], digits)}{beside})"
+    return f"{line['frequency_hz']:.0f} ({plain(line['amplitude_m_per_s2'], 2)}{beside})"

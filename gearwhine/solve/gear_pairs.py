@@ -224,6 +224,11 @@ class PairAnalysis:
         return transmission_error_harmonics(replace(self.solved.static, transmission_error=self.unloaded), HARMONICS)
 
     @property
+    def aimed_as_given(self) -> float:
+        """Value of the aim with the given flanks, all teeth alike."""
+        return self.aim.of(*_mesh_as_given(self.solved))
+
+    @property
     def as_given(self) -> float | None:
         """Peak to peak at the case's torque with all teeth alike [m]; None without a Harris map."""
         if self.harris is None:
@@ -421,9 +426,14 @@ def _aim_of(
     levels = [SensorLevel(model, number, sensor, weights, damping_follows=follows) for sensor in sensors]
     if len(levels) == 1:
         return levels[0]
-    flanks = teeth_alike(pair.carrying_flanks)
-    mesh = loaded_transmission_error(flanks, pair.static.force, mesh_period_phases(flanks))
+    mesh, flanks = _mesh_as_given(pair)
     return max(levels, key=lambda level: level.of(mesh, flanks))
+
+
+def _mesh_as_given(pair: LoadedGearPair) -> tuple[LoadedMesh, ToothContact]:
+    """Return the loaded mesh of the flanks that carry, all teeth alike, and their contact law."""
+    flanks = teeth_alike(pair.carrying_flanks)
+    return loaded_transmission_error(flanks, pair.static.force, mesh_period_phases(flanks)), flanks
 
 
 def _may_aim_at_sensors(case: Case) -> bool:

@@ -331,7 +331,7 @@ def _refined(
         steps.append(RefinementStep(size, 3 * len(solved.mesh.points), len(errors), float(errors[worst])))
         progress(
             f"elements of {length_text(size)}, {steps[-1].dofs} degrees of freedom: mode {worst + 1} has the largest "
-            f"estimated error, {100 * errors[worst]:.2g} %; {100 * table.accuracy:g} % is wanted"
+            f"estimated error, {100 * errors[worst]:.3g} %; {100 * table.accuracy:g} % is wanted"
         )
         if errors[worst] <= table.accuracy:
             break

@@ -90,7 +90,8 @@ def test_digits_follow_the_band() -> None:
     assert (amplitude_words(line), level_words(line), band_words(line)) == ("199", "163.0", "")
     line["band_db"] = [-0.6, 0.9]
     assert (amplitude_words(line), level_words(line), band_words(line)) == ("200", "163", "-0.6 +0.9")
-    assert amplitude_words(line | {"amplitude_m_per_s2": 0.01994, "band_db": [-5.9, 5.8]}) == "0.02"
+    assert amplitude_words(line | {"amplitude_m_per_s2": 0.01964, "band_db": [-5.9, 5.8]}) == "0.02"
+    assert amplitude_words(line | {"amplitude_m_per_s2": 34.96, "band_db": [-5.9, 5.8]}) == "35"
 
 
 @pytest.mark.slow
