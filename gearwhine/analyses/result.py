@@ -12,11 +12,14 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
+from gearwhine.failures import DamagedResultsError
 from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.output.files import finish_moves
+from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
 from gearwhine.progress import Progress, silent
-from housing.storage.netcdf import Variables
+from housing.storage.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -174,9 +177,17 @@ class Result(Generic[Solved]):
         for key in self.document.pop("kept", ()):  # of another folder
             del self.document[key]
         options, same = self._options
+        finish_moves(Path(folder))
         if options and (earlier := earlier_result(Path(folder), self.command)) is not None:
-            kept = kept_options(options, same, self.case, self.document, *earlier)
-            self.document.update(kept.document)
+            place = earlier[0].relative_to(folder)
+            try:
+                require_as_written(Path(folder), lambda name: Path(name).parent == place)
+            except DamagedResultsError as error:
+                text = f"{error}; the parts of those results that this one would keep are left out"
+                add_warnings(self.document, [warning("results folder", text)])
+            else:
+                kept = kept_options(options, same, self.case, self.document, *earlier)
+                self.document.update(kept.document)
 
         def write(place: Path) -> None:
             progress("writing results")
@@ -219,7 +230,11 @@ class Result(Generic[Solved]):
         if isinstance(arrays, LabelledArrays):
             replace(arrays, variables={**arrays.variables, **kept_arrays}).write(place / self._data_file)
         else:
-            arrays.to_netcdf(place / self._data_file, engine="h5netcdf")
+            variables, coordinates = (
+                {str(name): (array.dims, array.values, dict(array.attrs)) for name, array in part.items()}
+                for part in (arrays.data_vars, arrays.coords)
+            )
+            write_netcdf(place / self._data_file, variables, arrays.attrs, coordinates=coordinates)
 
 
 def _proofs(value: Any, path: str) -> Iterator[tuple[str, Any]]:
