@@ -3,8 +3,8 @@
     OMP_NUM_THREADS=1 python benchmarks/lost_results.py              # 100 damaged folders, 60 kills
     OMP_NUM_THREADS=1 python benchmarks/lost_results.py 10 6 --seed 7
 
-A damaged file is named, or done anew; a killed command leaves one whole set of files, the user's own among them, and the
-same command then runs to its end. Damages and moments are those of the seed.
+A damaged file is named, or done anew; a killed command leaves one whole set of files, the user's own among them, and
+the same command then runs to its end. Damages and moments are those of the seed.
 """
 
 import argparse
@@ -25,7 +25,7 @@ LIMIT = 60.0  # seconds of a command
 SETS = ("transient.revolutions=6", "transient.discard=2")
 RUN = ("run", "spur-pair", "--no-pictures", *(word for text in SETS for word in ("--set", text)))
 READERS = {
-    "export": ("export", "{}", "--format", "csv"),
+    "export": ("export", "{}", "--csv"),
     "report": ("report", "{}"),
     "run": (*RUN, "-o", "{}"),
     "gears": ("gears", "spur-pair", "-o", "{}"),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -72,6 +73,11 @@ class Result(Generic[Solved]):
         Objects of the library: solved housing, rotors, gear pairs, coupled modes, motion.
     document : dict
         Numbers and texts as the command prints them with ``--json``; units stand in the keys.
+
+    Notes
+    -----
+    A result can be pickled, with all its arrays. One that comes back from a pickle draws no figures and pictures, and
+    writes none.
     """
 
     command: str
@@ -89,6 +95,12 @@ class Result(Generic[Solved]):
     def __post_init__(self) -> None:
         """Give the document its list of warnings, with those of the case."""
         add_warnings(self.document, [warning("case", text) for text in warnings_of(self.case)])
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields for a pickle: the arrays themselves, in place of the functions that make and draw them."""
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        arrays = None if self._arrays is None else partial(copy.copy, self.dataset)
+        return state | {"_arrays": arrays, "_figures": _no_figures, "_files": _no_files, "_options": ((), ())}
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""

@@ -44,6 +44,7 @@ def test_long_histories_are_refused_their_room_before_they_are_appended(tmp_path
     assert path.read_bytes()[: len(before)] == before
 
 
+@pytest.mark.slow
 def test_a_command_on_a_full_disk_leaves_the_old_results_whole(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
