@@ -81,6 +81,7 @@ def damaged(count: int, chance: random.Random, sound: Path, folder: Path) -> int
     files = sorted(path.relative_to(sound) for path in sound.rglob("*") if path.is_file())
     faults = 0
     for number in range(count):
+        print(f"damaged folder {number + 1} of {count}", file=sys.stderr, flush=True)
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(sound, folder)
         name, reader = chance.choice(files), list(READERS)[number % len(READERS)]
@@ -107,6 +108,7 @@ def killed(count: int, chance: random.Random, sound: Path, folder: Path) -> int:
     faults = 0
     took: dict[str, float] = {}
     for number in range(count):
+        print(f"kill {number + 1} of {count}", file=sys.stderr, flush=True)
         name = list(KILLED)[number % len(KILLED)]
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(sound, folder)
