@@ -66,6 +66,8 @@ def draw_in_process(
         Where no library draws without a display, or the drawing process dies.
     EncoderUnavailableError
         Where MP4 is asked for and no encoder is available.
+    OSError
+        Where a file cannot be written.
     """
     task = {
         "folder": str(folder),
@@ -84,6 +86,8 @@ def draw_in_process(
         process = _kept.get()
         assert process is not None
         answer = process.answer(task_folder, progress)
+        if "reason" in answer:  # without a name of a file: the caller knows the folder, not the process's own ones
+            raise OSError(answer["reason"], answer["message"])
         if "failed" in answer:
             kind = {error.__name__: error for error in _ERRORS}[answer["failed"]]
             raise kind(answer["message"])
@@ -234,6 +238,8 @@ def _main() -> None:
             _tell({"files": _draw(Path(json.loads(line)))})
         except _ERRORS as error:
             _tell({"failed": type(error).__name__, "message": str(error)})
+        except OSError as error:
+            _tell({"failed": "OSError", "reason": error.errno, "message": error.strerror or str(error)})
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import resource
 import signal
 import sys
 import threading
@@ -32,6 +33,8 @@ _FIND_SCHEDULER = "10s"
 _WORKERS_COME = 300.0  # seconds
 # Whatever is still open after this time ends with this process.
 _CLOSES = 10.0  # seconds
+# Open files of this process: of the cluster, and of each worker. Dask waits for ever for workers that lack them.
+_FILES, _FILES_OF_WORKER = 20, 12
 
 
 def default_workers() -> int:
@@ -64,7 +67,7 @@ def connected(
     CaseError
         Where no scheduler answers at the address.
     WorkersError
-        Where the scheduler of our own processes does not start.
+        Where the scheduler of our own processes does not start, or this process may not open the files for them.
     """
     import dask
     import distributed  # noqa: F401 - its own settings must be there before ours, or they go with them
@@ -106,6 +109,7 @@ def await_workers(client: Client, workers: int) -> None:
 def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
+    _require_open_files(_FILES + workers * _FILES_OF_WORKER)
     earlier = set(multiprocessing.active_children())
     with ExitStack() as ended:
         try:
@@ -132,6 +136,26 @@ def _own_processes(workers: int, scratch: str, plugins: Sequence[WorkerPlugin]) 
             # Now, not before: a client waits for the workers that the cluster is starting.
             cluster.scale(workers)
         yield client
+
+
+def _require_open_files(more: int) -> None:
+    """Raise the limit of open files where a number of further ones needs it and the system lets us.
+
+    Raises
+    ------
+    WorkersError
+        Where it does not.
+    """
+    needed = len(os.listdir("/dev/fd")) + more
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft == resource.RLIM_INFINITY or needed <= soft:
+        return
+    if hard != resource.RLIM_INFINITY and needed > hard:
+        raise WorkersError(
+            f"the workers need {needed} open files of this process, which may have {soft}: "
+            "take fewer --workers, or raise the limit (ulimit -n)"
+        )
+    resource.setrlimit(resource.RLIMIT_NOFILE, (needed, hard))
 
 
 def _close(client: Client) -> None:

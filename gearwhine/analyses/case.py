@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
 from gearwhine.output import staging
+from gearwhine.output.files import finish_moves
+from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.sections import Column, Document, Section, table_of
 from gearwhine.progress import Progress, silent
@@ -91,12 +94,16 @@ def write_report(
     ------
     CaseError
         Where the folder holds no results, or a summary cannot be read.
+    DamagedResultsError
+        Where a file of the results is not as it was written.
     """
     from gearwhine.output.own_files import require_own
     from gearwhine.output.report import Contents, report_page
     from gearwhine.results import chapters_of
     from gearwhine.results.first_page import first_page
 
+    read = (".json", ".nc", ".png") if interactive else (".json", ".png")
+    remarks = _checked(folder, lambda name: name.endswith((*read, "case.toml")))
     name, shapes = "report.html", None
     if interactive:
         from gearwhine.mode_pictures import moving_shapes
@@ -107,7 +114,19 @@ def write_report(
     page = report_page(folder, Contents(chapters_of, first_page), case or _stored_case(folder), shapes=shapes)
     with staging(folder) as place:
         (place / name).write_text(page, encoding="utf-8")
-    return {"folder": str(folder), "files": [name]}
+    document = {"folder": str(folder), "files": [name]}
+    add_warnings(document, (warning("results folder", remark) for remark in remarks))
+    return document
+
+
+def _checked(folder: Path, are_read: Callable[[str], bool]) -> list[str]:
+    """Check a results folder before it is read; return remarks on files that are missing, or damaged and not read.
+
+    What a run that was killed while its files moved has left behind is moved first.
+    """
+    with suppress(PermissionError):  # a folder that may only be read is read as it is
+        finish_moves(folder)
+    return require_as_written(folder, are_read)
 
 
 def _stored_case(folder: Path) -> Case | None:
@@ -157,11 +176,14 @@ def export_results(
     CaseError
         Where the folder holds no results, or nothing that can be written in any of these formats, or the length is
         outside its range.
+    DamagedResultsError
+        Where a file of the results is not as it was written, or cannot be read.
     """
     from gearwhine.output import export
     from gearwhine.output.store import stored_results
     from gearwhine.results import chapters_of
 
+    remarks = _checked(folder, lambda name: name.endswith((".json", "results.nc", "case.toml")))
     if not stored_results(folder):
         expected = f"a results folder, as `gearwhine run CASE -o {folder}` leaves it"
         raise CaseError([Problem("export", str(folder), expected)])
@@ -184,6 +206,7 @@ def export_results(
             expected = f"results with what can be written as {', '.join(formats)}"
             how = "run the case with [transient], and with sensors, or with [acoustics] and microphones"
             raise CaseError([Problem("export", str(folder), f"{expected}: {how}")])
+    add_warnings(document, (warning("results folder", remark) for remark in remarks))
     add_warnings(document, _missing_points(document))
     return document | {"folder": str(folder), "files": files}
 

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import copy
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
+from gearwhine.failures import DamagedResultsError
 from gearwhine.output import COMMANDS, finite, json_text, staging
+from gearwhine.output.files import finish_moves
+from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
 from gearwhine.progress import Progress, silent
-from housing.storage.netcdf import Variables
+from housing.storage.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,6 +73,11 @@ class Result(Generic[Solved]):
         Objects of the library: solved housing, rotors, gear pairs, coupled modes, motion.
     document : dict
         Numbers and texts as the command prints them with ``--json``; units stand in the keys.
+
+    Notes
+    -----
+    A result can be pickled, with all its arrays. One that comes back from a pickle draws no figures and pictures, and
+    writes none.
     """
 
     command: str
@@ -86,6 +95,12 @@ class Result(Generic[Solved]):
     def __post_init__(self) -> None:
         """Give the document its list of warnings, with those of the case."""
         add_warnings(self.document, [warning("case", text) for text in warnings_of(self.case)])
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields for a pickle: the arrays themselves, in place of the functions that make and draw them."""
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        arrays = None if self._arrays is None else partial(copy.copy, self.dataset)
+        return state | {"_arrays": arrays, "_figures": _no_figures, "_files": _no_files, "_options": ((), ())}
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""
@@ -174,9 +189,17 @@ class Result(Generic[Solved]):
         for key in self.document.pop("kept", ()):  # of another folder
             del self.document[key]
         options, same = self._options
+        finish_moves(Path(folder))
         if options and (earlier := earlier_result(Path(folder), self.command)) is not None:
-            kept = kept_options(options, same, self.case, self.document, *earlier)
-            self.document.update(kept.document)
+            place = earlier[0].relative_to(folder)
+            try:
+                require_as_written(Path(folder), lambda name: Path(name).parent == place)
+            except DamagedResultsError as error:
+                text = f"{error}; the parts of those results that this one would keep are left out"
+                add_warnings(self.document, [warning("results folder", text)])
+            else:
+                kept = kept_options(options, same, self.case, self.document, *earlier)
+                self.document.update(kept.document)
 
         def write(place: Path) -> None:
             progress("writing results")
@@ -219,7 +242,11 @@ class Result(Generic[Solved]):
         if isinstance(arrays, LabelledArrays):
             replace(arrays, variables={**arrays.variables, **kept_arrays}).write(place / self._data_file)
         else:
-            arrays.to_netcdf(place / self._data_file, engine="h5netcdf")
+            variables, coordinates = (
+                {str(name): (array.dims, array.values, dict(array.attrs)) for name, array in part.items()}
+                for part in (arrays.data_vars, arrays.coords)
+            )
+            write_netcdf(place / self._data_file, variables, arrays.attrs, coordinates=coordinates)
 
 
 def _proofs(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -5,6 +5,7 @@ motion by :func:`gearwhine.solve.transient.solve_transient`, which integrates in
 :func:`coupling.time.transient.integrate_blocks`.
 """
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -131,6 +132,8 @@ def _on_results(
         raise CaseError([Problem("--set", common.settings[0], f"none beside the results folder {results!r}")])
     with shown(quiet=common.quiet) as progress:
         document = work(Path(results), None, progress)
+    for warning in document["warnings"]:
+        sys.stderr.write(f"warning: {warning['message']}\n")
     hand_over(document, common, show)
 
 

@@ -156,8 +156,10 @@ def _check_files(command: str, folder: Path, loaded: "LoadedCase", writes: Seque
     """Refuse a folder in which results would replace files of the user, before the work begins."""
     from gearwhine.case import CaseError, Problem
     from gearwhine.failures import ForeignFileError
+    from gearwhine.output.files import finish_moves
     from gearwhine.output.own_files import require_free
 
+    finish_moves(folder)
     try:
         require_free(command, folder, loaded.source.input_paths, writes)
     except ForeignFileError as error:

@@ -25,8 +25,9 @@ import numpy.typing as npt
 
 from gearwhine.output.csv_cells import plain_cells
 from gearwhine.output.files import file_stems
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.sections import Column, Document, Section, Table, value_at
-from gearwhine.output.store import DATA, intact_results
+from gearwhine.output.store import DATA, stored_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +82,7 @@ def write_tables(folder: Path, chapters: Chapters, place: Path) -> list[Document
     """
     titled_tables = [
         (title, table)
-        for _, document in intact_results(folder)
+        for _, document in stored_results(folder)
         for title, table in _tables(str(document.get("command", "results")), chapters(document))
     ]
     written: list[Document] = []
@@ -217,12 +218,10 @@ def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors
 
 
 def _datasets(folder: Path) -> Iterator[tuple[str, Document, xr.Dataset]]:
-    import xarray as xr
-
-    for place, document in intact_results(folder):
+    for place, document in stored_results(folder):
         path = folder / place / DATA
         if path.is_file() and not path.is_symlink():
-            with xr.open_dataset(path, engine="h5netcdf") as data:
+            with opened_dataset(path) as data:
                 yield str(document.get("command", "results")), document, data
 
 

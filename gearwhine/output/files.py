@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.failures import DamagedResultsError
+from gearwhine.interruption import uninterrupted
 from gearwhine.output.manifest import MANIFEST, file_digest, listed_digests, manifest_text
 from gearwhine.output.own_files import require_own
 
@@ -178,30 +179,30 @@ COMMANDS = (
 )
 """Analyses that leave results in the output folder: the commands, and `simulate` of Python."""
 
-_STAGING = ".partial-"
+ADDING = ("render",)
+"""Commands whose pictures are added to their earlier ones."""
+
+_STAGING, _COMPLETE = ".partial-", ".complete-"  # beginnings of the names of folders of staged files
 _DRAWN = (".png", ".glb", ".vtu")
 _JSON_LINE = 160  # letters of a document's line that holds a whole list or object
 _LONGEST = 60  # length of the longest name in a file's name [characters]
 
 
 @contextmanager
-def staging(
-    folder: Path, settle: Callable[[Path], Path | None] | None = None, *, listed: bool = True
-) -> Iterator[Path]:
-    """Stage files in a folder inside the output folder: they move out to it, one by one and whole, at the end.
+def staging(folder: Path, settle: Callable[[Path], None] | None = None, *, listed: bool = True) -> Iterator[Path]:
+    """Stage files in a folder inside the output folder: at the end they move out to it as one set.
 
     Where the work fails or is interrupted, the output folder keeps its files. Staged files of a killed run are removed
-    first, those of a living one stay, and two runs move their files one after the other.
+    first, those of a living one stay, and two runs move their files one after the other. A set is complete once its
+    folder has another name: where the run is killed while its files move, the next one, or the next reader, moves the
+    rest (:func:`finish_moves`).
 
     Parameters
     ----------
     folder : path
         The output folder.
     settle : callable, optional
-        Called with the staged folder right before its files move, when no other run moves any. Returns the place of a
-        command's results, relative to the output folder; drawings that the earlier summary there lists and this run
-        does not draw anew are then cleared away, so that no old mode stands among the new ones. None where the files
-        add to earlier ones.
+        Called with the staged folder right before its files move, when no other run moves any.
     listed : bool
         Whether the folder's manifest lists the files.
 
@@ -211,7 +212,7 @@ def staging(
         Where a file that no run made would be replaced.
     """
     is_new = not folder.exists()
-    with ExitStack() as stack:
+    with room_named(folder), ExitStack() as stack:
         with exclusive_lock(folder):
             for stale in folder.glob(f"{_STAGING}*"):
                 if stale.is_dir() and not stale.is_symlink() and not is_locked(stale):
@@ -220,22 +221,47 @@ def staging(
             stack.enter_context(held_lock(place))
         try:
             yield place
-            with exclusive_lock(folder):
-                replaced = None if settle is None else settle(place)
+            with exclusive_lock(folder), uninterrupted():
+                _finish_moves(folder)
+                if settle is not None:
+                    settle(place)
                 require_own(folder, [path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file()])
                 if listed:
                     _write_manifest(place, folder)
-                _move_out(place, folder, replaced)
-        except OSError as error:
-            # Libraries that write files do not say where there was no room.
-            if error.filename is None and (error.errno == errno.ENOSPC or os.strerror(errno.ENOSPC) in str(error)):
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder)) from error
-            raise
+                complete = place.with_name(place.name.replace(_STAGING, _COMPLETE, 1))
+                place.rename(complete)
+                _move_out(complete, folder)
         finally:
             shutil.rmtree(place, ignore_errors=True)
             if is_new:
                 with suppress(OSError):  # it holds results, or another run is at work in it
                     folder.rmdir()
+
+
+@contextmanager
+def room_named(folder: Path) -> Iterator[None]:
+    """Name a folder in the errors of writes that fail for want of room: neither they nor libraries say where."""
+    try:
+        yield
+    except OSError as error:
+        reason = errno.ENOSPC if os.strerror(errno.ENOSPC) in str(error) else error.errno
+        if error.filename is None and reason in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO):
+            raise OSError(reason, os.strerror(reason), str(folder)) from error
+        raise
+
+
+def finish_moves(folder: Path) -> None:
+    """Move the rest of a complete set whose run was killed while its files moved to the output folder."""
+    if any(folder.glob(f"{_COMPLETE}*")):
+        with exclusive_lock(folder), uninterrupted():
+            _finish_moves(folder)
+
+
+def _finish_moves(folder: Path) -> None:
+    """Move what is left of complete sets, under the folder's lock, so that no living run moves any."""
+    for complete in sorted(folder.glob(f"{_COMPLETE}*")):
+        if complete.is_dir() and not complete.is_symlink():
+            _move_out(complete, folder)
 
 
 def read_summary(folder: Path) -> Mapping[str, Any] | None:
@@ -259,19 +285,39 @@ def _is_plain_file(path: Path) -> bool:
     return path.is_file() and not path.is_symlink()
 
 
-def _move_out(place: Path, folder: Path, replaced: Path | None) -> None:
-    """Move a run's files to the output folder, and remove earlier drawings that it does not draw anew."""
+def _move_out(place: Path, folder: Path) -> None:
+    """Move a complete set of files to the output folder, remove those that it supersedes, and the emptied folder.
+
+    Each step may be the last: the next call goes on from there. The summaries move behind the other files, because the
+    earlier ones list what is to be removed, that of the folder itself as the last. The manifest moves behind all.
+    """
     names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
-    stale = [] if replaced is None else [file for file in listed_files(folder, replaced) if file.suffix in _DRAWN]
-    # The summary moves last: where it is new, all is new, and until then the old one lists the files to be removed.
-    for name in sorted(names, key=lambda name: name.name == SUMMARY):
+    last = {SUMMARY: 1, MANIFEST: 2}
+    for name in sorted(names, key=lambda name: (last.get(name.name, 0), -len(name.parts))):
         if name.name == SUMMARY:
-            for old in stale:
-                if old not in names:
-                    (folder / old).unlink(missing_ok=True)
+            for old in _superseded(place, folder, name):
+                (folder / old).unlink(missing_ok=True)
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         os.replace(place / name, target)
+    shutil.rmtree(place, ignore_errors=True)
+
+
+def _superseded(place: Path, folder: Path, summary: Path) -> list[Path]:
+    """Return the files that an earlier summary lists and a new one, which takes its place, makes stale.
+
+    These are drawings that the command does not draw anew, so that no old mode stands among the new ones; and files of
+    another command, which stand in its own sub-folder now.
+    """
+    new, old = read_summary(place / summary.parent) or {}, read_summary(folder / summary.parent) or {}
+    if new.get("command") in ADDING:
+        return []
+    earlier = [file for file in listed_files(folder, summary.parent) if file.as_posix() not in new.get("files", ())]
+    owner = old.get("command")
+    if owner == new.get("command") or owner not in COMMANDS:
+        return [file for file in earlier if file.suffix in _DRAWN]
+    own = Path(str(owner))
+    return [file for file in earlier if (folder / own / file.name).is_file() or (place / own / file.name).is_file()]
 
 
 def _write_manifest(place: Path, folder: Path) -> None:
@@ -281,7 +327,11 @@ def _write_manifest(place: Path, folder: Path) -> None:
     except DamagedResultsError:  # what it listed is unknown; the summaries list most
         earlier = {}
     names = [path.relative_to(place) for path in sorted(place.rglob("*")) if path.is_file()]
-    digests = earlier | {name.as_posix(): file_digest(place / name) for name in names}
+    if not names:
+        return
+    removed = {old.as_posix() for name in names if name.name == SUMMARY for old in _superseded(place, folder, name)}
+    kept = {name: digest for name, digest in earlier.items() if name not in removed}
+    digests = kept | {name.as_posix(): file_digest(place / name) for name in names}
     (place / MANIFEST).write_text(manifest_text(digests), encoding="utf-8")
 
 

@@ -12,12 +12,16 @@ checksum of its own, as ``modes.nc`` does; :func:`housing.storage.atomic_file.ch
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import DamagedResultsError
 from housing.storage.netcdf import content_key
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MANIFEST = ".gearwhine.json"
 _FORMAT = "files of gearwhine results"
@@ -73,28 +77,58 @@ def is_as_written(folder: Path, name: str, digests: Mapping[str, str]) -> bool:
         return False
 
 
-def require_as_written(folder: Path, names: Iterable[str] | None = None) -> list[str]:
-    """Check files of a folder against its manifest, and return the names of those that are missing.
+def require_as_written(folder: Path, are_read: Callable[[str], bool] = lambda name: True) -> list[str]:
+    """Check files of a folder against its manifest.
 
     Parameters
     ----------
     folder : path
-    names : iterable of str, optional
-        Names relative to the folder, where the manifest lists them; all that it lists by default.
+    are_read : callable
+        Whether the caller reads the file of a name, relative to the folder.
+
+    Returns
+    -------
+    list of str
+        Sentences on read files that are missing, and on others that are not as they were written.
 
     Raises
     ------
     DamagedResultsError
-        Where a file is not as it was written: the message names each.
+        Where a file that is read is not as it was written: the message names each.
     """
     digests = listed_digests(folder)
-    chosen = [name for name in (digests if names is None else names) if name in digests]
-    there = [name for name in chosen if (folder / name).exists()]
-    if damaged := [name for name in there if not is_as_written(folder, name, digests)]:
-        files = ", ".join(str(folder / name) for name in sorted(damaged))
+    there = [name for name in sorted(digests) if (folder / name).exists()]
+    changed = [name for name in there if not is_as_written(folder, name, digests)]
+    if damaged := [str(folder / name) for name in changed if are_read(name)]:
         are, them = ("is", "it") if len(damaged) == 1 else ("are", "them")
         raise DamagedResultsError(
-            f"{files} {are} damaged, or changed since gearwhine wrote {them}: the bytes do not have the digest in "
-            f"{folder / MANIFEST}; run the command anew"
+            f"{', '.join(damaged)} {are} damaged, or changed since gearwhine wrote {them}: the bytes do not have the "
+            f"digest in {folder / MANIFEST}; run the command anew"
         )
-    return sorted(set(chosen) - set(there))
+    missing = [f"{folder / name} is missing" for name in sorted(set(digests) - set(there)) if are_read(name)]
+    return missing + [f"{folder / name} is damaged, or changed since gearwhine wrote it" for name in changed]
+
+
+@contextmanager
+def opened_dataset(path: Path) -> Iterator["xr.Dataset"]:
+    """Open a NetCDF file of results, read as its arrays are asked for.
+
+    Raises
+    ------
+    DamagedResultsError
+        Where the file is damaged, or of another kind, as far as its reader notices: results of earlier versions have
+        no digest.
+    """
+    import xarray as xr
+
+    try:
+        data = xr.open_dataset(path, engine="h5netcdf")
+    except Exception as error:  # readers raise exceptions of many kinds on a damaged file
+        raise DamagedResultsError(f"{path} is no NetCDF4 file, or a damaged one: {error}") from error
+    with data:
+        try:
+            yield data
+        except OSError as error:
+            if error.errno is not None:  # of another file
+                raise
+            raise DamagedResultsError(f"{path} is damaged: {error}") from error

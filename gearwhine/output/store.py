@@ -7,6 +7,7 @@ housing's modes are shared by all.
 
 import json
 import os
+import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -24,13 +25,11 @@ from gearwhine.output.files import (
     read_summary,
     staging,
 )
-from gearwhine.output.manifest import require_as_written
 from housing.storage.netcdf import Variables, read_netcdf
 
 DATA = "results.nc"
 """Name of the file of a result's labelled arrays."""
 _FOREMOST = "run"
-_ADDING = "render"  # command whose pictures are added to its earlier ones
 
 
 @dataclass(frozen=True)
@@ -167,7 +166,7 @@ def store_results(
         Whether the folder holds the modes of the results, so that they are listed though not written.
     """
 
-    def settle(place: Path) -> Path | None:
+    def settle(place: Path) -> None:
         command_folder = _place_of(folder, command)
         (place / command_folder).mkdir(exist_ok=True)
         for path in sorted(place.iterdir()):
@@ -181,7 +180,8 @@ def store_results(
             command=command, made_at=_now(), input_files=case.input_files.contents, folder=str(folder), files=files
         )
         (place / command_folder / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
-        return None if command == _ADDING else command_folder
+        if command == _FOREMOST:
+            _give_way(place, folder)
 
     with staging(folder, settle) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
@@ -195,19 +195,6 @@ def stored_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     return sorted(results, key=lambda result: str(result[1].get("made_at", "")), reverse=True)
 
 
-def intact_results(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
-    """Return :func:`stored_results`, whose documents and arrays are as they were written.
-
-    Raises
-    ------
-    DamagedResultsError
-        Where the manifest lists another digest of a file: it is damaged, or somebody has changed it.
-    """
-    places = [Path(), *(Path(command) for command in COMMANDS)]
-    require_as_written(folder, [(place / name).as_posix() for place in places for name in (SUMMARY, DATA)])
-    return stored_results(folder)
-
-
 def earlier_result(folder: Path, command: str) -> tuple[Path, Mapping[str, Any]] | None:
     """Return the place of a command's results in a folder, and their document; None where there are none."""
     matches = [
@@ -217,30 +204,29 @@ def earlier_result(folder: Path, command: str) -> tuple[Path, Mapping[str, Any]]
 
 
 def _place_of(folder: Path, command: str) -> Path:
-    """Return the place of a command's results relative to the folder, which is made ready for them."""
-    if not (folder / SUMMARY).exists():
+    """Return the place of a command's results relative to the folder."""
+    if not (folder / SUMMARY).exists() or command == _FOREMOST:
         return Path()
     owner = (read_summary(folder) or {}).get("command")
-    if owner == command:
-        return Path()
-    if command != _FOREMOST:
-        return Path(command)
-    if owner in COMMANDS:
-        _give_way(folder, str(owner))
-    return Path()
+    return Path() if owner == command else Path(command)
 
 
-def _give_way(folder: Path, owner: str) -> None:
-    """Move the results of a command from the folder itself to its sub-folder."""
-    (folder / owner).mkdir(exist_ok=True)
+def _give_way(place: Path, folder: Path) -> None:
+    """Stage the results of another command, which stand in the folder itself, for its sub-folder: they move as well."""
     document = dict(read_summary(folder) or {})
+    owner = document.get("command")
+    if not isinstance(owner, str) or owner == _FOREMOST or owner not in COMMANDS:
+        return
     shared = [MODE_CACHE_FILE] if (folder / MODE_CACHE_FILE).is_file() else []
     names = [path.name for path in listed_files(folder, Path()) if path.name not in (MODE_CACHE_FILE, SUMMARY)]
     document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
+    (place / owner).mkdir()
     for name in names:
-        os.replace(folder / name, folder / owner / name)
-    (folder / owner / SUMMARY).write_text(json_text(document) + "\n", encoding="utf-8")
-    (folder / SUMMARY).unlink()
+        try:
+            os.link(folder / name, place / owner / name)
+        except OSError:  # of a file system without links
+            shutil.copyfile(folder / name, place / owner / name)
+    (place / owner / SUMMARY).write_text(json_text(document) + "\n", encoding="utf-8")
 
 
 def _now() -> str:

@@ -33,7 +33,7 @@ from gearwhine.results.motion import (
     path_place,
     shape_column,
 )
-from housing.storage.netcdf import Variables
+from housing.storage.netcdf import Variables, reserve_space
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -772,6 +772,8 @@ class HistoryStream:
     def append_to(self, path: Path) -> None:
         """Append the histories to a file that holds their coordinates, one piece at a time."""
         record = self.solved.record
+        rows = sum(len(values) for _, values in _recorded(self.solved.signals))
+        reserve_space(path, record.samples * (8 + 4 * rows))
         with h5netcdf.File(path, "a") as file:
             # As xarray does for the file's other variables.
             beside = {"coordinates": "speed"} if "speed" in file.variables else {}

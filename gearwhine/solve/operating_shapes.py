@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 from coupling.signals.spectrum import at_time_zero
 from coupling.signals.tones import tones_at
 from gearwhine.case import CaseError, Problem
+from gearwhine.output.manifest import opened_dataset, require_as_written
 from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 from housing import HousingError
@@ -71,14 +72,12 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
     CaseError
         Where there is no run on file, or not of this housing at steady speed, or no line there.
     """
-    import xarray as xr
-
     path = folder / RESULTS_FILE
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as dataset:
-            content = dataset.load()
-    except (OSError, ValueError) as error:
-        raise _missing(folder, "a results folder with a run: give it by -o, after 'gearwhine run'") from error
+    if not path.is_file():
+        raise _missing(folder, "a results folder with a run: give it by -o, after 'gearwhine run'")
+    require_as_written(folder, lambda name: name == RESULTS_FILE)
+    with opened_dataset(path) as dataset:
+        content = dataset.load()
     if "housing_acceleration_spectrum" not in content:
         raise _missing(folder, "a run at steady speed on ground at rest, whose spectra have lines; 'gearwhine run' it")
     survey = solved.survey.matrix @ solved.modes.shapes.reshape(len(solved.modes.shapes), -1).T

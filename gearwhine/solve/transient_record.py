@@ -50,7 +50,7 @@ from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum, whole
 from coupling.time.histories import Histories, ModalRecord
 from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.case import Case, CaseError, Problem, speed_ratios
-from gearwhine.output.files import exclusive_lock, held_lock, is_locked
+from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
 _KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
@@ -155,7 +155,7 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
         Whether to remove stored blocks, and begin anew.
     """
     is_new = not folder.exists()
-    with ExitStack() as stack:
+    with room_named(folder), ExitStack() as stack:
         with exclusive_lock(folder):
             place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
             stack.enter_context(held_lock(place))

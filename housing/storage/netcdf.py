@@ -5,8 +5,13 @@ NetCDF4 (Unidata, *NetCDF File Format Specifications*) has it: a dimension is a 
 of none, and carries its number; an array carries the numbers of its dimensions.
 """
 
+import errno
 import hashlib
+import io
 import json
+import os
+import shutil
+import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -107,6 +112,9 @@ def write_netcdf(
 ) -> None:
     """Write a file that xarray opens as the dataset of these variables, coordinates and attributes.
 
+    HDF5 writes to memory, and the bytes go to the file in one piece: where a disk is full, HDF5 itself ends the whole
+    process as it closes a file.
+
     Parameters
     ----------
     path : path
@@ -134,7 +142,8 @@ def write_netcdf(
     numbers = {name: np.int32(number) for number, name in enumerate(sizes)}
     along_itself = {name for name in sizes if dimensions.get(name) == (name,)}
     beside = {name: set(dimensions[name]) for name in coordinates or {} if name not in sizes}
-    with h5py.File(path, "w", track_order=True) as file:
+    image = io.BytesIO()
+    with h5py.File(image, "w", track_order=True) as file:
         _tell(file.attrs, attributes)
         scales: dict[str, Any] = {}
         for name, size in sizes.items():
@@ -175,6 +184,33 @@ def write_netcdf(
             for axis, dimension in enumerate(dimensions[name]):
                 dataset.dims[axis].attach_scale(scales[dimension])
         file.attrs["_NCProperties"] = np.bytes_(f"version=2,hdf5={h5py.version.hdf5_version},h5py={h5py.__version__}")
+    with path.open("xb") as target:
+        target.write(image.getbuffer())
+
+
+def reserve_space(path: Path, size: int) -> None:
+    """Reserve disk space behind the end of a file that HDF5 will then append to, which cuts off what it does not need.
+
+    Parameters
+    ----------
+    path : path
+    size : int
+        Length of what will be appended [bytes].
+
+    Raises
+    ------
+    OSError
+        Where the disk has no room for it.
+    """
+    with path.open("r+b") as file:
+        end = file.seek(0, os.SEEK_END)
+        if sys.platform == "linux":
+            os.posix_fallocate(file.fileno(), end, size + _STRUCTURE)
+        elif shutil.disk_usage(path.parent).free < size + _STRUCTURE:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+
+
+_STRUCTURE = 1 << 20  # what HDF5 adds for its own tables [bytes], at most
 
 
 _NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable."

@@ -1,6 +1,8 @@
 """Mesh files: read and write every format that meshio knows, and input decks of Abaqus, CalculiX and Nastran."""
 
+import errno
 import os
+import shutil
 import tempfile
 from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
@@ -74,7 +76,9 @@ def write_mesh(mesh: Mesh, path: str | Path) -> None:
     Raises
     ------
     GeometryError
-        Where the ending is another one, the format cannot hold the mesh, or the file cannot be written.
+        Where the ending is another one, or the format cannot hold the mesh.
+    OSError
+        Where the file cannot be written.
     """
     path = Path(path)
     if path.suffix not in WRITABLE:
@@ -83,13 +87,27 @@ def write_mesh(mesh: Mesh, path: str | Path) -> None:
     # Written under its own name in a folder beside, because XDMF names its companion after itself.
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as folder:
         try:
+            _require_room(mesh, path.parent)
             _write(mesh, Path(folder) / path.name)
             for part in sorted(Path(folder).iterdir(), key=lambda part: part.name == path.name):
                 os.replace(part, path.parent / part.name)
         except GeometryError:
             raise
         except Exception as error:  # writers refuse in many ways, some by a bare assertion
+            if isinstance(error, OSError):  # numpy's own writer does not say why
+                reason = error.errno or errno.ENOSPC
+                raise OSError(reason, os.strerror(reason)) from error
             raise GeometryError(f"mesh file {path} cannot be written: {type(error).__name__} {error}") from error
+
+
+def _require_room(mesh: Mesh, folder: Path) -> None:
+    """Refuse a disk with less room than the mesh has bytes: HDF5, in XDMF and MED, crashes on a full one.
+
+    Twice the bytes of nodes and elements are asked for: regions and HDF5's own tables need some too.
+    """
+    size = 2 * (mesh.points.nbytes + sum(block.nodes.nbytes for block in mesh.blocks))
+    if shutil.disk_usage(folder).free < size:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def _write(mesh: Mesh, path: Path) -> None:

@@ -9,15 +9,13 @@ from pathlib import Path
 import pytest
 
 from gearwhine.output import listed_files, staging
+from gearwhine.output.manifest import MANIFEST
 
 
 def results(folder: Path, names: list[str], own: Path = Path()) -> None:
     """A command that leaves these files and lists them."""
 
-    def settle(place: Path) -> Path:
-        return own
-
-    with staging(folder, settle) as place:
+    with staging(folder) as place:
         (place / own).mkdir(exist_ok=True)
         for name in names:
             (place / own / name).write_text(f"{name} of {len(names)}", encoding="utf-8")
@@ -26,7 +24,7 @@ def results(folder: Path, names: list[str], own: Path = Path()) -> None:
 
 
 def names_in(folder: Path) -> set[str]:
-    return {path.name for path in folder.iterdir()} - {".gearwhine.json"}
+    return {path.name for path in folder.iterdir()} - {MANIFEST}
 
 
 @pytest.mark.parametrize("own", [Path(), Path("system")])
@@ -48,7 +46,7 @@ def test_results_elsewhere_clear_nothing(tmp_path: Path) -> None:
 
 def test_a_failed_run_clears_nothing(tmp_path: Path) -> None:
     results(tmp_path, ["mode-07.png"])
-    with pytest.raises(RuntimeError), staging(tmp_path, lambda place: Path()):
+    with pytest.raises(RuntimeError), staging(tmp_path):
         raise RuntimeError
     assert names_in(tmp_path) == {"mode-07.png", "summary.json"}
 

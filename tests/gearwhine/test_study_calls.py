@@ -1,6 +1,7 @@
 """A study hands on to the analyses what it is called with, and to a sweep what its case was made of."""
 
 import math
+import pickle
 from collections.abc import Iterator
 from typing import Any
 
@@ -137,3 +138,13 @@ def test_proofs_are_named_by_their_path() -> None:
         "rotors[1].residual": 2e-12,
         "residual": 3e-12,
     }
+
+
+@pytest.mark.slow
+def test_a_result_comes_back_from_a_pickle_with_all_its_numbers() -> None:
+    result = gw.load("friswell-rotor").rotors()
+    again = pickle.loads(pickle.dumps(result))  # noqa: S301 - of its own
+    assert again.document == result.document
+    assert again.dataset.identical(result.dataset)
+    assert again.case == result.case
+    assert again.warnings == result.warnings

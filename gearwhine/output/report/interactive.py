@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.report.elements import NO_BREAK, in_cell
 from gearwhine.output.sections import Curves, Section, arrowed
 
@@ -228,14 +229,9 @@ def live_parts(scripts: Scripts | None, place: Path, sections: Sequence[Section]
     declaring = [section for section in _all_sections(sections) if section.curves]
     if scripts is None or not declaring or not (place / _RESULTS).is_file():
         return {}
-    import xarray as xr
-
-    try:
-        # Opened once for all sections: opening a file of a hundred arrays takes longer than reading those of a section.
-        with xr.open_dataset(place / _RESULTS, engine="h5netcdf") as dataset:
-            return {id(section): scripts.curves(dataset, section) for section in declaring}
-    except (OSError, ValueError):
-        return {}
+    # Opened once for all sections: opening a file of a hundred arrays takes longer than reading those of a section.
+    with opened_dataset(place / _RESULTS) as dataset:
+        return {id(section): scripts.curves(dataset, section) for section in declaring}
 
 
 def _all_sections(sections: Sequence[Section]) -> Iterator[Section]:

@@ -20,7 +20,7 @@ from gearwhine.output.report.freshness import mismatches, moment, stored_case
 from gearwhine.output.report.interactive import MovingShape, Scripts, live_parts
 from gearwhine.output.report.pictures import Shown, distribute, figure, pictures_in
 from gearwhine.output.sections import Document, Section
-from gearwhine.output.store import intact_results
+from gearwhine.output.store import stored_results
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 _SUMMARY, _SHAPES = "summary", "shapes"
@@ -141,7 +141,7 @@ def _style() -> str:
 
 def _stored(folder: Path) -> list[tuple[Path, Mapping[str, Any]]]:
     expected = f"a results folder with {SUMMARY}, as `gearwhine run CASE -o {folder}` leaves it"
-    results = intact_results(folder)
+    results = stored_results(folder)
     if (folder / SUMMARY).exists() and not any(place == Path() for place, _ in results):
         raise CaseError([Problem("report", str(folder / SUMMARY), f"{expected}; this one is damaged")])
     if not results:
