@@ -207,13 +207,17 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     inside = frequencies <= end
     top = 0.0
     handles = []
-    for number, (name, values) in enumerate(curves.items()):
-        size = _MICROMETRE * values
-        top = max(top, float(size[inside].max(initial=0.0)))
-        line = axes.plot(
-            frequencies, size, color=SERIES[number % _NAMED], lw=1.0, label=name_in_legend(name, 24), zorder=3
-        )
-        handles += line if number < _NAMED else []
+    peaks = {name: float(_MICROMETRE * values[inside].max(initial=0.0)) for name, values in curves.items()}
+    # Of many curves the highest have a colour and a name each.
+    named = curves if len(curves) <= _NAMED else sorted(peaks, key=lambda name: -peaks[name])[: _NAMED - 1]
+    colours = dict(zip((name for name in curves if name in named), SERIES, strict=False))
+    for name, values in curves.items():
+        top = max(top, peaks[name])
+        colour, label = colours.get(name, GREY), name_in_legend(name, 24)
+        line = axes.plot(frequencies, _MICROMETRE * values, color=colour, lw=1.0, label=label, zorder=3)
+        handles += line if name in named else []
+    if others := len(curves) - len(named):
+        handles.append(Line2D([], [], color=GREY, lw=1.0, label=f"{others} more"))
     if top > 0.0:
         least = min(
             float(_MICROMETRE * values[inside & (values > 0.0)].min(initial=np.inf)) for values in curves.values()
