@@ -32,6 +32,7 @@ from coupling.machine.components import (
 from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
 from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from coupling.machine.gear_bodies import transport
 from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
 from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
 from coupling.machine.mesh_face import MeshFace, mesh_face
@@ -67,12 +68,15 @@ class CoupledMachine:
     meshes : tuple of GearMesh
     system : CoupledSystem
         Components in the order rotors, housing, pedestals; linear connectors in the order ``bearings``, dashpots of
-        couplings, slopes of torques, tilting of meshes; contacts in the order drive flanks of ``meshes``, back flanks.
+        couplings, rotation of gear bodies, slopes of torques, tilting of meshes; contacts in the order
+        drive flanks of ``meshes``, back flanks.
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
+    mean_faces : MeanFaces or None
+        Faces of its meshes under the mean load, for the machine at other speeds.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -83,6 +87,7 @@ class CoupledMachine:
     loads: MachineLoads = UNLOADED
     dashpots: tuple[ShaftDashpots, ...] = ()
     speed_range: tuple[float, float] = (1.0, 1.0)
+    mean_faces: "MeanFaces | None" = None
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -179,6 +184,7 @@ class CoupledMachine:
             loads=self.loads.at_speed_ratio(speed / present),
             dashpots=self.dashpots,
             speed_range=_about(self.speed_range, speed / present),
+            mean_faces=self.mean_faces,
         )
 
 
@@ -192,6 +198,7 @@ def assemble_machine(
     loads: MachineLoads = UNLOADED,
     dashpots: Sequence[ShaftDashpots] = (),
     speed_range: tuple[float, float] = (1.0, 1.0),
+    mean_faces: "MeanFaces | None" = None,
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
 
@@ -210,6 +217,8 @@ def assemble_machine(
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
         followed between them.
+    mean_faces : MeanFaces, optional
+        Faces under the mean load of the machine at another speed, which are taken where nothing of them has changed.
 
     Raises
     ------
@@ -256,6 +265,8 @@ def assemble_machine(
     for dashpot in dashpots:
         rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
+    for rotor in rotors:
+        within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
 
     senses = _senses(meshes, speeds)
     phases = mesh_phases(
@@ -289,7 +300,8 @@ def assemble_machine(
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    system = with_balanced_friction(_with_faces(system, coordinates, flanks))
+    with_faces, mean_faces = _with_faces(system, coordinates, flanks, mean_faces)
+    system = with_balanced_friction(with_faces)
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -299,6 +311,7 @@ def assemble_machine(
         loads,
         tuple(dashpots),
         speed_range,
+        mean_faces,
     )
 
 
@@ -363,6 +376,23 @@ def _bearing(
     return linear, nonlinear
 
 
+def _transports(
+    coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
+) -> list[LinearConnector]:
+    """Rotation of gear bodies' modes with two nodal diameters or more, see :mod:`coupling.machine.gear_bodies`."""
+    connectors = []
+    for gear, mode, own in rotor.plates:
+        if speed == 0.0:
+            break
+        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[own]).T
+        name = f"rotation of {gear}, {mode.name}"
+        ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
+        laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]
+        table = SpeedTable(ratios, *(np.array(part) for part in zip(*laws, strict=True))) if len(laws) > 1 else None
+        connectors.append(LinearConnector(name, directions, *transport(mode, rotor.damping_ratio, speed), table))
+    return connectors
+
+
 def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
@@ -416,13 +446,73 @@ def _coordinate_loads(
     return total
 
 
-def _with_faces(
-    system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
-) -> CoupledSystem:
-    """Return the system with flanks that resist tilting and with load shuttling, see `coupling.machine.mesh_face`.
+_FaceState = tuple[MeshFace, FaceTangent, MeanMesh, float]
+"""Face of a contact, its tangent under the mean load, its mean mesh, and the mean slope over its face [rad]."""
 
-    ``flanks`` are mesh and sense of each contact of the system. Mean forces, the flanks' tangents under them and the
-    mean motion depend on each other only where meshes share a torque.
+
+@dataclass(frozen=True, eq=False)
+class MeanFaces:
+    """Faces of a machine's meshes under its mean load, by the number of the contact.
+
+    Attributes
+    ----------
+    system : CoupledSystem
+        System without the faces, whose mean load and stiffness they have.
+    states : dict of int to tuple
+    """
+
+    system: CoupledSystem
+    states: dict[int, _FaceState]
+
+    def hold_in(self, system: CoupledSystem) -> bool:
+        """Whether a system has the same mean load, stiffness and flanks, turning."""
+        before = self.system
+        if before.nonlinear or system.nonlinear or len(before.contacts) != len(system.contacts):
+            return False
+        flanks = all(
+            (one.contact is other.contact or not one.loaded)
+            and one.loaded == other.loaded
+            and one.clearance == other.clearance
+            and one.mesh_frequency * other.mesh_frequency > 0.0
+            and np.array_equal(one.direction, other.direction)
+            for one, other in zip(before.contacts, system.contacts, strict=True)
+        )
+        return (
+            flanks and np.array_equal(before.load, system.load) and np.array_equal(before.stiffness, system.stiffness)
+        )
+
+
+def _with_faces(
+    system: CoupledSystem,
+    coordinates: MachineCoordinates,
+    flanks: Sequence[tuple[GearMesh, int]],
+    known: MeanFaces | None = None,
+) -> tuple[CoupledSystem, MeanFaces]:
+    """Return the system with flanks that resist tilting and with load shuttling, and their faces.
+
+    ``flanks`` are mesh and sense of each contact of the system, ``known`` the faces of the machine at another speed.
+    See `coupling.machine.mesh_face`.
+    """
+    mean = known if known is not None and known.hold_in(system) else None
+    if mean is None:
+        mean = MeanFaces(system, _face_states(system, coordinates, flanks))
+    if not mean.states:
+        return system, mean
+    harmonics = list(system.harmonic_loads)
+    for number, (face, _, under, _) in mean.states.items():
+        if under.force > 0.0:
+            contact = system.contacts[number]
+            harmonics += face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+    return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
+
+
+def _face_states(
+    system: CoupledSystem, coordinates: MachineCoordinates, flanks: Sequence[tuple[GearMesh, int]]
+) -> dict[int, _FaceState]:
+    """Solve the faces of all contacts under the mean load.
+
+    Mean forces, the flanks' tangents under them and the mean motion depend on each other only where meshes share a
+    torque.
     """
     every = {
         number: _face(coordinates, mesh, sense, contact.contact)
@@ -431,7 +521,7 @@ def _with_faces(
     }
     faces = {number: face for number, face in every.items() if face.yields}
     if not faces:
-        return system
+        return {}
     means, motion = mean_equilibrium(system)
     for _ in range(_ROUNDS):
         states = {}
@@ -444,20 +534,10 @@ def _with_faces(
         changes = [abs(mean.force - forces[n]) for n, mean in enumerate(means) if mean is not None and n in faces]
         if max(changes, default=0.0) <= _SETTLED * max(forces.values()):
             break
-    states = {
+    return {
         number: (face, tangent, mean, float(face.tilting[0] @ motion))
         for number, (face, tangent, mean, _) in states.items()
     }
-    harmonics = list(system.harmonic_loads)
-    for number, (face, _, mean, _) in states.items():
-        if mean.force > 0.0:
-            contact = system.contacts[number]
-            harmonics += face.shuttling(mean.force, contact.phase, contact.mesh_frequency)[1]
-    return replace(_on_faces(system, states, slope_is_found=True), harmonic_loads=tuple(harmonics))
-
-
-_FaceState = tuple[MeshFace, FaceTangent, MeanMesh, float]
-"""Face of a contact, its tangent under the mean load, its mean mesh, and the mean slope over its face [rad]."""
 
 
 def _on_faces(system: CoupledSystem, states: Mapping[int, _FaceState], *, slope_is_found: bool) -> CoupledSystem:
@@ -554,6 +634,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         rotor = coordinates.rotor(mounted.rotor)
         section, rim = rotor.motions(at), rotor.rim_section(mounted.name, at)
         compression = flank.turning(rim[5]) + flank.across(rim) + flank.axial(section)
+        axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
+        compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor]

@@ -34,7 +34,7 @@ from coupling.machine.bearing_laws import RollingLaw
 from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
 from coupling.machine.driving_frequencies import least_sampling_rate
 from coupling.machine.face_compliance import face_compliance
-from coupling.machine.gear_bodies import GearBody, rim_spring, stiffest
+from coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
 from coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
@@ -85,9 +85,6 @@ from rotors.analyses.static_stiffness import static_shaft
 from rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
-
-LATERAL_LIMIT_HZ = 8000.0
-"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -264,17 +261,36 @@ class Machine:
         for mounted in self.gears:
             of_gear = compliances.get(mounted.name, [])
             twisting, shifting = stiffest([twist for twist, _ in of_gear]), stiffest([shift for _, shift in of_gear])
-            if twisting == shifting == np.inf:
+            outward = self.bodies_out_of_plane.get(mounted.name)
+            if twisting == shifting == np.inf and outward is None:
                 continue
             shaft = self.shaft(mounted.shaft)
-            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ if shaft.frequency_limit is None else shaft.frequency_limit
-            limit = limit if len(of_gear) == 1 else np.inf
-            mass, polar = gear_inertia_on_shaft(mounted, shaft.rotor)
+            own = shaft.mode_limit
+            limit = own if len(of_gear) == 1 else np.inf
+            mass, polar, _ = gear_inertia_on_shaft(mounted, shaft.rotor)
             twist = rim_spring(twisting, polar, rotation_shares(mounted.gear), limit)
-            shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
-            if twist is not None or shift is not None:
-                bodies.append(GearBody(mounted.name, mounted.at, twist, shift))
+            shift = None
+            if mounted.name in states:
+                shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
+            body = GearBody(mounted.name, mounted.at, twist, shift)
+            if outward is not None and outward.kept:
+                body = replace(body, plates=outward.kept, limit=own)
+            elif twist is None and shift is None:
+                continue
+            bodies.append(body)
         return tuple(bodies)
+
+    @cached_property
+    def bodies_out_of_plane(self) -> dict[str, BodyOutOfPlane]:
+        """Modes out of the plane of the gears with a body on a hub, and which of them the machine follows."""
+        bodies = {}
+        for mounted in self.gears:
+            shaft = self.shaft(mounted.shaft)
+            inertia = gear_inertia_on_shaft(mounted, shaft.rotor)
+            body = body_out_of_plane(mounted.gear, inertia, shaft.mode_limit)
+            if body is not None:
+                bodies[mounted.name] = body
+        return bodies
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -395,7 +411,9 @@ class Machine:
             Where a rolling bearing is loaded beyond its theory.
         """
         pairs = []
-        rims = {body.gear: body for body in self.gear_bodies if self._pair_count(body.gear) > 1}
+        shared = [body for body in self.gear_bodies if self._pair_count(body.gear) > 1]
+        alone = [replace(body, twist=None, shift=None) for body in self.gear_bodies if body not in shared]
+        rims = {body.gear: body for body in (*shared, *alone) if body in shared or body.plates}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
             if not carrying:
@@ -690,7 +708,7 @@ class Machine:
         bearings = self._bearings_on(shaft.name)
         limit, count = shaft.frequency_limit, shaft.mode_count
         if limit is None and count is None:
-            limit = 2.0 * np.pi * LATERAL_LIMIT_HZ
+            limit = shaft.mode_limit
         if shaft.rotor.mass_model == "distributed":
             # A lumped rotor has no more modes than its masses allow.
             limit = None if limit is None else limit_factor * limit

@@ -169,7 +169,7 @@ def _work(
     return form(symmetric).real, form(skew).imag, form(0.5 * (damping + damping.T)).real
 
 
-COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "pedestal", "residual")
+COORDINATE_KINDS = ("housing", "rotor", "torsion", "axial", "body", "pedestal", "residual")
 
 _MESH_SHARE = 0.3  # a mode with a larger share of its strain energy in the teeth is a mesh mode
 _EQUAL_SHARES = 1e-6  # shares that differ by less are equal: rounding must not choose between them
@@ -212,9 +212,9 @@ class CoupledModes:
     left : ndarray of complex, shape (m, n)
         Left vectors p with pᴴ (2 λ I + C) q = 1; NaN for rigid motions, whose double zeros have none such.
     kinds : tuple of str
-        Kind of motion: ``housing``, ``rotor``, ``torsion``, ``axial``, ``pedestal``, ``mesh``, or ``rigid`` where
-        nothing resists; ``residual`` for the local compliance beside the housing's modes, whose frequency means
-        nothing.
+        Kind of motion: ``housing``, ``rotor``, ``torsion``, ``axial``, ``body`` (a gear's), ``pedestal``, ``mesh``, or
+        ``rigid`` where nothing resists; ``residual`` for the local compliance beside the housing's modes,
+        whose frequency means nothing.
     where : tuple of str
         The component that moves most in coordinates of that kind; of a mesh mode the contact strained most.
     energy : tuple of dict

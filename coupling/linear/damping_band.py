@@ -5,10 +5,10 @@ model of a line is solved thrice about the mean load,
 
     (K + iω C_s - ω² I) q = f,      C_s = s (C + Cᵀ)/2 + (C - Cᵀ)/2,      s = 1/2, 1, 2,
 
-with the same load f: that of the mesh harmonic, by loaded transmission error and load shuttling, where the line is one,
-else unit loads along every line of action. The skew part of C is gyroscopic: it does no work and stays. The band are
-the levels for s = 1/2 and s = 2 over that for s = 1 [dB]; 0 lies within. Between resonances it is narrow, since mass or
-stiffness holds the motion there; near one it reaches from -6 to +6 dB.
+with the same load f: all that excites the machine at the line (:mod:`coupling.linear.line_mechanisms`), or, where
+nothing does, unit loads along every line of action. The skew part of C is gyroscopic: it does no work and stays. The
+band are the levels for s = 1/2 and s = 2 over that for s = 1 [dB]; 0 lies within. Between resonances it is narrow,
+since mass or stiffness holds the motion there; near one it reaches from -6 to +6 dB.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from coupling.assembly import CoupledMachine
 from coupling.errors import ModesError
 from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from coupling.linear.frequency_response import SUM_RULE, excitations, superposed
-from coupling.linear.mesh_harmonics import MeshHarmonicModel
+from coupling.linear.line_mechanisms import LineMechanisms
 from coupling.statics.mean_mesh import linear_matrices
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,7 +30,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 SCALES = (0.5, 1.0, 2.0)
 """Factors of all damping."""
-_SAME = 1e-6  # relative difference of a line's frequency from a mesh harmonic up to which it is one
 _WIDEST = 60.0  # largest part of a band [dB], of an undamped mode
 
 
@@ -40,18 +39,26 @@ class DampingBand:
 
     Attributes
     ----------
-    machine : CoupledMachine
+    mechanisms : LineMechanisms
+        Loads that excite lines.
     """
 
-    machine: CoupledMachine
+    mechanisms: LineMechanisms
 
-    def at(self, frequencies: Sequence[float] | FloatArray) -> dict[str, FloatArray]:
+    @property
+    def machine(self) -> CoupledMachine:
+        """The machine."""
+        return self.mechanisms.machine
+
+    def at(self, frequencies: Sequence[float] | FloatArray, within: float = 0.0) -> dict[str, FloatArray]:
         """Band of each sensor's line at frequencies.
 
         Parameters
         ----------
         frequencies : ndarray, shape (f,)
             ω > 0 [rad/s].
+        within : float
+            Distance up to which an excitation is at a line [rad/s].
 
         Returns
         -------
@@ -62,21 +69,21 @@ class DampingBand:
         if not w.size or not self.machine.sensor_rows:
             return {name: np.zeros((w.size, 2)) for name in self.machine.sensor_rows}
         rows = np.array(list(self.machine.sensor_rows.values()))
-        levels = np.array([self._levels(number, w, rows) for number in range(len(SCALES))])
+        driven = [self.mechanisms.loads(frequency, within) for frequency in w.tolist()]
+        loads = [[np.sum([*by_mechanism.values()], axis=0) for _, by_mechanism in groups] for groups in driven]
+        levels = np.array([self._levels(number, w, loads, rows) for number in range(len(SCALES))])
         tiny = np.finfo(np.float64).tiny
         change = 20.0 * np.log10(np.maximum(levels, tiny) / np.maximum(levels[SCALES.index(1.0)], tiny))
         change = np.clip(change, -_WIDEST, _WIDEST)
         bands = np.stack([change.min(axis=0), change.max(axis=0)], axis=-1)
         return {name: bands[:, number] for number, name in enumerate(self.machine.sensor_rows)}
 
-    def _levels(self, scale: int, w: FloatArray, rows: FloatArray) -> FloatArray:
+    def _levels(self, scale: int, w: FloatArray, loads: list[list[ComplexArray]], rows: FloatArray) -> FloatArray:
         """Size of the motion along each sensor with damping by a scale, shape (f, sensors)."""
-        unit = excitations(self.machine)
-        sizes = np.linalg.norm(self._motion(scale, unit[None], w, rows), axis=1)
-        for number, frequency in enumerate(w.tolist()):
-            load = self._mesh_load(frequency)
-            if load is not None:
-                sizes[number] = np.abs(self._motion(scale, load[None, None], w[[number]], rows)[0, 0])
+        sizes = np.linalg.norm(self._motion(scale, excitations(self.machine)[None], w, rows), axis=1)
+        for number, of_line in enumerate(loads):
+            if of_line:
+                sizes[number] = np.linalg.norm(self._motion(scale, np.array([of_line]), w[[number]], rows)[0], axis=0)
         return np.asarray(sizes)
 
     def _motion(self, scale: int, loads: FloatArray | ComplexArray, w: FloatArray, rows: FloatArray) -> ComplexArray:
@@ -90,34 +97,10 @@ class DampingBand:
             moved[number] = (rows @ np.linalg.solve(dynamic, loads[0].T)).T
         return moved
 
-    def _mesh_load(self, frequency: float) -> ComplexArray | None:
-        """Load of the mesh harmonic at a frequency; None where there is none."""
-        place = int(np.searchsorted(self._harmonics, frequency))
-        for near in self._harmonics[max(place - 1, 0) : place + 1].tolist():
-            if abs(near - frequency) <= _SAME * frequency:
-                load = self._loads[near]
-                return load if np.any(load) else None
-        return None
-
-    @cached_property
-    def _loads(self) -> dict[float, ComplexArray]:
-        """Loads of the mesh harmonics by frequency; none of meshes whose periods differ, which take long to load."""
-        if any(contact.contact.hunting_period > 1 for contact in self.machine.system.contacts):
-            return {}
-        return {load.frequency: load.load for load in self._model.loads(np.inf)}
-
-    @cached_property
-    def _harmonics(self) -> FloatArray:
-        return np.array(list(self._loads))
-
-    @cached_property
-    def _model(self) -> MeshHarmonicModel:
-        return MeshHarmonicModel(self.machine)
-
     @cached_property
     def _solved(self) -> list[tuple[Eigenpairs | None, tuple[FloatArray, FloatArray]]]:
         """Eigenpairs with damping by each scale, None where they fail their proof, and the matrices."""
-        stiffness, damping = linear_matrices(self.machine.system, self._model.contact)
+        stiffness, damping = linear_matrices(self.machine.system, self.mechanisms.model.contact)
         solved = []
         for scale in SCALES:
             scaled = (stiffness, scaled_damping(damping, scale))

@@ -84,8 +84,16 @@ class BaseMotion:
 
     def acceleration_at(self, position: FloatArray, direction: FloatArray, times: FloatArray) -> FloatArray:
         """Acceleration along a direction at a place that moves with the base [m/s²], shape (s,)."""
-        moment = np.cross(np.subtract(position, self.point), direction)
-        return np.asarray(self.acceleration(times) @ np.concatenate([direction, moment]))
+        return np.asarray(self.acceleration(times) @ self.row_at(position, direction))
+
+    def row_at(self, position: FloatArray, direction: FloatArray) -> FloatArray:
+        """Acceleration along a direction at a place by unit accelerations of the base, shape (6,)."""
+        return np.concatenate([direction, np.cross(np.subtract(position, self.point), direction)])
+
+    def harmonic_amplitude(self, frequency: float) -> ComplexArray:
+        """Complex amplitude of the base's acceleration at a frequency [rad/s], shape (6,) [m/s², rad/s²]."""
+        parts = (part for part in self.parts if isinstance(part, BaseHarmonic) and part.frequency == frequency)
+        return np.asarray(sum((part.amplitude for part in parts), np.zeros(6, dtype=np.complex128)))
 
 
 def base_loads(
@@ -99,7 +107,8 @@ def base_loads(
     for part in base.parts:
         if isinstance(part, BaseHarmonic):
             velocity = part.amplitude / (1j * part.frequency)
-            harmonic.append(HarmonicLoad(part.frequency, tilting @ velocity - carried @ part.amplitude))
+            load = tilting @ velocity - carried @ part.amplitude
+            harmonic.append(HarmonicLoad(part.frequency, load, mechanism="base_motion"))
             continue
         moved = np.flatnonzero(np.any(part.values != 0.0, axis=0))
         timed += [TimedLoad(part.times, part.values[:, k], -carried[:, k]) for k in moved]
@@ -153,15 +162,18 @@ def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")
     m, (x, y) = rotor.plane_size, np.subtract(rotor.axis, point[:2])
     carried = np.array([(body.shift.coupling_inertia, body.at) for body in rotor.bodies if body.shift]).reshape(-1, 2)
-    shift = rotor.plane_basis.T @ np.concatenate([participation.displacement, carried[:, 0]])
-    tilt = rotor.plane_basis.T @ np.concatenate([participation.tilt, carried.prod(axis=1)])
+    tilted = np.array([mode.coupling for body in rotor.bodies for mode in body.plates_with(1)])
+    shift = rotor.plane_basis.T @ np.concatenate([participation.displacement, carried[:, 0], 0.0 * tilted])
+    tilt = rotor.plane_basis.T @ np.concatenate([participation.tilt, carried.prod(axis=1), tilted])
     tilt = tilt + (rotor.start - point[2]) * shift
     whole = np.zeros((rotor.size, 6))
     whole[:m, 0], whole[:m, 4], whole[:m, 5] = shift, tilt, -y * shift
     whole[m : 2 * m, 1], whole[m : 2 * m, 3], whole[m : 2 * m, 5] = shift, -tilt, x * shift
     whole[:, 5] += rotor.turning
-    along = slice(rotor.size - len(participation.axial), rotor.size)
-    axial = participation.axial
+    along, axial = rotor.axial, participation.axial
+    if axial.size:
+        umbrellas = [mode.coupling for body in rotor.bodies for mode in body.plates_with(0)]
+        axial = rotor.axial_basis.T @ np.concatenate([axial, umbrellas])
     whole[along, 2], whole[along, 3], whole[along, 4] = axial, y * axial, -x * axial
     return whole
 
@@ -173,7 +185,9 @@ def _gyroscopic(components: Sequence[Component], speeds: Sequence[float]) -> Flo
         whole = np.zeros((component.size, 6))
         if isinstance(component, RotorComponent) and component.modal.participation is not None:
             m, spin = component.plane_size, component.modal.participation.spin
-            moment = speed * component.plane_basis[: spin.size].T @ spin
+            tilts = [mode.coupling_spin for body in component.bodies for mode in body.plates_with(1)]
+            shifts = np.zeros(m - spin.size - len(tilts))
+            moment = speed * component.plane_basis.T @ np.concatenate([spin, shifts, tilts])
             whole[:m, 3], whole[m : 2 * m, 4] = moment, moment
         rows.append(whole)
     return np.vstack(rows)

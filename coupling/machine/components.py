@@ -19,11 +19,13 @@ import numpy.typing as npt
 from scipy import linalg
 
 from coupling.errors import CouplingError
+from coupling.gears.stiffness.wheel_modes import PlateMode
 from coupling.machine.gear_bodies import GearBody, RimSpring
 from housing import HousingModes, ModeSet
 from rotors import ModalRotor, Pedestal
 from rotors.modes.lateral import LateralModes
 from rotors.modes.modal_rotor import gyroscopic_matrix
+from rotors.modes.torsional_and_axial import AxialModes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,9 +40,10 @@ class Component:
     ----------
     name : str
     kinds : tuple of str
-        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``pedestal``, or
-        ``residual``: a residual attachment mode of the housing, the static response of its truncated modes. Its own
-        frequency is no natural frequency of the housing, and motion at that frequency means nothing.
+        Kind of each coordinate: ``housing``, ``rotor`` (lateral), ``torsion``, ``axial``, ``body`` (a gear's
+        body with nodal diameters), ``pedestal``, or ``residual``: a residual attachment mode of the housing, the static
+        response of its truncated modes. Its own frequency is no natural frequency of the housing, and motion at that
+        frequency means nothing.
     stiffness : ndarray, shape (n, n)
         K [1/s²], symmetric.
     damping : ndarray, shape (n, n)
@@ -103,6 +106,8 @@ class RotorComponent(Component):
 
     The modes are those of the shaft with the rims of its gears on their hubs, see :func:`rotor_component`.
 
+    Last are the cosine and the sine of each mode of a gear's body with two nodal diameters or more.
+
     Attributes
     ----------
     modal : ModalRotor
@@ -110,23 +115,30 @@ class RotorComponent(Component):
     start : float
         z of the rotor's left end [m].
     plane_basis : ndarray, shape (m + s, m + s)
-        The m planar modes of ``modal`` and the shifts of s rims on their hubs, in terms of a plane's coordinates:
-        shift, tilt and bending of the free shaft. Without rims it is orthogonal.
+        The m planar modes of ``modal`` and the s shifts of rims and tilting modes of gear bodies, in terms of a
+        plane's coordinates: shift, tilt and bending of the free shaft. Without rims it is orthogonal.
     torsion_basis : ndarray, shape (t + g, t + g)
         The t torsional modes of ``modal`` and the rotations of g rims against their hubs, in terms of the component's
         torsional coordinates.
+    axial_basis : ndarray, shape (a + u, a + u)
+        The a axial modes of ``modal`` and u umbrella modes of gear bodies, in terms of the component's axial
+        coordinates.
     axis : tuple of float
         x and y of the shaft's line [m].
     bodies : tuple of GearBody
         Gears whose rims move on their hubs.
+    damping_ratio : float
+        Damping ratio of the shaft and the gears' bodies.
     """
 
     modal: ModalRotor
     start: float
     plane_basis: FloatArray
     torsion_basis: FloatArray
+    axial_basis: FloatArray
     axis: tuple[float, float] = (0.0, 0.0)
     bodies: tuple[GearBody, ...] = ()
+    damping_ratio: float = 0.0
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -148,7 +160,7 @@ class RotorComponent(Component):
             rows = np.zeros((6, self.size))
             for modes, own in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
                 rows[:5, own] = motions[:, modes] @ self.plane_basis[:m]
-            rows[:5, self._torsion.stop :] = motions[:, 2 * m + t :]
+            rows[:5, self.axial] = motions[:, 2 * m + t :] @ self.axial_basis[: motions.shape[1] - 2 * m - t]
             rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
             self._sections[at] = rows
             self._sections[at].setflags(write=False)
@@ -169,6 +181,18 @@ class RotorComponent(Component):
         """The torsional coordinates."""
         first = 2 * self.plane_size
         return slice(first, first + len(self.torsion_basis))
+
+    @property
+    def axial(self) -> slice:
+        """The axial coordinates."""
+        return slice(self._torsion.stop, self._torsion.stop + len(self.axial_basis))
+
+    @property
+    def plates(self) -> tuple[tuple[str, PlateMode, slice], ...]:
+        """Modes of gear bodies with two nodal diameters or more: gear, mode, and coordinates of its cosine and sine."""
+        modes = [(body.gear, mode) for body in self.bodies for mode in body.plates if mode.nodal_diameters > 1]
+        firsts = range(self.axial.stop, self.size, 2)
+        return tuple((gear, mode, slice(at, at + 2)) for (gear, mode), at in zip(modes, firsts, strict=True))
 
     def rotation(self, at: float) -> FloatArray:
         """Rotation about z at a distance from the left end [m], shape (n,), not to be written to."""
@@ -191,6 +215,38 @@ class RotorComponent(Component):
             for row, own in zip(rows, self._planes, strict=False):
                 row[own] += self.plane_basis[self.modal.lateral.count + number]
         return rows
+
+    def plate_rows(self, gear: str, arm: tuple[float, float]) -> FloatArray:
+        """Motion of the teeth of a gear by the modes of its body out of the plane, shape (5, n): `PlateMode.rows`."""
+        rows = np.zeros((5, self.size))
+        for name, mode, coordinates in self._plate_coordinates:
+            if name == gear:
+                rows += mode.rows(arm) @ coordinates
+        return rows
+
+    @cached_property
+    def _plate_coordinates(self) -> list[tuple[str, PlateMode, FloatArray]]:
+        """Gear, mode, and cosine and sine by the coordinates (2, n) of the modes out of the plane."""
+        found = []
+        shifts = sum(body.shift is not None for body in self.bodies)
+        umbrellas, tilts = 0 if self.modal.axial is None else self.modal.axial.count, self.modal.lateral.count + shifts
+        pairs = {id(mode): own for _, mode, own in self.plates}
+        for body in self.bodies:
+            for mode in body.plates:
+                rows = np.zeros((mode.size, self.size))
+                if mode.nodal_diameters == 0:
+                    if self.modal.axial is None:
+                        continue
+                    rows[0, self.axial] = self.axial_basis[umbrellas]
+                    umbrellas += 1
+                elif mode.nodal_diameters == 1:
+                    for row, own in zip(rows, self._planes, strict=True):
+                        row[own] = self.plane_basis[tilts]
+                    tilts += 1
+                else:
+                    rows[:, pairs[id(mode)]] = np.eye(2)
+                found.append((body.gear, mode, rows))
+        return found
 
     @cached_property
     def turning(self) -> FloatArray:
@@ -352,8 +408,11 @@ def rotor_component(
         [I, τᵀ S; S τ, J_r] [q''; φ''] + [K, 0; 0, k] [q; φ] = f.
 
     The component's coordinates are the natural modes of this: in torsion, the rigid rotation of all first, and alike in
-    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Of a shaft with rims the
-    coordinates above its own highest mode are of the kind ``residual``, as attachment modes of the housing are: hubs
+    both planes, after shift and tilt of all as one body. The shaft's damping ratio is theirs. Modes of
+    gear bodies without and with one nodal diameter join the motion along the axis and the tilts in the same way, with
+    1, Γ and ω² in place of J_r, S and k, and with their part in the gyroscopic moment; those with more, which no motion
+    of the hub excites, stand by themselves. Of a shaft with rims the coordinates above its own highest mode, and above
+    the limit of the bodies, are of the kind ``residual``, as attachment modes of the housing are: hubs
     between shaft and rims vibrate there, and no step in time is refined for them.
 
     An axial force P, in tension, resists the tilt by ∫ P dz per unit angle, and couples it with bending. A compressed
@@ -363,8 +422,9 @@ def rotor_component(
     ----------
     name : str
     modal : ModalRotor
-        m planar, t torsional and a axial modes, vectors included. With s shifts and g rotations of rims the component
-        has 2 (m + s) + t + g + a coordinates.
+        m planar, t torsional and a axial modes, vectors included. With s shifts and tilting modes, g rotations, u
+        umbrella modes, and p modes with more nodal diameters, the component has 2 (m + s) + t + g + a + u + 2 p
+        coordinates.
     start : float
         z of the rotor's left end [m].
     damping_ratio : float
@@ -374,28 +434,37 @@ def rotor_component(
     bodies : sequence of GearBody
         Gears on the rotor whose rims move on their hubs.
     """
-    lateral, along = modal.lateral, np.zeros(0) if modal.axial is None else modal.axial.frequencies
+    lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
+    along, axial_basis = _axial_with_rims(modal, bodies)
     plane_basis, plane_stiffness, bending = _free_plane(lateral, bodies)
-    m, size = lateral.count, len(plane_basis)
-    n = 2 * size + len(twisting) + len(along)
-    stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2]))
+    pairs = [mode for body in bodies for mode in body.plates if mode.nodal_diameters > 1]
+    plates = np.repeat([mode.frequency for mode in pairs], 2)
+    size = len(plane_basis)
+    n = 2 * size + len(twisting) + len(along) + len(plates)
+    stiffness = np.diag(np.concatenate([np.zeros(2 * size), twisting**2, along**2, plates**2]))
     stiffness[:size, :size] = stiffness[size : 2 * size, size : 2 * size] = plane_stiffness
     # Zeros for motions as a whole: they strain no material, though an axial force may resist the tilt or drive it.
-    damped = np.concatenate([bending, bending, twisting, along])
+    damped = np.concatenate([bending, bending, twisting, along, plates])
     gyroscopic = np.zeros((n, n))
-    gyroscopic[: 2 * size, : 2 * size] = gyroscopic_matrix(
-        plane_basis[:m].T @ lateral.polar_inertia_matrix @ plane_basis[:m]
-    )
+    gyroscopic[: 2 * size, : 2 * size] = gyroscopic_matrix(_plane_spin(lateral, bodies, plane_basis))
     # Modes of the shaft are certified up to these; what lies above is static, hubs between shaft and rims among it.
+    limit = max((body.limit for body in bodies), default=0.0)
     own, own_bending = (
-        float(modes.frequencies[: modes.certificate.found].max(initial=0.0)) if bodies else np.inf
+        max(float(modes.frequencies[: modes.certificate.found].max(initial=0.0)), limit) if bodies else np.inf
         for modes in (modal.torsional, lateral)
     )
     plane_kinds = _kinds("rotor", bending, own_bending)
+    axial_kinds = ("axial",) * len(along) if modal.axial is None else _axial_kinds(along, modal.axial, limit)
     return RotorComponent(
         name=name,
-        kinds=(*plane_kinds, *plane_kinds, *_kinds("torsion", twisting, own), *("axial",) * len(along)),
+        kinds=(
+            *plane_kinds,
+            *plane_kinds,
+            *_kinds("torsion", twisting, own),
+            *axial_kinds,
+            *_kinds("body", plates, limit),
+        ),
         stiffness=stiffness,
         damping=np.diag(2.0 * damping_ratio * damped),
         gyroscopic=gyroscopic,
@@ -403,8 +472,10 @@ def rotor_component(
         start=start,
         plane_basis=plane_basis,
         torsion_basis=torsion_basis,
+        axial_basis=axial_basis,
         axis=axis,
         bodies=tuple(bodies),
+        damping_ratio=damping_ratio,
     )
 
 
@@ -427,6 +498,51 @@ def _torsion_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[F
     values, vectors = np.linalg.eigh(stiffness[1:, 1:])
     basis[:, 1:] = basis[:, 1:] @ vectors
     return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
+
+
+def _axial_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (a + u,) [rad/s] and modes (a + u, a + u) of the shaft along its axis with rims on hubs."""
+    if modal.axial is None:
+        return np.zeros(0), np.zeros((0, 0))
+    frequencies = modal.axial.frequencies
+    rims = _plates_as_springs(bodies, 0)
+    if not rims:
+        return frequencies, np.eye(frequencies.size)
+    basis, stiffness = _with_rims(np.diag(frequencies**2), modal.axial.evaluate([at for at, _ in rims]), rims)
+    # The first coordinate is the motion of all as one body.
+    values, vectors = np.linalg.eigh(stiffness[1:, 1:])
+    basis[:, 1:] = basis[:, 1:] @ vectors
+    return np.concatenate([frequencies[:1], np.sqrt(values)]), basis
+
+
+def _plates_as_springs(bodies: Sequence[GearBody], nodal_diameters: int) -> list[tuple[float, RimSpring]]:
+    """Stations and springs of the bodies' modes with a number of nodal diameters; their modal mass is 1."""
+    return [
+        (body.at, RimSpring(mode.frequency**2, mode.coupling, 1.0))
+        for body in bodies
+        for mode in body.plates_with(nodal_diameters)
+    ]
+
+
+def _axial_kinds(frequencies: FloatArray, axial: AxialModes, limit: float) -> tuple[str, ...]:
+    """Kinds of the axial coordinates; of a shaft without axial rims all are axial."""
+    highest = max(float(axial.frequencies.max(initial=0.0)), limit)
+    return _kinds("axial", frequencies, np.inf if frequencies.size == axial.count else highest)
+
+
+def _plane_spin(lateral: LateralModes, bodies: Sequence[GearBody], basis: FloatArray) -> FloatArray:
+    """Polar inertia over a plane's coordinates (m + s, m + s): of the shaft, and of tilting modes of gear bodies."""
+    m, tilts = lateral.count, [(body.at, mode) for body in bodies for mode in body.plates_with(1)]
+    if not tilts:
+        return np.asarray(basis[:m].T @ lateral.polar_inertia_matrix @ basis[:m])
+    spin = np.zeros((len(basis), len(basis)))
+    first = len(basis) - len(tilts)
+    spin[:m, :m] = lateral.polar_inertia_matrix
+    slopes = lateral.evaluate([at for at, _ in tilts])[1]
+    spin[:m, first:] = slopes * [mode.coupling_spin for _, mode in tilts]
+    spin[first:, :m] = spin[:m, first:].T
+    spin[first:, first:] = np.diag([2.0 * mode.rotation for _, mode in tilts])
+    return np.asarray(basis.T @ spin @ basis)
 
 
 def _with_rims(
@@ -469,10 +585,13 @@ def _free_plane(lateral: LateralModes, bodies: Sequence[GearBody]) -> tuple[Floa
     """
     whole, free = lateral.rigid_motions, lateral.free_stiffness
     count, unresisted = whole.shape[1], lateral.unresisted_motions
-    rims = [(body.at, body.shift) for body in bodies if body.shift is not None]
+    shifts = [(body.at, body.shift) for body in bodies if body.shift is not None]
+    tilts = _plates_as_springs(bodies, 1)
+    rims = [*shifts, *tilts]
     joined = np.eye(lateral.count)
     if rims:
-        joined, free = _with_rims(free, lateral.evaluate([at for at, _ in rims])[0], rims)
+        hubs = [lateral.evaluate([at for at, _ in some])[row] for row, some in enumerate((shifts, tilts)) if some]
+        joined, free = _with_rims(free, np.hstack(hubs), rims)
         whole = np.vstack([whole, np.zeros((len(rims), count))])
     beside = np.linalg.qr(whole, mode="complete")[0][:, count:]
     values, vectors = np.linalg.eigh(beside.T @ free @ beside)

@@ -92,14 +92,14 @@ class MachineCoordinates:
         if speed == 0.0 or unbalance.moment == 0.0:
             return
         force = unbalance.moment * speed**2 * np.exp(1j * unbalance.phase)
-        loads.harmonic.append(HarmonicLoad(speed, force * rotating, follows="unbalance"))
+        loads.harmonic.append(HarmonicLoad(speed, force * rotating, "unbalance", "unbalance"))
 
     def add_bow(self, loads: CoordinateLoads, bow: BowReactions) -> None:
         """Add K b e^{iΩs} of a bow b: the shaft resists its motion u relative to the bow by K (u - b e^{iΩs})."""
         force = np.zeros_like(loads.constant, dtype=np.complex128)
         for at, value in zip(bow.at.tolist(), bow.forces, strict=True):
             force = force + value * self.rotating_force(bow.rotor, at)
-        loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, follows="turning"))
+        loads.harmonic.append(HarmonicLoad(self.speeds[bow.rotor], force, "turning", "shaft_bow"))
 
     def add_force(self, loads: CoordinateLoads, force: ShaftForce) -> None:
         """Add a constant force on a section of a rotor.
@@ -128,11 +128,11 @@ class MachineCoordinates:
             case TorqueRipple():
                 amplitude = torque.amplitude * np.exp(1j * torque.phase) * row
                 if torque.frequency is not None:
-                    loads.harmonic.append(HarmonicLoad(torque.frequency, amplitude))
+                    loads.harmonic.append(HarmonicLoad(torque.frequency, amplitude, "time", "torque_ripple"))
                     return
                 assert torque.order is not None
                 frequency = torque.order * abs(self.speeds[torque.rotor])
-                loads.harmonic.append(HarmonicLoad(frequency, amplitude, follows="turning"))
+                loads.harmonic.append(HarmonicLoad(frequency, amplitude, "turning", "torque_ripple"))
             case TorqueSlope():
                 loads.dashpots.append(_dashpot(torque, row))
 

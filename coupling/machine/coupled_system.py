@@ -31,11 +31,14 @@ class HarmonicLoad:
         Dependence on the speed where it is not the nominal one, see :mod:`coupling.machine.speed_profile`: constant
         frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w)
         e^{iws}.
+    mechanism : str
+        What makes it, see :mod:`coupling.linear.line_mechanisms`.
     """
 
     frequency: float
     amplitude: ComplexArray
     follows: Literal["time", "turning", "unbalance"] = "time"
+    mechanism: Literal["unbalance", "shaft_bow", "torque_ripple", "base_motion", "load_shuttling", "load"] = "load"
 
 
 @dataclass(frozen=True)

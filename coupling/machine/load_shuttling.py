@@ -151,7 +151,7 @@ def shuttling_loads(
     heard = size > max(_SMALL * size.max(initial=0.0), _NO_ARM * contact.faces.face_width)
     # The load on the coordinates is minus the force times the compression's gradient.
     harmonics = [
-        HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude @ rows, follows="turning")
+        HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude @ rows, "turning", "load_shuttling")
         for order, amplitude in zip(orders[heard].tolist(), amplitudes[heard], strict=True)
     ]
     return -force * spectrum[0].real @ rows, harmonics

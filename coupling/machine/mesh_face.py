@@ -187,14 +187,17 @@ def mesh_face(
     for mounted, at, flank in zip((mesh.driver, mesh.driven), mesh.stations, (line.driver, line.driven), strict=True):
         rotor = coordinates.rotor(mounted.rotor)
         here, turned = rotor.motions(at), rotor.rotation(at)
+        body = rotor.plate_rows(mounted.name, flank.arm)
+        over_face, against_axis = flank.across(body[1:3]), flank.across(body[3:])
         rows = []
         for station in (at + stations).tolist():
             carrier = min(max(station, mounted.carried[0]), mounted.carried[1]) if mounted.carried else at
             section = rotor.motions(carrier)
             moved = flank.across(section) - flank.across(here) + (station - carrier) * flank.tilting(section)
+            moved = moved + (station - at) * over_face
             rows.append(moved + flank.turning(rotor.rotation(carrier) - turned))
         over += coordinates.rows(mounted.rotor, np.array(rows))
-        tilt += coordinates.rows(mounted.rotor, flank.tilting(here))
+        tilt += coordinates.rows(mounted.rotor, flank.tilting(here) + against_axis)
     slices = contact.faces or mesh.faces
     flanks = None
     z = stations

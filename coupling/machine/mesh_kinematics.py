@@ -69,7 +69,11 @@ class FlankMotion:
     def axial(self, motions: FloatArray) -> FloatArray:
         """Part of a motion along the shaft and of the tilts at the pitch point, ± h w."""
         x, y = self.arm
-        return np.asarray(self.side * self.axial_part * (motions[2] + y * motions[3] - x * motions[4]))
+        return self.along(motions[2] + y * motions[3] - x * motions[4])
+
+    def along(self, motion: FloatArray) -> FloatArray:
+        """Part of the axial motion of the place where the teeth touch, ± h w."""
+        return np.asarray(self.side * self.axial_part * motion)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import hypot, pi
 from typing import Protocol
 
 from coupling.errors import CouplingError
@@ -24,6 +24,9 @@ from rotors import Unbalance as ShaftUnbalance
 from rotors.model.loads import Bow
 from rotors.model.profile import StiffnessDiameter
 from rotors.model.shaft import inertia_findings
+
+LATERAL_LIMIT_HZ = 8000.0
+"""Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
 _SAME_STATION = 1e-6  # part of the rotor's length
 
@@ -79,6 +82,11 @@ class Shaft:
     def name(self) -> str:
         """Name of the rotor."""
         return self.rotor.name
+
+    @property
+    def mode_limit(self) -> float:
+        """Limit of the retained modes [rad/s]: its own, or the default."""
+        return 2.0 * pi * LATERAL_LIMIT_HZ if self.frequency_limit is None else self.frequency_limit
 
 
 @dataclass(frozen=True)
@@ -284,14 +292,21 @@ def _stiffness_diameters(mounted: ShaftGear, rotor: Rotor) -> list[StiffnessDiam
     return [StiffnessDiameter(*one, *moduli) for one in lengths if one[0] < one[1]]
 
 
-def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float]:
-    """Mass [kg] and polar inertia [kg m²] of a gear's body beside those of its shaft: of its disc, or others there."""
+def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float, float]:
+    """Inertia of a gear's body beside that of its shaft: of its disc, or others there.
+
+    Mass [kg], polar and diametral inertia [kg m²].
+    """
     disc = gear_disc(gear, rotor)
-    own = (disc.mass, disc.polar_inertia)
+    own = (disc.mass, disc.polar_inertia, disc.diametral_inertia)
     if any(own):
         return own
     there = _discs_at(gear, rotor)
-    return sum(one.mass for one in there), sum(one.polar_inertia for one in there)
+    return (
+        sum(one.mass for one in there),
+        sum(one.polar_inertia for one in there),
+        sum(one.diametral_inertia for one in there),
+    )
 
 
 def _discs_at(gear: ShaftGear, rotor: Rotor) -> list[Disc]:

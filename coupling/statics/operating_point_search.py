@@ -6,6 +6,7 @@ and two of each pedestal. Connectors are bearings, gear pairs and pedestals (:mo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +74,8 @@ def solve_operating_point(
     forces : sequence of ShaftForce
         Constant ones.
     rims : sequence of GearBody
-        Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact.
+        Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact. And
+        bodies with modes out of the plane.
 
     Raises
     ------
@@ -97,6 +99,10 @@ class _StaticModel:
         First coordinate of the housing's modes, and of each pedestal's motion along x and y.
     rims : dict of str to ndarray, shape (6, n)
         Motion of each rim on its hub along and about x, y, z by all coordinates, by gear; they are the last ones.
+    rims_first : int
+        First coordinate of the rims.
+    plates : list of (str, PlateMode, slice)
+        Modes of gear bodies out of the plane: gear, mode, and coordinates.
     size : int
         Number n of coordinates.
     stiffness, load : ndarray, shape (n, n) and (n,)
@@ -147,12 +153,19 @@ class _StaticModel:
             if spring is not None
             for axis in axes
         ]
-        self.size = size + len(springs)
+        plates = [(rim.gear, mode) for rim in rims for mode in rim.plates]
+        ends = size + len(springs) + np.cumsum([0, *(mode.size for _, mode in plates)])
+        self.plates = [
+            (gear, mode, slice(*own)) for (gear, mode), own in zip(plates, pairwise(ends.tolist()), strict=True)
+        ]
+        self.rims_first, self.size = size, int(ends[-1])
         self.stiffness = self._linear_stiffness()
         self.rims = {rim.gear: np.zeros((6, self.size)) for rim in rims}
         for number, (gear, axis, stiffness) in enumerate(springs, size):
             self.stiffness[number, number] = stiffness
             self.rims[gear][axis, number] = 1.0
+        for _, mode, own in self.plates:
+            self.stiffness[own, own] = mode.frequency**2 * np.eye(mode.size)
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -252,6 +265,11 @@ class _StaticModel:
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
                 rows[:-1] += flank.across(rim) + flank.turning(rim[5])
+            for name, mode, own in self.plates:
+                if name == gear.name:
+                    body = mode.rows(flank.arm)
+                    rows[:-1, own] += flank.along(body[0]) + np.outer(gear.arms, flank.across(body[1:3]))
+                    rows[-1, own] += flank.across(body[3:])
         return np.asarray(rows.T), np.asarray(twist.T)
 
     def _hold_free_motions(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -457,7 +475,8 @@ class _StaticModel:
         weights; it is linear in the motions of the seats and the deflections of the bearings. The rest is elastic.
         `_pair` separates the twist.
         """
-        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing")}
+        parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing", "bodies")}
+        parts["bodies"][self.rims_first :] = x[self.rims_first :]
         for part in self.shafts:
             columns = self._own(part.name)
             places = part.shaft.places
@@ -492,7 +511,7 @@ class _StaticModel:
         by_cause = {cause: float(slope @ part) for cause, part in causes.items()}
         twist = float(slope @ twisted)
         by_cause["shafts"] -= twist
-        by_cause["bodies"] = twist
+        by_cause["bodies"] += twist
         touched = approach - pair.clearance * contact.uniform
         force = pair.between_rims.at(touched).force
         # The rims on their hubs are a part of the approach by the complete contact.

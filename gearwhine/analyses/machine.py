@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from coupling import CoupledMachine
 from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.linear.damping_band import DampingBand
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
@@ -26,12 +25,13 @@ from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, 
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import basis_error, point_of_pairs, solve_machine, solve_pairs
+from gearwhine.solve.machine import basis_error, line_mechanisms, point_of_pairs, solve_machine, solve_pairs
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
-    add_damping_bands,
+    add_mechanisms,
     add_uncertainty,
     centrifugal_warnings,
     constant_speed_warnings,
@@ -108,8 +108,9 @@ def gears(
     ----------
     case : Case
     housing : SolvedHousing, optional
-        Housing where it is solved already. It is solved here for a tip relief that aims at a sensor alone; without one
-        a misalignment that is found is that of rigid seats, with a warning.
+        Housing where it is solved already. It is solved here for a tip relief whose aim names a sensor alone; without
+        one a misalignment that is found is that of rigid seats, with a warning, and the best relief aims at no
+        sensor.
     folder : path, optional
         Results folder, whose housing modes are read where it keeps them.
     progress : callable
@@ -124,7 +125,7 @@ def gears(
     if housing is None and case.housing is not None and case.rotor and case.operation is not None:
         if aims_at_sensor(case):
             housing = solve_housing(case, progress, folder=folder)
-        elif any(case.finds_misalignment(pair) for pair in case.gear_pair):
+        elif case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
             housing = kept_housing(case, folder, progress)
     point = point_of_pairs(case, housing, progress)
     loaded = solve_pairs(case, housing, progress, point=point)
@@ -262,9 +263,11 @@ class _LoadedMachine:
         point = None if self.load is None else self.load.point
         error = basis_error(self.case, self.machine, self.housing, self.pairs, progress, point=point)
         add_uncertainty(document, error, document["trusted_below_hz"])
-        progress("bands of the lines by damping")
-        add_damping_bands(document, DampingBand(self.machine))
+        progress("mechanisms of the lines, and their bands by damping")
+        add_mechanisms(document, line_mechanisms(self.machine, self.housing))
         document["damping"] = damping_document(self.case)
+        if bodies := gear_body_document(self.case):
+            document["gear_bodies"] = bodies
         add_warnings(document, damping_warnings(self.case))
 
     def figures(self) -> "Iterator[tuple[str, Figure]]":

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coupling.linear.damping_band import DampingBand
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.machine import require_machine
@@ -39,13 +38,14 @@ from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import basis_error, build_machine, reduce_housing, solve_pairs
+from gearwhine.solve.machine import basis_error, build_machine, line_mechanisms, reduce_housing, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
-    add_damping_bands,
+    add_mechanisms,
     add_uncertainty,
     bearing_load_warnings,
     beyond_limit_warnings,
@@ -160,13 +160,15 @@ def run(
         begin = time.perf_counter()
         machine = build_machine(case, part, pairs, progress, point=point)
         basis = basis_error(case, machine, part, pairs, progress, point=point)
-        bands = DampingBand(machine)
+        mechanisms = line_mechanisms(machine, part)
         system = solve_system(case, machine, housing, progress)
         document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
-        add_damping_bands(document["system"], bands)
+        add_mechanisms(document["system"], mechanisms)
         document["damping"] = damping_document(case)
+        if bodies := gear_body_document(case):
+            document["gear_bodies"] = bodies
         add_warnings(document, damping_warnings(case))
         timed("system", begin)
         if load is not None:
@@ -194,7 +196,7 @@ def run(
             if signature is not None:
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
-            add_damping_bands(document, bands)
+            add_mechanisms(document, mechanisms, transient.line_tolerance_hz)
             add_warnings(document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(case)])
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)

@@ -321,7 +321,12 @@ class Gear(Table):
     rim: PositiveLength | None = None
     """Thickness from the root circle to the inside of the rim. Default: a disc as wide as the face."""
     web: PositiveLength | None = None
-    """Width of the disc from the rim to the bore. Default: the rim weighs alone, and is held at its inside."""
+    """Width of the disc from the rim to the hub, in the middle of the face. The wheel vibrates and tilts on it, see
+    `gear_bodies` of `check`. Default: the rim weighs alone, and is held at its inside."""
+    hub_diameter: PositiveLength | None = None
+    """Outer diameter of the hub around the bore, inside the `web`. Default: the web begins at the bore."""
+    hub_width: PositiveLength | None = None
+    """Width of the hub. Default: the face width."""
     stiffens_shaft: StrictBool = True
     """Whether the shaft bends and twists under the gear as in one piece with it: cut into it, or pressed or keyed on
     firmly. `false`, and any gear with a `rim` or without `face_width`: the gear is a disc on one section of its shaft,
@@ -361,6 +366,10 @@ class Gear(Table):
             raise wrong(f"a bore smaller than the base circle, {2.0 * self.base_circle_radius:g} m", "bore")
         if self.web is not None and self.rim is None:
             raise wrong("no web, or a rim around it", "web")
+        if self.hub_diameter is not None and (self.web is None or not 0.0 < self.bore < self.hub_diameter):
+            raise wrong("no hub, or a web around it and a smaller bore inside", "hub_diameter")
+        if self.hub_width is not None and (self.hub_diameter is None or self.hub_width < (self.web or 0.0)):
+            raise wrong("the width of a hub with a hub_diameter, at least that of the web", "hub_width")
         for key, deviations in (("pitch", self.errors.pitch), ("spacing", self.errors.spacing)):
             if deviations and len(deviations) != self.teeth:
                 raise wrong(f"one deviation for each of {self.teeth} teeth, or none", "errors", key)
@@ -433,6 +442,8 @@ class Gear(Table):
             helix_angle=self.helix_angle,
             rim_thickness=self.rim,
             web_thickness=self.web,
+            hub_diameter=self.hub_diameter,
+            hub_width=self.hub_width,
             tooth_thinning=self.tooth_thinning,
             allow_undercut=self.allow_undercut,
         )
@@ -477,7 +488,7 @@ class ToothStiffness(Table):
 
 
 class ReliefAim(Table):
-    """Objective of the tip-relief search, in place of the peak-to-peak transmission error."""
+    """Objective of the tip-relief search: weighted harmonics, the level at a sensor, or peak to peak."""
 
     harmonics: Annotated[dict[str, HarmonicWeight], Field(default_factory=dict, max_length=32)]
     """Weights w of the transmission error's amplitudes e by the multiple of the mesh frequency, √(Σ (w e)²), such as `{
@@ -486,6 +497,8 @@ class ReliefAim(Table):
     """Sensor whose level is the objective, by the linear response to transmission error and load shuttling together, as
     in `gearwhine load --sensitivity`: root mean square over the first eight multiples of the mesh frequency below the
     housing's limit, or over those that `harmonics` weighs."""
+    peak_to_peak: bool = False
+    """Aim at the peak-to-peak transmission error."""
 
     @model_validator(mode="after")
     def _has_an_aim(self) -> ReliefAim:
@@ -494,8 +507,12 @@ class ReliefAim(Table):
                 raise wrong(
                     "multiples of the mesh frequency from 1 to 32 as keys, such as { 1 = 1, 2 = 0.5 }", "harmonics"
                 )
+        if self.peak_to_peak:
+            if self.sensor is not None or self.harmonics:
+                raise wrong("false beside 'harmonics' or 'sensor'", "peak_to_peak")
+            return self
         if self.sensor is None and not self.harmonics:
-            raise wrong("'harmonics' with weights, or 'sensor'")
+            raise wrong("'harmonics' with weights, 'sensor', or 'peak_to_peak = true'")
         if self.harmonics and not any(self.harmonics.values()):
             raise wrong("at least one weight above 0", "harmonics")
         return self
@@ -536,7 +553,9 @@ class GearPair(Table):
     friction: FrictionCoefficient = 0.0
     """Coefficient of friction between the teeth, in the transient; not with model "constant"."""
     relief_aim: ReliefAim | None = None
-    """Objective of the best tip relief of `gearwhine gears`. Default: the peak-to-peak transmission error."""
+    """Objective of the best tip relief of `gearwhine gears`. Default: the level at the sensor that this pair makes
+    loudest, where the machine turns in a housing with sensors whose modes are in the results folder, else the
+    peak-to-peak transmission error."""
 
     @model_validator(mode="after")
     def _slides(self) -> GearPair:

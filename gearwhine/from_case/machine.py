@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from coupling import BaseMotion, Machine, MountedBearing, Shaft
 from coupling.machine.components import HousingComponent
-from coupling.machine_description import LATERAL_LIMIT_HZ
+from coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.case import Case, Rotor, require
 from gearwhine.from_case.gear_pairs import build_pair
 from gearwhine.from_case.rotors import bearing_law, build_bearings, rolling_elements, rolling_states, shaft_gears
@@ -66,7 +66,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
             for bearing in build_bearings(case, rotor.name)
         ]
     return Machine(
-        shafts=[_shaft(case, rotor) for rotor in case.rotor],
+        shafts=[build_shaft(case, rotor) for rotor in case.rotor],
         bearings=bearings,
         gears=[gear for rotor in case.rotor for gear in shaft_gears(case, rotor.name)],
         gear_pairs=[build_pair(case, pair, number) for number, pair in enumerate(case.gear_pair)],
@@ -79,7 +79,8 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
     )
 
 
-def _shaft(case: Case, rotor: Rotor) -> Shaft:
+def build_shaft(case: Case, rotor: Rotor) -> Shaft:
+    """Build a rotor of the case, without its gears, as a shaft of the machine."""
     limit, count = _retained_modes(case, rotor.name)
     return Shaft(
         rotor.build(case.material),

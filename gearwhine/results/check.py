@@ -14,10 +14,11 @@ from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
-from gearwhine.results.motion import damping_lines
+from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.solve.case_summary import check_case
 from gearwhine.solve.damping import damping_document
+from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
     from coupling.machine.loads import Torque
@@ -348,6 +349,7 @@ CHECK = (
     _optional_part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
     _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
     _optional("provenance", lambda checked: checked.case.provenance or None),
+    _optional("gear_bodies", lambda checked: gear_body_document(checked.case) or None),
     _optional("damping", lambda checked: damping_document(checked.case) or None),
     _optional("warnings", lambda checked: checked.warnings or None),
 )
@@ -464,6 +466,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "location": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
+        "gear bodies": gear_body_lines(document),
         "damping": damping_lines(document.get("damping", ())),
         "operation": list(_operation_lines(document["operation"])) if "operation" in document else [],
         "transient": [_transient_line(document["transient"])] if "transient" in document else [],

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from gearwhine.case import Case, applied_torques
 from gearwhine.output.quantity import RPM
 from gearwhine.output.sections import (
+    NOTHING,
     Column,
     Document,
     Finding,
@@ -21,7 +22,15 @@ from gearwhine.output.sections import (
 from gearwhine.results.bearing_lives import LONGEST_LIFE
 from gearwhine.results.comparison import LINKED_PAIR, rule_of
 from gearwhine.results.line_columns import LINE_NAME
-from gearwhine.results.motion import amplitude_words, band_words, leading_lines, path_place, shape_column
+from gearwhine.results.motion import (
+    MECHANISM,
+    amplitude_words,
+    band_words,
+    leading_lines,
+    mechanism_words,
+    path_place,
+    shape_column,
+)
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
@@ -417,10 +426,11 @@ def _highest(rows: Sequence[Document]) -> list[str]:
     near = f", near a mode of the coupled machine ({_near(row)})" if _near(row) else ""
     by = f"; largest part by {row['by']}" if row["by"] else ""
     between = f" ({band} dB with all damping doubled or halved)" if (band := band_words(row)) else ""
+    excited = f", excited by {words} m/s²" if (words := mechanism_words(row)) != NOTHING else ""
     return [
         f"Highest is {row['frequency_hz']:.1f} Hz at {row['sensor']}, {amplitude_words(row)} m/s² peak"
         f"{between}: "
-        f"{arrowed(str(row['name']))}{near}{by}."
+        f"{arrowed(str(row['name']))}{excited}{near}{by}."
     ]
 
 
@@ -478,6 +488,7 @@ _CAUSES = (
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", shown=amplitude_words),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
     LINE_NAME,
+    MECHANISM,
     Column("coupled mode near it", _near),
     Column("mostly through bearing", _through),
     shape_column("mostly by"),

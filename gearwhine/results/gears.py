@@ -362,14 +362,15 @@ the working pitch circles; j_bn, the shortest distance of the flanks."""
 
 def _aim(pair: "PairAnalysis") -> dict[str, Any]:
     """Return the aim of the relief search."""
-    aim, optimum = pair.given.relief_aim, pair.optimum
+    optimum, sensor = pair.optimum, getattr(pair.aim, "sensor", None)
+    weights: dict[int, float] | None = getattr(pair.aim, "weights", None)
     assert optimum is not None
-    kind = "peak-to-peak" if aim is None else "harmonics" if aim.sensor is None else "sensor"
     return {
-        "kind": kind,
-        "sensor": None if aim is None else aim.sensor,
-        "weights": None if aim is None else {str(n): weight for n, weight in aim.weights.items()},
-        "unit": "m/s^2" if kind == "sensor" else "m",
+        "kind": "sensor" if sensor is not None else "peak-to-peak" if weights is None else "harmonics",
+        "given": pair.given.relief_aim is not None,
+        "sensor": sensor,
+        "weights": None if weights is None else {str(n): weight for n, weight in weights.items()},
+        "unit": "m" if sensor is None else "m/s^2",
         "without_relief": float(optimum.value_unmodified[0]),
         "best": float(optimum.value[0]),
     }
@@ -702,7 +703,10 @@ def _aim_in_words(aim: Document) -> str:
     if aim["kind"] == "peak-to-peak":
         return "peak-to-peak transmission error"
     if aim["kind"] == "sensor":
-        return f"level at {aim['sensor']} by transmission error and load shuttling, rms over the mesh harmonics"
+        loudest = "" if aim["given"] else ", the loudest sensor,"
+        return (
+            f"level at {aim['sensor']}{loudest} by transmission error and load shuttling, rms over the mesh harmonics"
+        )
     weights = ", ".join(f"{weight:.4g} at {n}" for n, weight in aim["weights"].items())
     return f"weighted harmonics of the mesh frequency ({weights})"
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gearwhine.output.quantity import Quantity
 from gearwhine.output.sections import NOTHING, Column, Document, Table, percent, table_of
 from gearwhine.results.housing import shape_places
-from gearwhine.results.line_columns import LINE_NAME, line_frequency
+from gearwhine.results.line_columns import LINE_NAME, MECHANISMS, line_frequency
 
 if TYPE_CHECKING:
     from coupling.machine.mounted_parts import GearMesh
@@ -114,6 +114,23 @@ def damping_sentence(document: Document) -> list[str]:
     return [f"Damping of {'; '.join(lines)}."] if lines else []
 
 
+def gear_body_lines(document: Document) -> list[str]:
+    """Return the modes of each wheel with a web in words, and which of them the machine follows."""
+    lines = []
+    for body in document.get("gear_bodies", ()):
+        first = [mode for mode in body["modes"] if "circle" not in mode["name"]][:4]
+        modes = ", ".join(f"{mode['name']} {mode['frequency_hz']:.0f} Hz" for mode in first)
+        kept, below = sum(mode["kept"] for mode in body["modes"]), f"{1e-3 * body['kept_below_hz']:.4g} kHz"
+        ratio = f"{100.0 * body['damping_ratio']:.3g} % of critical, as {body['rotor']}"
+        followed = (
+            f"the {kept} modes below {below} are followed, with {ratio}"
+            if kept
+            else f"none is below {below}, so the body is rigid in them"
+        )
+        lines.append(f"{body['gear']} on a hub at rest: {modes}; {followed}")
+    return lines
+
+
 _TIGHT, _WIDE = 0.5, 6.0  # widths of a band [dB] below which a line is shown with a digit more, and from which with one
 
 
@@ -149,6 +166,37 @@ def plain(value: float, digits: int) -> str:
     return f"{rounded:g}" if rounded < 1e6 else f"{value:.{digits}g}"
 
 
+_MINOR = 0.1  # part of a line's largest mechanism below which another one is not shown
+_FAR = 2.0  # factor between a line and the sum of its parts from which that is told
+
+
+def mechanism_words(row: Document) -> str:
+    """Return the mechanisms of a line with their amplitudes, the largest first; empty where nothing excites it."""
+    parts = {name: value for name, value in (row.get("parts") or {}).items() if value > 0.0}
+    if not parts:
+        return NOTHING
+    largest = max(parts.values())
+    told = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
+    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in told)
+    amplitude, together = row.get("amplitude_m_per_s2"), row["parts_together_m_per_s2"]
+    if amplitude is None or amplitude / _FAR <= together <= amplitude * _FAR:
+        return words
+    return f"{words}; by the linear model {plain(together, 2)} in all"
+
+
+MECHANISM = Column(
+    "excited by [m/s²]", mechanism_words, numbers=(*(f"parts.{name}" for name in MECHANISMS), "parts_together_m_per_s2")
+)
+"""Column of a line's mechanisms."""
+CAUSE_COLUMNS = (
+    Column("sensor", "sensor"),
+    Column("Hz", "frequency_hz", ".0f"),
+    Column("m/s², peak", "amplitude_m_per_s2", shown=lambda row: amplitude_words(row)),
+    LINE_NAME,
+    MECHANISM,
+)
+"""Columns of lines on a terminal: what they are, and what excites them."""
+
 LINE_COLUMNS = (
     Column("sensor", "sensor"),
     line_frequency(_paths_of),
@@ -157,6 +205,7 @@ LINE_COLUMNS = (
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
     Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
     LINE_NAME,
+    MECHANISM,
     shape_column("mostly by"),
 )
 

@@ -20,6 +20,7 @@ from gearwhine.results.housing import line_picture, modes_sentence
 from gearwhine.results.line_columns import line_frequency
 from gearwhine.results.motion import (
     BEARING,
+    MECHANISM,
     MESH,
     SENSOR_COLUMNS,
     MeshFigures,
@@ -322,6 +323,8 @@ CONVENTIONS = {
     "phase": "of the cosine at t = 0 of the histories' time axis, also where the record begins later",
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
+    "parts": "amplitude of the line by each mechanism alone, by the linear model about the mean load, see "
+    "coupling.linear.line_mechanisms; parts_together_m_per_s2 is that of their sum with phase",
     "band_db": "change of the line by all damping doubled and halved, below and above, by the linear model",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
 }
@@ -940,8 +943,9 @@ def _content(document: Document) -> Iterator[str | Table]:
     if traced := _signature_table(document):
         yield from traced
         yield (
-            "Levels of rms values re 1 µm/s². Shares are in phase with the line and add up to it; "
-            "of parts that cancel each other some exceed 100 %."
+            "Levels of rms values re 1 µm/s². What excites a line by the linear model, each alone; with phase they add "
+            "up to it. Shares are in phase with the line and add up to it; of parts that cancel each other some "
+            "exceed 100 %."
         )
     if document.get("run") is not None:
         yield _acceleration(document["run"])
@@ -986,6 +990,7 @@ _SIGNATURE_COLUMNS = (
     Column("Hz", "frequency_hz", ".0f"),
     Column("dB", "level_db", ".0f"),
     Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
+    MECHANISM,
     Column("near", lambda row: _near(row["near_mode"]), numbers=("near_mode.frequency_hz",)),
     Column(
         "by housing modes",

@@ -19,7 +19,7 @@ from gearwhine.output.sections import (
     percent,
     table_of,
 )
-from gearwhine.results.line_columns import line_frequency
+from gearwhine.results.line_columns import MECHANISMS, line_frequency
 from housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
 
 if TYPE_CHECKING:
@@ -162,6 +162,10 @@ ENTRY = (
     Quantity("sound_power_db", lambda row: row.line.level_db),
     Quantity("sound_power_db_a", lambda row: row.line.level_db_a),
     Quantity("equivalent_power_db", lambda row: row.line.equivalent_db),
+    Quantity(
+        "parts_equivalent_power_db",
+        lambda row: {name: float(power_level(power)) for name, power in row.line.mechanism_powers.items()},
+    ),
     Quantity("radiation_efficiency", lambda row: row.line.sound.radiation_efficiency),
     Quantity("surface_power_db", lambda row: float(power_level(row.line.sound.surface_power))),
     Quantity("power_balance_db", lambda row: row.line.power_balance_db),
@@ -214,13 +218,30 @@ _NAME = Column("what it is", lambda row: arrowed(str(row["name"])))
 _MODE, _FACE = _largest("by mode", "housing_modes"), _largest("by face", "faces")
 _BEARING = _largest("by bearing", "bearings")
 
-LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _MODE, _BEARING, _FACE)
+_WEAKER = 10.0  # distance of a mechanism from the strongest one of a line up to which it is told [dB]
+
+
+def _mechanisms(row: Document) -> str:
+    """Return what excites a line, the strongest mechanism first, and how far weaker ones are below it."""
+    levels = row.get("parts_equivalent_power_db") or {}
+    if not levels:
+        return ""
+    highest = max(levels.values())
+    told = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
+    first, *others = told
+    return ", ".join([MECHANISMS[first], *(f"{MECHANISMS[name]} {levels[name] - highest:.0f} dB" for name in others)])
+
+
+_EXCITED = Column("excited by", _mechanisms, numbers=tuple(f"parts_equivalent_power_db.{name}" for name in MECHANISMS))
+
+LOUDEST_COLUMNS = (_LINE, *_LEVELS, _NAME, _EXCITED, _MODE, _BEARING, _FACE)
 """Columns of a line, on the terminal and the first page."""
 
 LINE_COLUMNS = (
     _LINE,
     _ORDER,
     _NAME,
+    _EXCITED,
     *_LEVELS,
     Column("ERP [dB]", "equivalent_power_db", ".1f"),
     Column("efficiency", "radiation_efficiency", ".2g"),

@@ -6,21 +6,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from coupling.signals.line_names import line_names
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.motion import (
     BEARING,
+    CAUSE_COLUMNS,
     MESH,
     SENSOR_COLUMNS,
     NamedParts,
     damping_sentence,
+    leading_lines,
     line_table,
     mesh_sentence,
 )
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
+    from coupling.assembly import CoupledMachine
     from coupling.machine.mounted_parts import GearMesh
     from coupling.periodic.continuation import ResponseCurve
     from coupling.periodic.response import PeriodicResponse
@@ -28,6 +32,8 @@ if TYPE_CHECKING:
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 _TILTS = ("about x", "about y")
+_EXACT = 0.02  # distance of a line from the frequency of its cause, over the spacing of lines
+_LINES_SHOWN = 3  # highest lines of each sensor on the terminal, with what excites them
 
 PROOF = (
     Quantity("period_s", lambda response: response.period),
@@ -78,7 +84,8 @@ def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[_Pair]
     rows = []
     for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True):
         name = solved.machine.system.contacts[number].name
-        lines = _lines(motions, [motion.histories.mesh_force[name] for motion in motions], "amplitude_n")
+        forces = [motion.histories.mesh_force[name] for motion in motions]
+        lines = _lines(solved.machine, motions, forces, "amplitude_n")
         rows.append(_Pair(mesh, figures, number, lines, motion is None))
     return rows
 
@@ -92,6 +99,7 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
             # The frequencies differ, so their powers add.
             "rms_m_per_s2": float(np.hypot.reduce([motion.sensor_rms[name] for motion in motions])),
             "lines": _lines(
+                solved.machine,
                 motions,
                 [motion.histories.sensor_acceleration[name] for motion in motions],
                 "amplitude_m_per_s2",
@@ -103,16 +111,26 @@ def _sensors(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[dict
 
 
 def _lines(
-    motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str, limit: float = np.inf
+    machine: "CoupledMachine", motions: "tuple[SteadyMotion, ...]", signals: list[Any], key: str, limit: float = np.inf
 ) -> list[dict[str, Any]]:
-    """Return the highest lines of all motions together up to a limit [Hz], each with the name of its excitation."""
-    lines = [
-        {"frequency_hz": frequency, key: amplitude, "phase_rad": phase}
+    """Return the highest lines of all motions together up to a limit [Hz], each with its name and its excitations."""
+    found = sorted(
+        (
+            (frequency, amplitude, phase, motion)
+            for motion, signal in zip(motions, signals, strict=True)
+            for frequency, amplitude, phase in motion.lines(signal, limit)
+        ),
+        key=lambda line: -line[1],
+    )[: motions[0].reported_lines]
+    if not found:
+        return []
+    within = np.array([_EXACT / motion.response.period for *_, motion in found])
+    names = line_names(machine, [frequency for frequency, *_ in found], within)
+    return [
+        {"frequency_hz": frequency, key: amplitude, "phase_rad": phase, "name": name.name, "order": name.order}
         | ({"excitation": motion.excitation} if motion.excitation else {})
-        for motion, signal in zip(motions, signals, strict=True)
-        for frequency, amplitude, phase in motion.lines(signal, limit)
+        for (frequency, amplitude, phase, motion), name in zip(found, names, strict=True)
     ]
-    return sorted(lines, key=lambda line: -float(line[key]))[: motions[0].reported_lines]
 
 
 class _Motion(NamedTuple):
@@ -441,7 +459,8 @@ def report(document: Document) -> Section:
 _PICTURES = (
     Picture(
         "steady-motion",
-        "Mesh force of the motion over a period or some teeth, zero where flanks part, and its harmonics.",
+        "Mesh force of the motion over a period or some teeth, zero where flanks part, and its harmonics. Superposed "
+        "motions are drawn as their sum, with the lines of each.",
     ),
     Picture(
         "steady-curve",
@@ -487,6 +506,7 @@ def _motion(motion: Document, name: str) -> Iterator[str | Table]:
         yield _proof(motion, name)
     yield from map(mesh_sentence, motion["gear_pairs"])
     yield from table_of(SENSOR_COLUMNS, motion["sensors"])
+    yield from table_of(CAUSE_COLUMNS, leading_lines(motion["sensors"], "lines", _LINES_SHOWN))
 
 
 def _proof(motion: Document, name: str) -> str:

@@ -11,7 +11,7 @@ from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
-from gearwhine.results.motion import band_words, damping_sentence
+from gearwhine.results.motion import band_words, damping_sentence, gear_body_lines
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
@@ -571,6 +571,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield f"{document['coordinates']} coordinates at {document['speed_rpm']:.0f} rpm{about}"
     for mesh in document.get("mesh_stiffness", ()):
         yield _mesh_sentence(mesh)
+    yield from (f"Gear body {line}." for line in gear_body_lines(document))
     yield from table_of(mode_columns(listed), listed)
     yield "Shares of the kinetic energy; teeth: share of the strain energy."
     if residual := len(within) - len(listed):
@@ -613,7 +614,7 @@ def _mesh_sentence(mesh: Document) -> str:
 def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     """Columns of coupled modes: frequency, damping, kind, the shares of what moves, and what is strained most."""
     # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
-    rare = [kind for kind in ("axial", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in modes)]
+    rare = [kind for kind in ("axial", "body", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in modes)]
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     return (
         *columns_of(MODE),

@@ -5,7 +5,7 @@ harmonics, or the level at a sensor.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -34,6 +34,8 @@ from coupling.gears.loaded.optimal_relief import (
     WeightedHarmonics,
     transmission_error_harmonics,
 )
+from coupling.gears.loaded.transmission_error import mesh_period_phases
+from coupling.linear.line_mechanisms import teeth_alike
 from coupling.linear.mesh_harmonics import MeshHarmonicModel
 from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.operating_point import OperatingPoint
@@ -115,6 +117,8 @@ class PairAnalysis:
     optimum : ReliefOptimum or None
         Best relief for the case's torque, with all teeth alike; None unless asked for, and without a torque or
         single pairs.
+    aim : ReliefAim
+        Objective of the best relief.
     force_origin : str
         See :func:`gearwhine.case.force_origins`.
     """
@@ -128,6 +132,7 @@ class PairAnalysis:
     pitch_pressure: float | None
     harris: HarrisMap | None = None
     optimum: ReliefOptimum | None = None
+    aim: ReliefAim = field(default_factory=PeakToPeak)
     force_origin: str = "torques"
 
     @property
@@ -310,7 +315,7 @@ def solve_over_torques(
             pair = replace(pair, harris=_harris_map(pair.solved))
             if pair.solved.has_single_pairs:
                 progress(f"best tip relief of {pair.label}")
-                pair = replace(pair, optimum=_best_relief(pair.solved, aim))
+                pair = replace(pair, optimum=_best_relief(pair.solved, aim), aim=aim)
         analysed.append(pair)
     return tuple(analysed)
 
@@ -367,8 +372,9 @@ def relief_aims(
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
     √(½ Σ (w_n a_n)²), with a_n the linear response to transmission error and load shuttling together about the case's
-    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. The housing is solved for it
-    where it is not given.
+    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. By default it is the sensor at which the given
+    flanks are loudest, where ``housing`` is given and the machine turns, else the peak-to-peak transmission error.
+    Where the case names a sensor, the housing is solved for it if it is not given.
 
     Raises
     ------
@@ -378,34 +384,52 @@ def relief_aims(
         Where the machine's loads cannot balance, so that a pair has no mean force in it.
     """
     aims = [entry.relief_aim for entry in case.gear_pair]
-    if not aims_at_sensor(case):
+    if not aims_at_sensor(case) and (housing is None or not _may_aim_at_sensors(case)):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = housing or solve_housing(case, progress, folder=folder)
     model = MeshHarmonicModel(build_machine(case, housing, pairs, progress))
-    limit = housing.trusted_limit_hz
-    objectives = []
-    for number, (pair, aim) in enumerate(zip(pairs, aims, strict=True)):
-        if aim is None or aim.sensor is None:
-            objectives.append(_without_sensor(aim))
-            continue
-        if pair.static.force == 0.0:
-            # A pair without load has no best relief.
-            objectives.append(PeakToPeak())
-            continue
-        key = f"gear_pair[{number}].relief_aim"
-        if not pair.mesh_frequency:
-            raise CaseError([Problem(key, NOTHING, "a speed: the level at a sensor is of gears that turn")])
-        all_weights = aim.weights or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
-        weights = {n: weight for n, weight in all_weights.items() if weight and n * pair.mesh_frequency <= limit}
-        if not weights:
-            expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"
-            raise CaseError(
-                [Problem(f"{key}.harmonics", list(all_weights), f"{expected}, up to which the modes are known")]
-            )
-        follows = pair.pair.damping is None
-        objectives.append(SensorLevel(model, number, aim.sensor, weights, damping_follows=follows))
-    return tuple(objectives)
+    rows = zip(range(len(aims)), pairs, aims, strict=True)
+    return tuple(_aim_of(model, housing, number, pair, aim) for number, pair, aim in rows)
+
+
+def _aim_of(
+    model: MeshHarmonicModel, housing: SolvedHousing, number: int, pair: LoadedGearPair, aim: GivenAim | None
+) -> ReliefAim:
+    """Return the objective of a pair in a machine: at a sensor, by default at the loudest one."""
+    if pair.static.force == 0.0:
+        return PeakToPeak()  # a pair without load has no best relief
+    if aim is not None and aim.sensor is None:
+        return _without_sensor(aim)
+    limit, key = housing.trusted_limit_hz, f"gear_pair[{number}].relief_aim"
+    if not pair.mesh_frequency:
+        if aim is None:
+            return PeakToPeak()
+        raise CaseError([Problem(key, NOTHING, "a speed: the level at a sensor is of gears that turn")])
+    given = {} if aim is None else aim.weights
+    all_weights = given or dict.fromkeys(range(1, _AIMED_AT + 1), 1.0)
+    weights = {n: weight for n, weight in all_weights.items() if weight and n * pair.mesh_frequency <= limit}
+    if not weights:
+        if aim is None:
+            return PeakToPeak()
+        expected = f"multiples of the mesh frequency of {pair.mesh_frequency:.5g} Hz below {limit:.5g} Hz"
+        raise CaseError(
+            [Problem(f"{key}.harmonics", list(all_weights), f"{expected}, up to which the modes are known")]
+        )
+    follows = pair.pair.damping is None
+    sensors = tuple(housing.sensors) if aim is None or aim.sensor is None else (aim.sensor,)
+    levels = [SensorLevel(model, number, sensor, weights, damping_follows=follows) for sensor in sensors]
+    if len(levels) == 1:
+        return levels[0]
+    flanks = teeth_alike(pair.carrying_flanks)
+    mesh = loaded_transmission_error(flanks, pair.static.force, mesh_period_phases(flanks))
+    return max(levels, key=lambda level: level.of(mesh, flanks))
+
+
+def _may_aim_at_sensors(case: Case) -> bool:
+    """Whether a case has what the level at a sensor needs: a machine that turns in a housing with sensors."""
+    turns = case.operation is not None and case.operation.speed != 0.0 and bool(case.rotor)
+    return turns and case.housing is not None and bool(case.housing.sensor)
 
 
 def aims_at_sensor(case: Case) -> bool:
@@ -414,4 +438,4 @@ def aims_at_sensor(case: Case) -> bool:
 
 
 def _without_sensor(aim: GivenAim | None) -> ReliefAim:
-    return PeakToPeak() if aim is None else WeightedHarmonics(aim.weights)
+    return PeakToPeak() if aim is None or aim.peak_to_peak else WeightedHarmonics(aim.weights)

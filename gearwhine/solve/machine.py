@@ -15,6 +15,7 @@ from coupling.gears import GearError
 from coupling.gears.geometry.pair import pair_label
 from coupling.gears.loaded.gear_pair import LoadedGearPair
 from coupling.linear.frequency_response import BasisError
+from coupling.linear.line_mechanisms import LineMechanisms
 from coupling.machine.base_motion import BaseMotion
 from coupling.machine.components import HousingComponent, housing_component
 from coupling.statics.operating_point import OperatingPoint
@@ -275,3 +276,13 @@ def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None
         for name, port in housing.sensors.items()
     }
     return replace(relative, sensor_acceleration=absolute)
+
+
+def line_mechanisms(machine: CoupledMachine, housing: SolvedHousing | ReducedHousing | None) -> LineMechanisms:
+    """Return what excites the lines of a machine's sensors, which show motion in space."""
+    base = machine.loads.base
+    if base is None or housing is None:
+        return LineMechanisms(machine)
+    return LineMechanisms(
+        machine, {name: base.row_at(port.position, port.direction) for name, port in housing.sensors.items()}
+    )

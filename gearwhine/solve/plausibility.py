@@ -18,6 +18,7 @@ from coupling.gears.geometry.pair import pair_label
 from coupling.linear.complex_modes import Stability
 from coupling.linear.damping_band import DampingBand
 from coupling.linear.frequency_response import BasisError
+from coupling.linear.line_mechanisms import LineMechanisms
 from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
 from gearwhine.from_case.driving import unbalanced_torque
@@ -381,25 +382,45 @@ def _sensor_lines(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
     return [(sensor["name"], line) for sensor in sensors for key in ("peaks", "lines") for line in sensor.get(key, ())]
 
 
-def add_damping_bands(document: dict[str, Any], bands: DampingBand) -> None:
-    """Add ``band_db`` to every line of the document's sensors, [below, above]: damping doubled and halved.
+def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_hz: float = 0.0) -> None:
+    """Add its mechanisms and its band by damping to every line of the document's sensors.
 
-    ``mesh_lines`` have one by sensor.
+    ``parts`` are the amplitudes by what excites the line, ``parts_together_m_per_s2`` that of their sum, by the linear
+    model; ``band_db`` is [below, above], all damping doubled and halved. ``mesh_lines`` have them by sensor. What
+    stands in a document over a run is no line: it has the band alone.
+
+    Parameters
+    ----------
+    document : dict
+    mechanisms : LineMechanisms
+    within_hz : float
+        Distance within which the frequencies of lines are known [Hz].
     """
     rows, harmonics = _sensor_lines(document), document.get("mesh_lines") or ()
     frequencies = np.unique([line["frequency_hz"] for line in (*(line for _, line in rows), *harmonics)])
-    if not frequencies.size or not bands.machine.sensor_rows:
+    frequencies = frequencies[frequencies > 0.0]
+    if not frequencies.size or not mechanisms.machine.sensor_rows:
         return
-    by_sensor = bands.at(_TWO_PI * frequencies)
+    within = _TWO_PI * within_hz
+    bands = DampingBand(mechanisms).at(_TWO_PI * frequencies, within)
+    steady = document.get("run") is None
+    parts = [mechanisms.parts(_TWO_PI * hertz, within) for hertz in frequencies.tolist()] if steady else None
 
-    def band(sensor: str, line: dict[str, Any]) -> list[float]:
-        below, above = by_sensor[sensor][np.searchsorted(frequencies, line["frequency_hz"])].tolist()
-        return [below, above]
+    def figures(sensor: str, hertz: float) -> dict[str, Any]:
+        place = int(np.searchsorted(frequencies, hertz))
+        found: dict[str, Any] = {"band_db": bands[sensor][place].tolist()}
+        if parts is not None and sensor in parts[place]:
+            of_line = parts[place][sensor]
+            found |= {"parts": of_line.amplitudes, "parts_together_m_per_s2": of_line.together}
+        return found
 
     for sensor, line in rows:
-        line["band_db"] = band(sensor, line)
+        if line["frequency_hz"] > 0.0:
+            line.update(figures(sensor, line["frequency_hz"]))
     for line in harmonics:
-        line["band_db"] = {sensor: band(sensor, line) for sensor in by_sensor}
+        by_sensor = {sensor: figures(sensor, line["frequency_hz"]) for sensor in bands}
+        for key in ("band_db", "parts", "parts_together_m_per_s2"):
+            line[key] = {sensor: found[key] for sensor, found in by_sensor.items() if key in found}
 
 
 def _bands(error: BasisError, limit_hz: float) -> list[dict[str, Any]]:

@@ -140,6 +140,12 @@ class SolvedTransient:
         """Return the reported spectral peaks of a sensor, highest first."""
         return spectral_peaks(self.sensor_spectra[sensor], count=20, limit=self.trusted_limit, floor=1e-5)
 
+    @property
+    def line_tolerance_hz(self) -> float:
+        """Distance within which the frequencies of the sensors' lines are known [Hz]."""
+        peaks = [self.sensor_peaks(name).resolution for name in self.sensor_spectra]
+        return max((float(resolution.max()) for resolution in peaks if resolution.size), default=0.0)
+
     def force_peaks(self, contact: str) -> SpectralPeaks:
         """Return the reported spectral peaks of a gear-mesh force, highest first."""
         return spectral_peaks(self.force_spectra[contact], count=8)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.output.dataset import PHASE_CONVENTION
@@ -204,6 +205,30 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
         ("sensor_peak_amplitude", "amplitude_m_per_s2", "m/s2", "peak amplitude of the highest lines"),
     ):
         variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, long_name))
+    _add_mechanisms(grid, names, variables, coordinates)
+
+
+def _add_mechanisms(grid: _Grid, names: Sequence[str], variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
+    """Add the amplitudes of the sensors' highest lines by what excites them; 0 where it does not excite a line."""
+    lines = [
+        line for result in grid.results() for sensor in result.document["sensors"] for line in sensor["peaks"][:_PEAKS]
+    ]
+    found = [name for name in MECHANISMS if any(name in line.get("parts", ()) for line in lines)]
+    if not found:
+        return
+    coordinates["mechanism"] = ("mechanism", found, {})
+
+    def parts(result: PointResult) -> FloatArray:
+        by_sensor = {sensor["name"]: sensor["peaks"] for sensor in result.document["sensors"]}
+        values = np.full((len(names), _PEAKS, len(found)), np.nan)
+        for row, name in enumerate(names):
+            for rank, line in enumerate(by_sensor.get(name, ())[:_PEAKS]):
+                values[row, rank] = [line.get("parts", {}).get(mechanism, 0.0) for mechanism in found]
+        return values
+
+    long_name = "amplitude of the highest lines by each mechanism alone, linear about the mean load"
+    shape = (len(names), _PEAKS, len(found))
+    variables["sensor_peak_part"] = grid.rows(("sensor", "peak", "mechanism"), shape, parts, _unit("m/s2", long_name))
 
 
 def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.damping_band import DampingBand
 from coupling.signals.line_names import LineName
 from coupling.signals.spectrum import Window
 from gearwhine import __version__
@@ -27,9 +26,16 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import ReducedHousing, basis_error, build_machine, reduce_housing, solve_pairs
+from gearwhine.solve.machine import (
+    ReducedHousing,
+    basis_error,
+    build_machine,
+    line_mechanisms,
+    reduce_housing,
+    solve_pairs,
+)
 from gearwhine.solve.operating_point import find_load
-from gearwhine.solve.plausibility import add_damping_bands, add_uncertainty, bearing_load_warnings, machine_warnings
+from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.resonances import Resonances, find_resonances
@@ -131,7 +137,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
             result.document["load"] = load_part(load)
         error = basis_error(case, machine, housing, pairs, point=point)
         add_uncertainty(result.document, error, solved.trusted_limit)
-        add_damping_bands(result.document, DampingBand(machine))
+        add_mechanisms(result.document, line_mechanisms(machine, housing), solved.line_tolerance_hz)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
         return result

@@ -6,6 +6,7 @@ The off-screen renderer is PyVista on EGL, or on OSMesa where EGL is missing.
 import ctypes
 import os
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -15,7 +16,7 @@ import numpy.typing as npt
 
 from housing.errors import RendererUnavailableError
 from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
-from housing.pictures.views import AUTO, IN_WORDS, check_view, view_of_most_motion, viewing_direction
+from housing.pictures.views import AUTO, IN_WORDS, check_view, seen_areas, view_of_most_motion, viewing_direction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -120,7 +121,7 @@ class Scene:
         self._origin = np.array(self._solid["origin"])
         self._skin = Skin(self._origin, self._solid.regular_faces.astype(np.int64))
         self._solid["shown"] = np.zeros(len(self._origin))
-        self._size, self._finer = size, _FINER
+        self._size, self._finer, self._aimed = size, _FINER, ""
         finer = [round(self._finer * length) for length in size]
         self._plotter = pyvista.Plotter(off_screen=True, window_size=finer)
         try:
@@ -141,11 +142,16 @@ class Scene:
         """Close the renderer."""
         self._plotter.close()
 
+    @cached_property
+    def _seen_areas(self) -> dict[str, FloatArray]:
+        """Areas of the triangles that are seen from each corner."""
+        return seen_areas(self._housing)
+
     def show(self, shape: DrawnShape) -> None:
         """Put a shape's captions, colours and, where it is to show most motion, view in place."""
         note = shape.note
         if self._view == AUTO:
-            view = view_of_most_motion(self._housing, shape)
+            view = view_of_most_motion(self._housing, shape, self._seen_areas)
             note = "; ".join(filter(None, (note, IN_WORDS.get(view))))
             self._aim(view)
         self._title.input, self._note.input = shape.title, note
@@ -243,10 +249,15 @@ class Scene:
         self._aim(view)
 
     def _aim(self, view: str) -> None:
-        self._plotter.view_vector(viewing_direction(view, self._housing.up), viewup=self._housing.up)
-        self._plotter.enable_parallel_projection()
-        self._plotter.reset_camera(bounds=_frame(self._bounds))
+        if view == self._aimed:
+            return
+        self._aimed = view
+        # Each of these would draw the scene anew.
+        towards = viewing_direction(view, self._housing.up)
+        self._plotter.view_vector(towards, viewup=self._housing.up, render=False)
         camera = self._plotter.camera
+        camera.parallel_projection = True
+        self._plotter.reset_camera(bounds=_frame(self._bounds), render=False)
         camera.zoom(1.2)
         camera.SetWindowCenter(0.0, _LOWER)
         corners = np.stack(np.meshgrid(*np.reshape(self._bounds, (3, 2))), axis=-1).reshape(-1, 3)

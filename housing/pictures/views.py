@@ -1,5 +1,7 @@
 """Directions of view: by name, for a housing that stands upright, and the corner that shows most motion."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
@@ -86,34 +88,43 @@ def _turn(up: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + up @ y))
 
 
-def view_of_most_motion(housing: DrawnHousing, shape: DrawnShape) -> str:
+def view_of_most_motion(housing: DrawnHousing, shape: DrawnShape, seen: Mapping[str, FloatArray] | None = None) -> str:
     """Name the corner from which most of a shape's motion is seen; the usual one where that shows about as much.
 
     What is seen is the sum of amplitude squared times projected area over the triangles that face the eye and have no
-    other before them.
+    other before them. ``seen`` are these areas, see :func:`seen_areas`, computed here where they are not given.
     """
     swing = shape.amplitude if shape.values is None else np.abs(shape.values)
     strength = (swing[housing.triangles] ** 2).mean(axis=1)
+    areas = seen_areas(housing) if seen is None else seen
+    shown = {name: float(area @ strength) for name, area in areas.items()}
+    best = max(shown, key=lambda name: shown[name])
+    return "iso" if shown["iso"] >= _AS_GOOD * shown[best] else best
+
+
+def seen_areas(housing: DrawnHousing) -> dict[str, FloatArray]:
+    """Projected area of each triangle as seen from each corner [m²], shape (n_triangles,); 0 of those that are hidden.
+
+    They are of the housing at rest: one computation serves all its shapes.
+    """
     a, b, c = np.moveaxis(housing.rest[housing.triangles], 1, 0)
     areas, centres = 0.5 * np.cross(b - a, c - a), (a + b + c) / 3.0
-    seen = {name: _seen(housing, areas, centres, strength, viewing_direction(name, housing.up)) for name in _CORNERS}
-    best = max(seen, key=lambda name: seen[name])
-    return "iso" if seen["iso"] >= _AS_GOOD * seen[best] else best
+    return {name: _seen(housing, areas, centres, viewing_direction(name, housing.up)) for name in _CORNERS}
 
 
-def _seen(
-    housing: DrawnHousing, areas: FloatArray, centres: FloatArray, strength: FloatArray, towards: FloatArray
-) -> float:
+def _seen(housing: DrawnHousing, areas: FloatArray, centres: FloatArray, towards: FloatArray) -> FloatArray:
     projected = areas @ towards
-    facing = projected > 0.0
+    facing = np.flatnonzero(projected > 0.0)
     right = np.cross(housing.up, towards)
     right /= np.linalg.norm(right)
     across = centres[facing] @ np.stack([right, np.cross(towards, right)], axis=1)
     # Larger than the triangles, so that no cell of a near face is empty.
     cell = max(housing.diagonal / _CELLS, _LARGER * float(np.sqrt(np.linalg.norm(areas, axis=1).mean())))
-    _, cells = np.unique(np.floor(across / cell).astype(np.int64), axis=0, return_inverse=True)
-    cells, depth = cells.ravel(), centres[facing] @ towards
+    rows = np.floor((across - across.min(axis=0, initial=0.0)) / cell).astype(np.int64)
+    cells, depth = rows[:, 0] * (rows[:, 1].max(initial=0) + 1) + rows[:, 1], centres[facing] @ towards
     nearest = np.full(cells.max(initial=-1) + 1, -np.inf)
     np.maximum.at(nearest, cells, depth)
-    unhidden = depth >= nearest[cells] - _SLANT * cell
-    return float((projected[facing] * strength[facing])[unhidden].sum())
+    unhidden = facing[depth >= nearest[cells] - _SLANT * cell]
+    seen = np.zeros(len(areas))
+    seen[unhidden] = projected[unhidden]
+    return seen

@@ -6,6 +6,7 @@ from test_transmissibility import geared
 
 from coupling.linear.complex_modes import coupled_modes
 from coupling.linear.damping_band import DampingBand
+from coupling.linear.line_mechanisms import LineMechanisms
 from coupling.statics.mean_mesh import linear_matrices, mean_contact
 
 
@@ -15,7 +16,7 @@ def test_a_band_is_the_line_of_machines_with_half_and_twice_the_damping() -> Non
     system = machine.system
     stiffness, damping = linear_matrices(system, mean_contact(system))
     w = np.array([700.0, 1693.0, 2500.0, 3990.0])
-    found = DampingBand(machine).at(w)
+    found = DampingBand(LineMechanisms(machine)).at(w)
     assert list(found) == ["top", "side"]
     (direction,) = [contact.direction for contact in system.contacts if contact.loaded]
     for number, frequency in enumerate(w):
@@ -35,6 +36,6 @@ def test_a_resonance_goes_as_one_over_the_damping_and_what_lies_beside_it_does_n
     values = coupled_modes(machine.system).eigenvalues
     plate = values[np.argmin(np.abs(np.abs(values) - 900.0))]
     assert -plate.real < 0.02 * abs(plate)
-    at, beside = (DampingBand(machine).at([factor * abs(plate)])["top"][0] for factor in (1.0, 0.5))
+    at, beside = (DampingBand(LineMechanisms(machine)).at([factor * abs(plate)])["top"][0] for factor in (1.0, 0.5))
     assert at == pytest.approx([-6.02, 6.02], abs=0.3)
     assert np.abs(beside).max() < 0.3

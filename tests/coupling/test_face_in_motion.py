@@ -144,8 +144,15 @@ def test_lines_of_contact_that_pass_over_the_face_act_as_their_mean() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sense", [1, -1])
-def test_a_spur_power_split_answers_as_springs_over_its_faces(sense: int) -> None:
-    np.testing.assert_allclose(compared(power_split(sense, ConstantStiffness(4e8))), 1.0, atol=0.015)
+@pytest.mark.parametrize(("modes", "within"), [(None, 0.015), (24, 0.005)])
+def test_a_spur_power_split_answers_as_springs_over_its_faces(sense: int, modes: int | None, within: float) -> None:
+    """Each mesh has the compliance over its face that the shafts' modes lack, but not what they lack from mesh to mesh.
+
+    Gears in two meshes feel that, with few modes by 1.4 % at 2400 Hz; more modes take it away.
+    """
+    model = power_split(sense, ConstantStiffness(4e8))
+    model = replace(model, shafts=[replace(shaft, mode_count=modes) for shaft in model.shafts])
+    np.testing.assert_allclose(compared(model), 1.0, atol=within)
 
 
 @pytest.mark.slow
@@ -209,3 +216,19 @@ def test_a_load_off_the_middle_acts_where_the_flanks_carry() -> None:
     assert tangent.centre[0] == pytest.approx(0.5 * length - 0.5 * WIDTH, abs=0.5e-3)
     assert tangent.moments[0] / force == pytest.approx(length / 3.0 - 0.5 * WIDTH, abs=0.2e-3)
     assert tangent.stiffness[0, 0] == pytest.approx(4e8 / WIDTH * length**3 / 12.0, rel=0.1)
+
+
+def test_a_machine_at_another_speed_has_the_faces_of_its_mean_load_solved_once() -> None:
+    """They depend on the load alone: taken over, or solved anew, the system is the same to the last bit."""
+    moving = overhung(1, ConstantStiffness(4e8)).assemble()
+    speed = 0.7 * moving.speeds["in"]
+    kept, anew = moving.at_speed(speed), replace(moving, mean_faces=None).at_speed(speed)
+    assert kept.mean_faces is moving.mean_faces
+    assert anew.mean_faces is not moving.mean_faces
+    np.testing.assert_array_equal(kept.system.mean_stiffness, anew.system.mean_stiffness)
+    np.testing.assert_array_equal(kept.system.load, anew.system.load)
+    for one, other in zip(kept.system.harmonic_loads, anew.system.harmonic_loads, strict=True):
+        assert one.frequency == other.frequency
+        np.testing.assert_array_equal(one.amplitude, other.amplitude)
+    # The other sense presses other flanks.
+    assert moving.at_speed(-speed).mean_faces is not moving.mean_faces

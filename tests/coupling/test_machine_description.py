@@ -272,6 +272,7 @@ def square_pairs() -> list[GearPair]:
     return [GearPair(*names, SquareStiffness(2e8), damping_ratio=0.05) for names in (("a", "b"), ("c", "d"))]
 
 
+@pytest.mark.slow
 def test_the_analyses_of_a_machine_are_its_methods() -> None:
     """The Campbell diagram passes through the modes at operation; errors of each mesh answer as in the assembly."""
     pairs = square_pairs()

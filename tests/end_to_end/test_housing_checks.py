@@ -109,6 +109,7 @@ def test_the_coupled_system_uses_the_attachments(answer) -> None:
     assert min(residual) > document["trusted_below_hz"]
 
 
+@pytest.mark.slow
 def test_few_modes_with_attachments_stand_for_many(gearwhine, answer) -> None:
     """Coupled modes below half the limit are those of a housing with all its modes up to three times the limit."""
     few = answer("system", "small-gearbox", "--json", "-q", *COARSE).document

@@ -84,6 +84,7 @@ def test_nothing_is_kept_without_a_folder(gearwhine, out: Path, tmp_path: Path) 
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.slow
 def test_another_wall_is_solved_anew_and_replaces_the_file(gearwhine, out: Path) -> None:
     thicker = modes(gearwhine, "--set", 'housing.box.wall="12 mm"')
     assert thicker["reused"] is False

@@ -67,6 +67,7 @@ def test_the_exact_march_says_why_it_does_not_apply(gearwhine: Any) -> None:
         assert "a speed that varies" in outcome.err
 
 
+@pytest.mark.slow
 def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:
     """The power's history sums up to what the march counted step by step; the force turns at the pitch point."""
     two = ("--set", "transient.revolutions=2", "--set", "transient.discard=0")
@@ -147,6 +148,7 @@ def test_resonances_of_more_mesh_harmonics(gearwhine: Any, answer: Any) -> None:
     assert "mesh orders up to 5× (more: --mesh-harmonics):" in shown
 
 
+@pytest.mark.slow
 def test_sidebands_in_the_diagram_over_speed(answer: Any) -> None:
     document = answer("system", "spur-pair", *FEW, "--campbell", "--sidebands", "1", "--json", "-q").document
     kinds = {(line["kind"], line["order"]) for line in document["campbell"]["lines"]}

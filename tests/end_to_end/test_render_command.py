@@ -107,6 +107,7 @@ def test_what_cannot_be_drawn_is_said(gearwhine, arguments: tuple[str, ...], sai
     assert said in outcome.err
 
 
+@pytest.mark.slow
 def test_a_renderer_that_dies_is_told_of_and_leaves_no_pictures(
     gearwhine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -167,6 +167,7 @@ def test_the_response_to_unbalance_is_that_of_the_jeffcott_rotor(
     assert solved_rotor(jeffcott)["unbalance_response"] is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_clockwise_rotor_lags_as_its_mirror_image(solved_rotor: Any, jeffcott: str, sense: int) -> None:
     """The mirrored disc's unbalance and probe stand at the negative angles: its probe reads the same at all times."""

@@ -45,6 +45,7 @@ def exported(path: Path) -> tuple[list[tuple[float, float, float]], dict[str, se
     return points, places
 
 
+@pytest.mark.slow
 def test_each_file_has_the_points_of_its_own_result(folder: Path) -> None:
     document = export_results(folder, ("uff",))
     assert document["warnings"] == []
@@ -84,6 +85,7 @@ def test_damaged_results_are_neither_exported_nor_reported(
     assert not (place / "exports").exists()
 
 
+@pytest.mark.slow
 def test_results_of_earlier_versions_have_the_points_of_their_own_case(folder: Path, tmp_path: Path) -> None:
     place = without_places(folder, tmp_path / "old", case=True)
     assert export_results(place, ("uff",))["warnings"] == []
@@ -92,6 +94,7 @@ def test_results_of_earlier_versions_have_the_points_of_their_own_case(folder: P
     assert places == {"top": {(1, -2)}, "wall": {(2, 0)}}  # a normal that is not known
 
 
+@pytest.mark.slow
 def test_points_that_are_not_known_are_warned_of(folder: Path, tmp_path: Path) -> None:
     place = without_places(folder, tmp_path / "older", case=False)
     (warned,) = export_results(place, ("uff",))["warnings"]

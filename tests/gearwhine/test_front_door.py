@@ -126,6 +126,7 @@ def test_a_dataset_of_arrays_at_hand_is_a_copy(study: gw.Study) -> None:
     assert at_hand["level"].values.tolist() == [1.0, 2.0]
 
 
+@pytest.mark.slow
 def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
     found = study.simulate()
     assert found.command == "simulate"

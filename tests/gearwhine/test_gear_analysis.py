@@ -38,7 +38,8 @@ def case_of(name: str, *settings: str) -> Case:
 @cache
 def analysed(name: str, *settings: str) -> PairAnalysis:
     case = case_of(name, *settings)
-    (pair,) = solve_over_torques(analyse_pairs(case, solve_gears(case)))
+    solved = solve_gears(case)
+    (pair,) = solve_over_torques(analyse_pairs(case, solved), aims=relief_aims(case, solved))
     return pair
 
 

@@ -12,11 +12,13 @@ import pytest
 from coupling.errors import CouplingError
 from coupling.gears import TipRelief, loaded_transmission_error
 from coupling.gears.loaded.gear_pair import LoadedGearPair
+from coupling.gears.loaded.optimal_relief import PeakToPeak
 from coupling.gears.loaded.transmission_error import mesh_period_phases
 from coupling.linear.frequency_response import mesh_error_response
 from coupling.linear.line_sensitivity import LineModel
 from coupling.linear.sensor_level import SensorLevel
 from gearwhine.case import Case, case_document, load_case, parse_case
+from gearwhine.case.gears import ReliefAim
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims, solve_over_torques
@@ -91,6 +93,28 @@ def aim(given: Gearbox) -> SensorLevel:
     (found,) = relief_aims(given.case, given.pairs)
     assert isinstance(found, SensorLevel)
     return found
+
+
+def test_the_aim_is_by_default_the_sensor_that_the_given_flanks_make_loudest(given: Gearbox) -> None:
+    case = helical_case(GIVEN)
+    silent = case.model_copy(
+        update={"gear_pair": tuple(pair.model_copy(update={"relief_aim": None}) for pair in case.gear_pair)}
+    )
+    (found,) = relief_aims(silent, given.pairs, housing=given.housing)
+    assert isinstance(found, SensorLevel)
+    limit = 2.0 * np.pi * given.housing.trusted_limit_hz
+    levels: dict[str, float] = {}
+    for line in given.model.lines(limit, 12):
+        sensor = str(line.output.sensor)
+        levels[sensor] = levels.get(sensor, 0.0) + 0.5 * line.value**2
+    assert set(levels) == {"top", "right wall"}
+    assert found.sensor == max(levels, key=lambda name: levels[name])
+    assert level(found, given.pairs[0]) == pytest.approx(math.sqrt(levels[found.sensor]), rel=1e-6)
+    (without,) = relief_aims(silent, given.pairs)
+    assert without == PeakToPeak()
+    aimless = case.gear_pair[0].model_copy(update={"relief_aim": ReliefAim(peak_to_peak=True)})
+    (chosen,) = relief_aims(case.model_copy(update={"gear_pair": (aimless,)}), given.pairs, housing=given.housing)
+    assert chosen == PeakToPeak()
 
 
 def level(aim: SensorLevel, pair: LoadedGearPair) -> float:

@@ -87,6 +87,7 @@ def test_a_tone_keeps_its_level_away_from_the_ends_which_are_quiet() -> None:
     assert np.abs(20.0 * np.log10(amplitude(heard, late) / steady)).max() < 0.1
 
 
+@pytest.mark.slow
 def test_a_load_that_rises_is_no_sound() -> None:
     """A ramp from 0 to 2 kN under a tone of 1 N: its step at the end would be a click."""
     times = _INTERVAL * np.arange(_COUNT)

@@ -91,6 +91,7 @@ def test_a_record_of_broken_turns_sounds_as_one_of_whole_turns() -> None:
     assert np.diff(sorted(line.frequency_hz for line in found.values())).min() > 40.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("revolutions", [24.0, 24.37])
 def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
     result = quick_run(revolutions)

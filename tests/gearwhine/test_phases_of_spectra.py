@@ -4,6 +4,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
 
 import gearwhine as gw
@@ -33,6 +34,7 @@ def line(data: Any, harmonic: int) -> complex:
     return amplitude * complex(np.exp(1j * phase))
 
 
+@pytest.mark.slow
 def test_a_line_is_the_cosine_on_the_axis_of_its_history() -> None:
     data = run(4.0)
     assert data["mesh_force_spectrum"].attrs["window"] == "uniform"

@@ -188,6 +188,7 @@ def test_a_page_does_what_every_page_does(browser: Browser, pages: dict[str, Pat
     look_at(browser, pages[form], interactive=form == "interactive")
 
 
+@pytest.mark.slow
 def test_the_policy_of_the_page_stops_a_script_and_a_request(browser: Browser, pages: dict[str, Path]) -> None:
     # What the assertions above rely on: both are noticed.
     page = pages["static"].read_text(encoding="utf-8")

@@ -89,6 +89,7 @@ def long_run(solved: SolvedTransient, orders: dict[float, float]) -> SolvedTrans
     return replace(solved, turning=turning, signals=replace(solved.signals, histories=histories))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("teeth", "within"), [((27, 29), 0.01), ((26, 30), 1e-4)])
 def test_a_long_run_has_every_order_at_its_amplitude(teeth: tuple[int, int], within: float) -> None:
     """Of 26/30 teeth 15 turns are whole ones of both shafts, and each order is a line; of 27/29 it lies between."""
@@ -158,6 +159,7 @@ def with_sensor(solved: SolvedTransient) -> SolvedTransient:
     )
 
 
+@pytest.mark.slow
 def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
     """An order that rises with the speed is highest at the limit; a mesh force goes on to the end of the run."""
     case, solved = run_up((27, 29), 0.06)
@@ -211,6 +213,7 @@ def words(document: dict[str, Any]) -> str:
     return " | ".join([*headings, *(table.caption for table in tables), *(p for p in content if isinstance(p, str))])
 
 
+@pytest.mark.slow
 def test_peaks_of_a_run_are_the_highest_of_its_orders() -> None:
     """Not lines of the whole record, in which an order is smeared over all frequencies that it passes."""
     case, solved = run_up((27, 29), 0.06)

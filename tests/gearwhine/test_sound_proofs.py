@@ -56,6 +56,7 @@ def test_an_estimate_has_no_proof_and_a_face_no_inside() -> None:
             assert balance != 0.0
 
 
+@pytest.mark.slow
 def test_every_mode_that_radiates_is_held_against_the_pressure_inside(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(radiation, "LEAK", 0.0)
     result = gw.load("steel-box", COARSE).sound()

@@ -31,6 +31,7 @@ def document(solved: SolvedSound) -> dict[str, Any]:
     return {"command": "sound", "title": "box", "warnings": []} | sound_document(solved)
 
 
+@pytest.mark.slow
 def test_shorter_edges_move_no_line_by_more_than_a_fifth_of_a_decibel(solved: SolvedSound) -> None:
     study = gw.load("steel-box", COARSE)
     housing = solve_housing(study.case)

@@ -199,6 +199,7 @@ def test_decay_of_disturbances_by_the_floquet_multiplier() -> None:
     assert _decay(1.0, 0.02) == "the slowest disturbance stays"
 
 
+@pytest.mark.slow
 def test_a_motor_and_its_load_leave_the_steady_motion_as_it_is() -> None:
     """A free run and a run-up have the steady motion of their speed and torque of operation."""
     few = {"rotor.*.modes": 2}

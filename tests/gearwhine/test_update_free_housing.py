@@ -85,6 +85,7 @@ def test_rigid_modes_are_left_out_and_counted(all_modes: FloatArray, design: Hou
     assert len(design.shapes) == len(design.state.seats) == len(design.state.skin) == MODES - RIGID
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("modes", [MODES, 12])
 def test_uncertainties_are_those_of_the_measured_modes(
     measured: FloatArray, slopes: FloatArray, all_modes: FloatArray, modes: int

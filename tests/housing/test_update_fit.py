@@ -283,6 +283,7 @@ class Common:
         return self.surrogate().at(self.coordinates).state
 
 
+@pytest.mark.slow
 def test_the_null_test_tells_a_model_that_fits_anything_from_one_that_does_not() -> None:
     target = target_at([100.0, 200.0, 300.0], noise=0.005)
     few = Effort(starts=4)

@@ -160,7 +160,11 @@ class Gear:
     rim_thickness : float or None
         Thickness from the root circle to the inside of the rim [m]; None for a disc without a rim.
     web_thickness : float or None
-        Width of the disc between rim and bore [m]; None for a rim alone.
+        Width of the disc between rim and hub [m]; None for a rim alone.
+    hub_diameter : float or None
+        Outer diameter of the hub around the bore [m]; None for a web that begins at the bore.
+    hub_width : float or None
+        Width of the hub [m]; None for that of the face.
     tooth_thinning : float
         Reduction of the tooth thickness below that of the profile shift, for backlash: in the normal section, along
         the reference circle [m].
@@ -201,6 +205,8 @@ class Gear:
     web_thickness: float | None = None
     tooth_thinning: float = 0.0
     allow_undercut: bool = False
+    hub_diameter: float | None = None
+    hub_width: float | None = None
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
@@ -388,7 +394,12 @@ class Gear:
         if inside is None:
             return (BlankRing(self.face_width, self.pitch_radius, bore_radius),)
         rim = BlankRing(self.face_width, self.pitch_radius, inside)
-        return (rim,) if self.web_thickness is None else (rim, BlankRing(self.web_thickness, inside, bore_radius))
+        if self.web_thickness is None:
+            return (rim,)
+        if self.hub_diameter is None:
+            return rim, BlankRing(self.web_thickness, inside, bore_radius)
+        hub = BlankRing(self.hub_width or self.face_width, 0.5 * self.hub_diameter, bore_radius)
+        return rim, BlankRing(self.web_thickness, inside, hub.outer_radius), hub
 
     @property
     def inertia(self) -> Inertia:
@@ -442,7 +453,7 @@ def _check_numbers(gear: Gear) -> None:
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0)
     for quantity in ("profile_shift", "eccentricity_phase", "helix_angle"):
         require_finite(label + quantity, getattr(gear, quantity))
-    for quantity in ("rim_thickness", "web_thickness"):
+    for quantity in ("rim_thickness", "web_thickness", "hub_diameter", "hub_width"):
         if getattr(gear, quantity) is not None:
             require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     if gear.root_radius is not None:
@@ -481,6 +492,18 @@ def _check_body(gear: Gear) -> None:
         raise GearError(
             f"{label}web_thickness {gear.web_thickness * 1e3:.4g} mm must be at most the face width, "
             f"{gear.face_width * 1e3:.4g} mm"
+        )
+    if gear.hub_diameter is not None:
+        if gear.web_thickness is None or inside is None:
+            raise GearError(f"{label}hub_diameter needs a web_thickness: without a web there is no hub")
+        if not 0.0 < gear.bore < gear.hub_diameter < 2.0 * inside:
+            raise GearError(
+                f"{label}hub_diameter {gear.hub_diameter * 1e3:.4g} mm must be between a bore, "
+                f"{gear.bore * 1e3:.4g} mm, and the inside of the rim, {2e3 * inside:.4g} mm"
+            )
+    if gear.hub_width is not None and (gear.hub_diameter is None or gear.hub_width < (gear.web_thickness or 0.0)):
+        raise GearError(
+            f"{label}hub_width {gear.hub_width * 1e3:.4g} mm needs a hub_diameter, and at least the width of the web"
         )
 
 

@@ -171,7 +171,8 @@ class GearPairGeometry:
         # Of a face that is narrower than the decay the ends are not independent.
         width = min(gear.face_width, self.face_width / (1.0 - min(gain / self.face_width, 0.5)))
         web = gear.web_thickness
-        return replace(gear, face_width=width, web_thickness=None if web is None else min(web, width))
+        hub = None if gear.hub_diameter is None else gear.hub_width or gear.face_width
+        return replace(gear, face_width=width, web_thickness=None if web is None else min(web, width), hub_width=hub)
 
     @cached_property
     def backlash_free_pressure_angle(self) -> float:

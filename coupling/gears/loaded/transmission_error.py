@@ -250,18 +250,46 @@ def transmission_error_phasors(mesh: LoadedMesh, count: int, periods: int = 1) -
     GearError
         Where the phases do not lie in these periods, ascending.
     """
-    phases, values = mesh.phases, mesh.transmission_error
+    return polygon_phasors(mesh.phases, mesh.transmission_error, np.arange(1, count + 1), periods)
+
+
+def polygon_phasors(phases: FloatArray, values: FloatArray, orders: npt.ArrayLike, periods: int = 1) -> ComplexArray:
+    """Complex amplitudes c of curves that repeat with the mesh, exact for the polygon through their points.
+
+    At the phase p a curve is its mean plus Re Σ c e^{2πi r p} over the orders r.
+
+    Parameters
+    ----------
+    phases : ndarray, shape (n,)
+        Mesh periods, ascending, within the period of the curves.
+    values : ndarray, shape (n,) or (n, m)
+        One curve or m.
+    orders : array_like, shape (r,)
+        Multiples of the mesh frequency, not 0: whole ones over ``periods``.
+    periods : int
+        Mesh periods after which the curves repeat.
+
+    Returns
+    -------
+    ndarray of complex, shape (r,) or (m, r)
+
+    Raises
+    ------
+    GearError
+        Where the phases do not lie in these periods, ascending.
+    """
     if phases[-1] - phases[0] >= periods or np.any(np.diff(phases) <= 0.0):
         span = "one mesh period" if periods == 1 else f"{periods} mesh periods"
         raise GearError(f"harmonics: phases of {span} are needed, ascending and without its end")
     x = np.append(phases, phases[0] + periods)
-    y = np.append(values, values[0])
-    w = 2.0 * np.pi * np.arange(1, count + 1)[:, None]
+    y = np.concatenate([values, values[:1]]).T[..., None, :]
+    w = 2.0 * np.pi * np.asarray(orders, dtype=np.float64)[:, None]
     phasor = np.exp(-1j * w * x)
     # Integral of a straight segment times e^{-iwx}, by parts.
     slope = np.diff(y) / np.diff(x)
-    integral = ((y * phasor)[:, :-1] - (y * phasor)[:, 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
-    return np.asarray(2.0 / periods * integral.sum(axis=1))
+    moved = y * phasor
+    integral = (moved[..., :-1] - moved[..., 1:]) / (1j * w) + slope * (phasor[:, 1:] - phasor[:, :-1]) / w**2
+    return np.asarray(2.0 / periods * integral.sum(axis=-1))
 
 
 _AT_ONCE = 1000

@@ -523,7 +523,12 @@ def body_rings(gear: Gear) -> tuple[Annulus, ...]:
             f"gear {gear.name!r}: the inside of the rim ({gear.rim_inner_radius * 1e3:.4g} mm radius) must be outside "
             f"the circle where the body is held ({hub * gear.root_circle_radius * 1e3:.4g} mm); leave out the rim"
         )
-    return Annulus(hub, inside, gear.web_thickness), Annulus(inside, 1.0, gear.face_width)
+    rim = Annulus(inside, 1.0, gear.face_width)
+    if gear.hub_diameter is None:
+        return Annulus(hub, inside, gear.web_thickness), rim
+    around = 0.5 * gear.hub_diameter / gear.root_circle_radius
+    boss = Annulus(hub, around, gear.hub_width or gear.face_width)
+    return boss, Annulus(around, inside, gear.web_thickness), rim
 
 
 def _hold(gear: Gear) -> float:

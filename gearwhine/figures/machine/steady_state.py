@@ -40,6 +40,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN = 46.0, 6.0  # height of a branch's panels, and gap between them [mm]
 _ROW, _ROW_GAP, _FIRST = 42.0, 18.0, 5.0  # height of a motion's rows, gaps between them and above the first [mm]
+_SUM_POINTS = 2000  # times of a sum of motions
 _MOST_TEETH, _FEW_TEETH = 24, 6  # largest number of mesh periods drawn, and the number drawn of longer periods
 _COLUMNS = 2  # columns of the names of excitations
 _UNSTABLE = (0, (3, 2))
@@ -172,19 +173,30 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
             left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
             _spectrum(right, (stable or list(solved.motions))[:1], name)
         else:
-            curves, span = [], "one period"
-            for motion, color in zip(solved.motions, SERIES * len(solved.motions), strict=False):
-                force = motion.histories.mesh_force[name]
-                part = np.arange(len(force)) / len(force)
-                label = name_in_legend(motion.excitation, 40)
-                curves += left.plot(part, force, color=color, lw=0.9, label=label)
-            handles = handles or list(curves)
-            left.set(xlabel="part of each motion's period", xlim=(0.0, 1.0))
+            end, span = _FEW_TEETH / meshes[number], f"the sum of all over {_FEW_TEETH} mesh periods"
+            times = np.linspace(0.0, end, _SUM_POINTS)
+            left.plot(MILLI * times, _sum_of(solved, name, times), color=INK, lw=0.9)
+            left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
+            handles = handles or [
+                Line2D([], [], color=color, lw=1.2, label=name_in_legend(motion.excitation, 40))
+                for motion, color in zip(solved.motions, SERIES * len(solved.motions), strict=False)
+            ]
             _spectrum(right, list(solved.motions), name)
         left.set_ylabel("mesh force [N]")
         panel_title(left, f"{name}: {span}")
     legend_below(figure, handles, _COLUMNS)
     return figure
+
+
+def _sum_of(solved: SolvedSteady, name: str, times: FloatArray) -> FloatArray:
+    """Return the force of a mesh under all superposed excitations at some times [s], each motion with its period."""
+    forces = [
+        np.interp(times, motion.histories.times, motion.histories.mesh_force[name], period=motion.response.period)
+        for motion in solved.motions
+    ]
+    # Each motion has the mean force.
+    means = [float(motion.histories.mesh_force[name].mean()) for motion in solved.motions]
+    return np.asarray(np.sum(forces, axis=0) - np.sum(means) + np.mean(means))
 
 
 def _spectrum(axes: Axes, motions: list[SteadyMotion], name: str) -> None:

@@ -55,6 +55,7 @@ KIND_COLORS = {
     "torsion": SERIES[2],
     "mesh": RED,
     "axial": SERIES[3],
+    "body": SERIES[5],
     "pedestal": SERIES[7],
     "residual": "#c9ced3",
 }

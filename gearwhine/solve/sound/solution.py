@@ -5,7 +5,7 @@ The bearings' forces move the housing at each line (:mod:`gearwhine.solve.sound.
 :class:`housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coupling import CoupledMachine
+from coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
 from coupling.signals.line_names import line_names
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.output.quantity import warning
@@ -63,6 +64,7 @@ from housing.errors import TriangleSizeError
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+_TWO_PI = 2.0 * np.pi
 _ROUGH = 0.06  # relative error of an interpolation, half a decibel
 
 
@@ -82,6 +84,9 @@ class SoundLine:
         Sound pressure [Pa].
     microphone_errors : ndarray or None, shape (n_microphones,)
         Error of known sources there, see :func:`gearwhine.solve.sound.proofs.known_source_at`.
+    mechanism_powers : dict of str to float
+        Equivalent radiated power of the motion by each mechanism alone [W], linear about the mean load, see
+        :mod:`coupling.linear.line_mechanisms`.
     """
 
     frequency_hz: float
@@ -90,6 +95,7 @@ class SoundLine:
     sound: RadiatedSound
     microphones: ComplexArray
     microphone_errors: FloatArray | None = None
+    mechanism_powers: dict[str, float] = field(default_factory=dict)
 
     @property
     def level_db(self) -> float:
@@ -426,12 +432,16 @@ def solve_sound(
     )
     chosen = loud_lines(motion.frequencies, estimate, limit, case.acoustics.lines)
     names = line_names(machine, motion.frequencies[chosen].tolist(), motion.tolerance, None)
+    mechanisms = LineMechanisms(machine)
 
     def of_line(place: int) -> SoundLine:
         number, hertz = chosen[place], float(motion.frequencies[chosen[place]])
         sound = radiation.solve(hertz, rates[number].T)
         heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
-        return SoundLine(hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, places))
+        powers = _mechanism_powers(mechanisms, radiation, _TWO_PI * hertz, _TWO_PI * motion.tolerance)
+        return SoundLine(
+            hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, places), powers
+        )
 
     lines = in_order(of_line, range(len(chosen)), "sound of the lines", progress)
     warnings += require_proofs([line.sound for line in lines])
@@ -444,6 +454,21 @@ def solve_sound(
         left_out=left_out_lines(machine, motion, estimate, chosen, limit, highest_estimated(case, housing)),
         told=tuple(warnings),
     )
+
+
+def _mechanism_powers(
+    mechanisms: LineMechanisms, radiation: HousingRadiation, frequency: float, within: float
+) -> dict[str, float]:
+    """Equivalent radiated power of the housing's motion by each mechanism at a line [rad/s], by name [W]."""
+    housing = mechanisms.machine.housing
+    assert housing is not None
+    rows = mechanisms.machine.rows(housing.name, np.eye(housing.size))
+    powers: dict[str, float] = {}
+    for at, motions in mechanisms.motions(frequency, within):
+        rates = 1j * at * rows @ np.stack([*motions.values()], axis=1)
+        for name, power in zip(motions, radiation.equivalent_power(rates).tolist(), strict=True):
+            powers[name] = powers.get(name, 0.0) + power
+    return {name: powers[name] for name in MECHANISMS if name in powers}
 
 
 def highest_estimated(case: Case, housing: SolvedHousing) -> float:

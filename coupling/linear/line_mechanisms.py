@@ -1,0 +1,305 @@
+r"""Mechanisms of spectral lines: what excites a machine at a frequency, and the part of a sensor's line by each.
+
+About the mean load the motion at a frequency ω is linear in what excites it (:mod:`coupling.linear.mesh_harmonics`),
+
+    (K + iω C - ω² I) q = Σ f_m,      a_m = -ω² s · q_m,
+
+s the row of a sensor, f_m the load of the mechanism m:
+
+- ``transmission_error``: k e d at the harmonics of a mesh, e those of the loaded transmission error of teeth that are
+  all alike: of their shape, deflection and changing number in contact;
+- ``load_shuttling``: the moments of a load that moves along the face (:mod:`coupling.machine.load_shuttling`);
+- ``friction``: Coulomb's friction on the flanks under the mean force, which reverses at the pitch point
+  (:mod:`coupling.machine.tooth_friction`);
+- ``pitch_errors``: k e d of what differs between teeth, by pitch deviations and damage, at the harmonics of the hunting
+  period, e the loaded transmission error less that of teeth that are alike; and (k + iω c) e d by the runout of gears;
+- ``unbalance``, ``shaft_bow``, ``torque_ripple``, ``base_motion``: as given.
+
+The parts add up with their phases to the line of the linear model. A motion has other lines than that where flanks
+part, where the mesh stiffness that changes with the phase meets large vibration (parametric excitation), and where a
+bearing's law bends within the motion.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from coupling.assembly import CoupledMachine
+from coupling.gears import ToothContact
+from coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    hunting_period_mesh,
+    loaded_transmission_error,
+    mesh_period_phases,
+    polygon_phasors,
+)
+from coupling.linear.mesh_harmonics import MeshHarmonicModel
+from coupling.machine.connectors import ContactConnector
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+MECHANISMS = (
+    "transmission_error",
+    "load_shuttling",
+    "friction",
+    "pitch_errors",
+    "unbalance",
+    "shaft_bow",
+    "torque_ripple",
+    "base_motion",
+    "load",
+)
+"""Mechanisms in the order in which they are told; ``load`` is a harmonic load of another kind."""
+
+_POINTS = 200  # number of phases of a mesh period, as in the mean mesh
+_SAME = 1e-6  # relative difference of frequencies that are one
+_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
+_BESIDE = 1e-9  # distance of a phase from a step [mesh periods]
+
+
+@dataclass(frozen=True)
+class LineParts:
+    """Amplitudes of a sensor's line by the mechanisms.
+
+    Attributes
+    ----------
+    amplitudes : dict of str to float
+        Amplitude by each mechanism alone, in the order of `MECHANISMS` [m/s²].
+    shares : dict of str to float
+        Part of the sum in phase with it; shares add up to 1.
+    together : float
+        Amplitude of the sum [m/s²].
+    """
+
+    amplitudes: dict[str, float]
+    shares: dict[str, float]
+    together: float
+
+    @classmethod
+    def of(cls, groups: Sequence[Mapping[str, complex]]) -> "LineParts":
+        """Return the parts by complex amplitudes; groups of different frequencies add by their squares."""
+        found = [mechanism for mechanism in MECHANISMS if any(mechanism in group for group in groups)]
+        sums = [sum(group.values()) for group in groups]
+        power = sum(abs(total) ** 2 for total in sums) or 1.0
+        of = {name: np.array([group.get(name, 0.0) for group in groups]) for name in found}
+        return cls(
+            {name: float(np.linalg.norm(values)) for name, values in of.items()},
+            {name: float((values @ np.conj(sums)).real / power) for name, values in of.items()},
+            float(np.linalg.norm(sums)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class LineMechanisms:
+    """Loads that excite a machine about its mean load at a frequency, by mechanism.
+
+    Attributes
+    ----------
+    machine : CoupledMachine
+        Assembled about its operating point.
+    base_rows : mapping of str to ndarray, shape (6,)
+        Acceleration of the place of each sensor along it by unit accelerations of the base, for sensors that show
+        motion in space.
+    """
+
+    machine: CoupledMachine
+    base_rows: Mapping[str, FloatArray] | None = None
+
+    @cached_property
+    def model(self) -> MeshHarmonicModel:
+        """Linear model about the mean load."""
+        return MeshHarmonicModel(self.machine)
+
+    def loads(self, frequency: float, within: float = 0.0) -> list[tuple[float, dict[str, ComplexArray]]]:
+        """Return the loads near a frequency, those of one frequency together.
+
+        Parameters
+        ----------
+        frequency : float
+            ω > 0 [rad/s].
+        within : float
+            Distance up to which an excitation is at the line [rad/s], at least a small part of ω.
+
+        Returns
+        -------
+        list of (float, dict of str to ndarray of complex, shape (n,))
+            Frequency of the excitation [rad/s], and f of each of its mechanisms with their phases at t = 0.
+        """
+        together: list[tuple[float, dict[str, ComplexArray]]] = []
+        reach = max(within, _SAME * frequency)
+        for at, mechanism, load in self._sources(frequency, reach):
+            if not np.any(load):
+                continue
+            place = next((known for w, known in together if abs(w - at) <= _SAME * at), None)
+            if place is None:
+                place = {}
+                together.append((at, place))
+            place[mechanism] = place.get(mechanism, 0.0) + load
+        return together
+
+    def motions(self, frequency: float, within: float = 0.0) -> list[tuple[float, dict[str, ComplexArray]]]:
+        """Motions q by the mechanisms, shape (n,) each; frequencies and parameters as of `loads`."""
+        solved = []
+        for at, loads in self.loads(frequency, within):
+            moved = linalg.solve(self.model.dynamic_stiffness(at), np.stack([*loads.values()], axis=1)).T
+            solved.append((at, dict(zip(loads, moved, strict=True))))
+        return solved
+
+    def parts(self, frequency: float, within: float = 0.0) -> dict[str, LineParts]:
+        """Amplitudes of acceleration of each sensor's line by the mechanism, and that of their sum.
+
+        Excitations of different frequencies, which the line does not resolve, add by their squares.
+
+        Parameters
+        ----------
+        frequency, within : float
+            As of `loads`.
+
+        Returns
+        -------
+        dict of str to LineParts
+            By sensor; nothing where nothing excites.
+        """
+        by_sensor: dict[str, list[dict[str, complex]]] = {name: [] for name in self.machine.sensor_rows}
+        for at, motions in self.motions(frequency, within):
+            for name, row in self.machine.sensor_rows.items():
+                values = {mechanism: complex(-(at**2) * (row @ q)) for mechanism, q in motions.items()}
+                if "base_motion" in values:
+                    values["base_motion"] += self._of_base(name, at)
+                by_sensor[name].append(values)
+        return {name: LineParts.of(groups) for name, groups in by_sensor.items() if groups}
+
+    def _of_base(self, sensor: str, frequency: float) -> complex:
+        """Acceleration of the place of a sensor with a base that moves at a frequency [m/s²]."""
+        base = self.machine.loads.base
+        if base is None or self.base_rows is None:
+            return 0.0
+        return complex(base.harmonic_amplitude(frequency) @ self.base_rows[sensor])
+
+    def _sources(self, frequency: float, reach: float) -> Iterator[tuple[float, str, ComplexArray]]:
+        """Yield frequency [rad/s], mechanism and load of every excitation within a reach of a frequency."""
+        for number in self.model.loaded:
+            yield from self._of_contact(number, frequency, reach)
+        for number, contact in enumerate(self.machine.system.contacts):
+            for at, load in self._runout(number, contact):
+                if abs(at - frequency) <= reach:
+                    yield at, "pitch_errors", load
+        for harmonic in self.machine.system.harmonic_loads:
+            at = abs(harmonic.frequency)
+            if at > 0.0 and abs(at - frequency) <= reach:
+                # F = Re(a e^{iwt}) of a negative w is Re(conj(a) e^{i|w|t}).
+                amplitude = harmonic.amplitude if harmonic.frequency > 0.0 else harmonic.amplitude.conj()
+                yield at, harmonic.mechanism, amplitude
+
+    def _of_contact(self, number: int, frequency: float, reach: float) -> Iterator[tuple[float, str, ComplexArray]]:
+        """Yield what a loaded contact excites near a frequency by its phase."""
+        contact, stiffness = self.machine.system.contacts[number], self.model.contact.stiffness[number]
+        rate = 2.0 * np.pi * abs(contact.mesh_frequency)
+        order = round(frequency / rate)
+        alike, friction = self._alike[number]
+        if order > 0 and abs(order * rate - frequency) <= reach:
+            error = _at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
+            if abs(error[0]) > _ROUNDING * np.abs(alike.transmission_error).max():
+                yield order * rate, "transmission_error", stiffness * error[0] * contact.direction
+            if friction is not None and contact.sliding is not None:
+                shares = _at_time_zero(polygon_phasors(alike.phases, friction, [order]), contact, order)
+                yield order * rate, "friction", -contact.sliding.directions @ shares[:, 0]
+        periods = contact.contact.hunting_period
+        if periods == 1:
+            return
+        order = round(frequency / rate * periods)
+        # Closer harmonics of the hunting period than the line resolves make no single line.
+        if order > 0 and abs(order / periods * rate - frequency) <= reach and reach < 0.5 * rate / periods:
+            every, same = self._hunting[number]
+            at = order / periods
+            error = polygon_phasors(every.phases, every.transmission_error, [at], periods)
+            if order % periods == 0:
+                error = error - polygon_phasors(same.phases, same.transmission_error, [at])
+            error = _at_time_zero(error, contact, at)
+            if abs(error[0]) > _ROUNDING * np.abs(every.transmission_error).max():
+                yield at * rate, "pitch_errors", stiffness * error[0] * contact.direction
+
+    def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, ComplexArray]]:
+        """Yield frequency [rad/s] and load (k + iω c) e d of each harmonic of a contact's runout."""
+        state = self.model.contact
+        for amplitude, frequency, phase in contact.errors.tolist():
+            at = abs(frequency)
+            if at > 0.0 and amplitude != 0.0 and state.stiffness[number] > 0.0:
+                error = amplitude * np.exp(1j * phase * np.sign(frequency))
+                yield at, (state.stiffness[number] + 1j * at * state.damping[number]) * error * contact.direction
+
+    @cached_property
+    def _alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
+        """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
+
+        The friction is μ F (A, B) [N], shape (n, 2), see `coupling.machine.tooth_friction.friction_of`.
+        """
+        force, meshes = self._force, {}
+        for number in self.model.loaded:
+            contact = self.machine.system.contacts[number]
+            law = teeth_alike(contact.contact)
+            phases = mesh_period_phases(law, _POINTS)
+            if contact.sliding is not None:
+                steps = np.array(contact.sliding.friction.event_phases)
+                phases = np.unique(np.concatenate([phases, (steps - _BESIDE) % 1.0, (steps + _BESIDE) % 1.0]))
+            mesh = loaded_transmission_error(law, force[number], phases)
+            meshes[number] = (mesh, _friction(replace(contact, contact=law), mesh))
+        return meshes
+
+    @cached_property
+    def _hunting(self) -> dict[int, tuple[LoadedMesh, LoadedMesh]]:
+        """Mesh of every loaded contact over its hunting period, and with teeth alike at the same phases of a period."""
+        meshes = {}
+        for number in self.model.loaded:
+            law, force = self.machine.system.contacts[number].contact, self._force[number]
+            if law.hunting_period > 1:
+                meshes[number] = (hunting_period_mesh(law, force), hunting_period_mesh(teeth_alike(law), force))
+        return meshes
+
+    @property
+    def _force(self) -> list[float]:
+        """Mean force of every contact [N]."""
+        force = self.model.contact.force
+        assert force is not None
+        return [float(value) for value in force]
+
+
+def teeth_alike(contact: ToothContact) -> ToothContact:
+    """Return a contact law without pitch deviations and damaged teeth."""
+    if contact.hunting_period == 1:
+        return contact
+    nothing, sound = np.zeros(0), np.zeros(0, dtype=np.int64)
+    return replace(
+        contact,
+        pitch_gaps=nothing,
+        back_pitch_gaps=nothing,
+        variants=(),
+        pair_variants=sound,
+        back_pair_variants=sound,
+    )
+
+
+def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
+    """Friction force of a contact by the phase under its mean force, shape (n, 2) [N]; None without friction."""
+    if contact.sliding is None:
+        return None
+    from coupling.gears.contact.tooth_force_kernels import friction_history
+
+    sliding = contact.sliding.friction
+    law, by_slices = contact.friction_law
+    compression = np.ascontiguousarray(mesh.transmission_error)
+    shares = friction_history(mesh.phases, compression, law, by_slices, sliding.pitch_point, sliding.path_end)
+    sense = np.sign(contact.sliding.nominal[1])
+    return np.asarray(sense * sliding.coefficient * mesh.force * shares)
+
+
+def _at_time_zero(phasors: ComplexArray, contact: ContactConnector, order: float) -> ComplexArray:
+    """Return phasors by the mesh phase as those at t = 0, by e^{iωt} with ω > 0."""
+    if contact.mesh_frequency < 0.0:
+        phasors = phasors.conj()
+    return np.asarray(phasors * np.exp(2j * np.pi * np.sign(contact.mesh_frequency) * order * contact.phase))
