@@ -1,12 +1,14 @@
 """Swept keys: the speeds of ``[sweep]``, and ``--over key.path=from:to:n`` or ``=a,b,c``.
 
 Keys with commas between move together, and ``*`` stands for every entry: ``--over bearing.*.stiffness.xx,
-bearing.*.stiffness.yy=1e7:1e9:5``.
+bearing.*.stiffness.yy=1e7:1e9:5``. A key with a factor behind it, ``KEY*-1``, takes the values times that: ``--over
+"gear.pinion.helix_angle, gear.wheel.helix_angle*-1=12 deg:16 deg:5"`` keeps the gears of a pair of opposite hand.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
@@ -54,12 +56,20 @@ class SweptKey:
     @property
     def keys(self) -> tuple[str, ...]:
         """The key paths that move together."""
-        return tuple(_divided(self.key, ","))
+        return tuple(key for key, _ in self._factors)
 
     @property
     def overrides(self) -> tuple[tuple[str, ...], ...]:
         """``key.path=value`` of every key, for each value."""
-        return tuple(tuple(f"{key}={text}" for key in self.keys) for text in self.texts)
+        return tuple(
+            tuple(f"{key}={text if factor == 1 else _times(text, factor)}" for key, factor in self._factors)
+            for text in self.texts
+        )
+
+    @property
+    def _factors(self) -> tuple[tuple[str, Decimal], ...]:
+        """Key paths with the factors by which they take the values."""
+        return tuple(map(_with_factor, _divided(self.key, ",")))
 
 
 def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
@@ -131,9 +141,15 @@ def parse_over(text: str) -> SweptKey:
     """
     key, equals, values = text.partition("=")
     key = ",".join(part.strip() for part in _divided(key, ","))
-    if not equals or not all(map(parse_key_path, _divided(key, ","))) or not values.strip():
+    factors = dict(map(_with_factor, _divided(key, ",")))
+    if not equals or not all(map(parse_key_path, factors)) or not values.strip():
         raise _wrong(text, _EXPECTED)
+    if all(factor != 1 for factor in factors.values()):
+        raise _wrong(text, "one key at least without a factor, which has the values as they stand")
     ends = _divided(values, ":")
+    multiplied = any(factor != 1 for factor in factors.values())
+    if len(ends) == 1 and multiplied and _in_one_unit(_divided(values, ",")) is None:
+        raise _wrong(text, "numbers that measure the same as values of keys with factors")
     if len(ends) == 1:
         return _listed(text, key, _divided(values, ","))
     if len(ends) != 3:
@@ -196,6 +212,19 @@ def _written(number: Decimal, unit: str) -> str:
     whole = number == number.to_integral_value() and abs(number) < Decimal(10) ** _DIGITS
     digits = f"{int(number)}" if whole else f"{number:f}" if abs(number) > Decimal("1e-6") else f"{float(number)!r}"
     return f"{digits} {unit}" if unit else digits
+
+
+def _with_factor(text: str) -> tuple[str, Decimal]:
+    """Split ``KEY*FACTOR`` into key path and factor, which is 1 where none stands there."""
+    found = re.fullmatch(r"(.*[^.\s])\s*\*\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)", text)
+    return (text, Decimal(1)) if found is None else (found[1], Decimal(found[2]))
+
+
+def _times(text: str, factor: Decimal) -> str:
+    """Return a value with its unit times a factor."""
+    parts = units.split_quantity(text)
+    assert parts is not None
+    return _written(_rounded(parts[0] * factor), parts[1])
 
 
 def _divided(text: str, mark: str) -> list[str]:

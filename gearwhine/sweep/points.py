@@ -41,6 +41,9 @@ class Point:
         Name of its file.
     duration : float
         Duration of its transient [s].
+    refusal : str
+        Why the case with these values is no machine; empty for one that can be solved. ``case`` is then that of the
+        sweep.
     """
 
     place: tuple[int, ...]
@@ -51,10 +54,14 @@ class Point:
     housing_key: str | None
     file: str
     duration: float
+    refusal: str = ""
 
 
 def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, ...]:
     """Return every point of the grid, the last key fastest.
+
+    A combination of values that makes an impossible machine, such as gears that overlap, is refused by itself, and the
+    grid goes on. A value that its own key does not take is an error.
 
     Parameters
     ----------
@@ -66,23 +73,26 @@ def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, .
     Raises
     ------
     CaseError
-        With the problems of all points, each once.
+        With the problems of all points, each once, where a value is wrong by itself or no point can be solved.
     """
     grid = list(product(*(range(len(key.texts)) for key in keys)))
     stems = file_stems([_described(keys, place) for place in grid])
-    points, problems = list[Point](), dict[Problem, None]()
+    points, problems, wrong = list[Point](), dict[Problem, None](), False
     for place, stem in zip(grid, stems, strict=True):
         overrides = [override for key, index in zip(keys, place, strict=True) for override in key.overrides[index]]
         try:
             case = source.changed(overrides).case
             require(case, "rotor", "operation", "transient", command="sweep")
+            refusal = ""
         except CaseError as error:
-            for problem in error.problems:
-                problems[_of_the_sweep(problem, overrides)] = None
-        else:
-            texts = tuple(key.texts[index] for key, index in zip(keys, place, strict=True))
-            points.append(_point(place, texts, case, stem))
-    if problems:
+            told = [_of_the_sweep(problem, overrides) for problem in error.problems]
+            wrong = wrong or any(one.source != before.source for one, before in zip(told, error.problems, strict=True))
+            problems |= dict.fromkeys(told)
+            # Stands for the refused case where a point must have one.
+            case, refusal = source.changed([]).case, "; ".join(map(str, told))
+        texts = tuple(key.texts[index] for key, index in zip(keys, place, strict=True))
+        points.append(replace(_point(place, texts, case, stem), refusal=refusal))
+    if wrong or all(point.refusal for point in points):
         raise CaseError(problems)
     return tuple(points)
 

@@ -75,10 +75,11 @@ def run_sweep(
     """
     outcomes: dict[int, Outcome] = {}
     if not fresh:
-        stored = ((number, read_point(folder, point)) for number, point in enumerate(points))
+        stored = ((number, read_point(folder, point)) for number, point in enumerate(points) if not point.refusal)
         outcomes = {number: outcome for number, outcome in stored if isinstance(outcome, PointResult)}
     resumed = frozenset(outcomes)
-    todo = [number for number in range(len(points)) if number not in resumed]
+    outcomes |= {number: PointFailure(point.refusal) for number, point in enumerate(points) if point.refusal}
+    todo = [number for number in range(len(points)) if number not in outcomes]
     if todo:
         from gearwhine.sweep.warm_up import WarmUp
 
@@ -91,7 +92,7 @@ def run_sweep(
                 shared, uncached = _shared_housings([points[number] for number in todo], folder, progress, fresh=fresh)
                 if scheduler is None:
                     await_workers(client, workers)
-                report = _teller(len(points), len(resumed), progress)
+                report = _teller(len(points), len(outcomes), progress)
                 report(0)
                 futures = in_thread(lambda: _submitted(client, {number: points[number] for number in todo}, shared))
                 # The cache is written now, since the points need not wait for it.
@@ -101,7 +102,7 @@ def run_sweep(
                     outcomes[number] = outcome
                     write_point(folder, place, points[number], outcome)
                     report(count)
-    for path in outdated_points(folder, tuple(points)):
+    for path in outdated_points(folder, tuple(point for point in points if not point.refusal)):
         path.unlink(missing_ok=True)
     return tuple(SweptPoint(point, outcomes[number], number in resumed) for number, point in enumerate(points))
 

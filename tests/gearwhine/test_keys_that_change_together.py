@@ -51,6 +51,29 @@ def test_keys_with_commas_between_move_together() -> None:
         swept_keys(case, ["bearing.0.at,bearing.0.at=10 mm,12 mm"])
 
 
+def test_a_key_with_a_factor_takes_the_values_times_it() -> None:
+    loaded = load_case("helical-pair", ["transient.revolutions=2", "transient.discard=1"])
+    over = "gear.pinion.helix_angle, gear.wheel.helix_angle*-1=12 deg:16 deg:3"
+    keys = [key for key in swept_keys(loaded.case, [over]) if key.key != "operation.speed"]
+    (key,) = keys
+    assert key.keys == ("gear.pinion.helix_angle", "gear.wheel.helix_angle")
+    assert key.overrides[1] == ("gear.pinion.helix_angle=14 deg", "gear.wheel.helix_angle=-14 deg")
+    for wrong in ("gear.pinion.helix_angle*2=1 deg,2 deg", "rotor.0.material,rotor.1.material*2=steel,iron"):
+        with pytest.raises(CaseError, match="--over"):
+            swept_keys(loaded.case, [wrong])
+
+
+def test_a_point_that_makes_no_machine_is_refused_by_itself() -> None:
+    """At a centre distance of 93 mm a shaft of 120 mm runs through the other; the grid goes on."""
+    loaded = load_case("spur-pair", ["transient.revolutions=2", "transient.discard=1"])
+    keys = swept_keys(loaded.case, ["rotor.input.segments.*.diameter=30 mm,32 mm,190 mm"])
+    points = sweep_points(loaded.source, keys)
+    assert [bool(point.refusal) for point in points] == [False, False, True]
+    assert "190 mm" in points[2].refusal or "input" in points[2].refusal
+    with pytest.raises(CaseError):
+        sweep_points(loaded.source, swept_keys(loaded.case, ["rotor.input.segments.*.diameter=190 mm,200 mm"]))
+
+
 def test_a_shear_modulus_of_its_own_is_that_of_shafts_alone() -> None:
     steel = Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
     assert steel.is_isotropic
