@@ -24,6 +24,8 @@ from gearwhine.output.manifest import require_as_written
 LIMIT = 60.0  # seconds of a command
 SETS = ("transient.revolutions=6", "transient.discard=2")
 RUN = ("run", "spur-pair", "--no-pictures", *(word for text in SETS for word in ("--set", text)))
+SWEEP = ("sweep", "spur-pair", "--over", "operation.speed=1000 rpm,2000 rpm", "--workers", "1")
+SWEEP = (*SWEEP, *(word for text in SETS for word in ("--set", text)))
 READERS = {
     "export": ("export", "{}", "--csv"),
     "report": ("report", "{}"),
@@ -31,13 +33,15 @@ READERS = {
     "gears": ("gears", "spur-pair", "-o", "{}"),
     "load": ("load", "spur-pair", "-o", "{}"),
     "steady": ("steady", "spur-pair", "-o", "{}"),
+    "sweep": (*SWEEP, "-o", "{}"),
 }
 KILLED = {
     "run": (*RUN, "-o", "{}"),
-    "sweep": ("sweep", "spur-pair", "--over", "operation.speed=1000 rpm,2000 rpm", "--workers", "1", "-o", "{}"),
+    "sweep": (*SWEEP, "-o", "{}"),
     "load": ("load", "helical-pair", "-o", "{}"),
     "gears": ("gears", "spur-pair", "-o", "{}"),
     "report": ("report", "{}"),
+    "sound": ("sound", "steel-box", "--set", "acoustics={method='erp'}", "-o", "{}"),
 }
 NOTES = "notes.txt"
 
@@ -95,7 +99,7 @@ def damaged(count: int, chance: random.Random, sound: Path, folder: Path) -> int
         if not wrong and changed and reader in ("export", "report") and name.name != "report.html":
             # A later file of the same command's name is drawn anew; a reader says what it misses.
             wrong = "" if name.name in said else "silent"
-        if not wrong and reader in ("run", "gears", "load", "steady") and process.returncode:
+        if not wrong and reader in ("run", "gears", "load", "steady", "sweep") and process.returncode:
             wrong = f"does not do it anew: {said.strip()[-200:]}"
         if wrong:
             faults += 1

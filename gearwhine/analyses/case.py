@@ -102,8 +102,8 @@ def write_report(
     from gearwhine.results import chapters_of
     from gearwhine.results.first_page import first_page
 
-    read = (".json", ".nc", ".png") if interactive else (".json", ".png")
-    remarks = _checked(folder, lambda name: name.endswith((*read, "case.toml")))
+    # The page shows what the arrays hold, though without --interactive it does not read them.
+    remarks = _checked(folder, lambda name: name.endswith((".json", ".nc", ".png", "case.toml")))
     name, shapes = "report.html", None
     if interactive:
         from gearwhine.mode_pictures import moving_shapes

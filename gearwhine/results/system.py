@@ -614,7 +614,8 @@ def _mesh_sentence(mesh: Document) -> str:
 def mode_columns(modes: list[Document]) -> tuple[Column, ...]:
     """Columns of coupled modes: frequency, damping, kind, the shares of what moves, and what is strained most."""
     # Few machines have motions along the axis or pedestals: no columns of zeros for the others.
-    rare = [kind for kind in ("axial", "body", "pedestal") if any(mode["energy"][kind] > 0.0 for mode in modes)]
+    some = {kind for mode in modes for kind, share in mode["energy"].items() if share > 0.0}
+    rare = [kind for kind in ("axial", "body", "pedestal") if kind in some]
     kinds = ("housing", "rotor", "torsion", *rare, "residual", "mesh")
     return (
         *columns_of(MODE),
