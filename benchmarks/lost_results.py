@@ -96,7 +96,9 @@ def damaged(count: int, chance: random.Random, sound: Path, folder: Path) -> int
         process = command(READERS[reader], folder)
         said = process.communicate()[1]
         wrong = fault(process.returncode, said, time.monotonic() - begin)
-        if not wrong and changed and reader in ("export", "report") and name.name != "report.html":
+        # A picture that is gone is none of an export's concern.
+        concerns = reader == "report" or (reader == "export" and (kind, name.suffix) != ("missing", ".png"))
+        if not wrong and changed and concerns and name.name != "report.html":
             # A later file of the same command's name is drawn anew; a reader says what it misses.
             wrong = "" if name.name in said else "silent"
         if not wrong and reader in ("run", "gears", "load", "steady", "sweep") and process.returncode:
