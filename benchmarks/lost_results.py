@@ -41,7 +41,7 @@ KILLED = {
     "load": ("load", "helical-pair", "-o", "{}"),
     "gears": ("gears", "spur-pair", "-o", "{}"),
     "report": ("report", "{}"),
-    "sound": ("sound", "steel-box", "--set", "acoustics={method='erp'}", "-o", "{}"),
+    "sound": ("sound", "steel-box", "--set", "acoustics.method=erp", "-o", "{}"),
 }
 NOTES = "notes.txt"
 
