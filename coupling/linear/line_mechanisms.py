@@ -29,7 +29,6 @@ import numpy.typing as npt
 from scipy import linalg
 
 from coupling.assembly import CoupledMachine
-from coupling.gears import ToothContact
 from coupling.gears.loaded.transmission_error import (
     LoadedMesh,
     hunting_period_mesh,
@@ -242,7 +241,7 @@ class LineMechanisms:
         force, meshes = self._force, {}
         for number in self.model.loaded:
             contact = self.machine.system.contacts[number]
-            law = teeth_alike(contact.contact)
+            law = contact.contact.teeth_alike
             phases = mesh_period_phases(law, _POINTS)
             if contact.sliding is not None:
                 steps = np.array(contact.sliding.friction.event_phases)
@@ -258,7 +257,7 @@ class LineMechanisms:
         for number in self.model.loaded:
             law, force = self.machine.system.contacts[number].contact, self._force[number]
             if law.hunting_period > 1:
-                meshes[number] = (hunting_period_mesh(law, force), hunting_period_mesh(teeth_alike(law), force))
+                meshes[number] = (hunting_period_mesh(law, force), hunting_period_mesh(law.teeth_alike, force))
         return meshes
 
     @property
@@ -267,21 +266,6 @@ class LineMechanisms:
         force = self.model.contact.force
         assert force is not None
         return [float(value) for value in force]
-
-
-def teeth_alike(contact: ToothContact) -> ToothContact:
-    """Return a contact law without pitch deviations and damaged teeth."""
-    if contact.hunting_period == 1:
-        return contact
-    nothing, sound = np.zeros(0), np.zeros(0, dtype=np.int64)
-    return replace(
-        contact,
-        pitch_gaps=nothing,
-        back_pitch_gaps=nothing,
-        variants=(),
-        pair_variants=sound,
-        back_pair_variants=sound,
-    )
 
 
 def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:

@@ -202,11 +202,7 @@ def mesh_face(
     flanks = None
     z = stations
     if slices is not None:
-        none = np.zeros(0)
-        alike = none.astype(np.int64)
-        sound = replace(
-            contact, faces=slices, pitch_gaps=none, variants=(), pair_variants=alike, back_pair_variants=alike
-        )
+        sound = replace(contact.teeth_alike, faces=slices)
         flanks, z = FaceContact(sound, mesh.geometry, stations, line.axial), slices.z
     mean, slope = mean_and_slope(stations, z)
     compliance = mesh.driver.compliance(mesh.geometry.driver) + mesh.driven.compliance(mesh.geometry.driven)

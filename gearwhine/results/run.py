@@ -325,7 +325,8 @@ CONVENTIONS = {
     "rms": "without the mean, up to trusted_below_hz",
     "level_db": "20 lg of the rms value of the line over 1e-6 m/s2 (ISO 1683)",
     "parts": "amplitude of the line by each mechanism alone, by the linear model about the mean load, see "
-    "coupling.linear.line_mechanisms; parts_together_m_per_s2 is that of their sum with phase",
+    "coupling.linear.line_mechanisms; parts_together_m_per_s2 is that of their sum with phase, and part_shares are the "
+    "parts in phase with the sum, which add up to 1",
     "band_db": "change of the line by all damping doubled and halved, below and above, by the linear model",
     "share": "part of the line in phase with it; shares of modes, and of bearings with free vibration, add up to 1",
 }

@@ -35,7 +35,6 @@ from coupling.gears.loaded.optimal_relief import (
     transmission_error_harmonics,
 )
 from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.linear.line_mechanisms import teeth_alike
 from coupling.linear.mesh_harmonics import MeshHarmonicModel
 from coupling.linear.sensor_level import SensorLevel
 from coupling.statics.operating_point import OperatingPoint
@@ -432,7 +431,7 @@ def _aim_of(
 
 def _mesh_as_given(pair: LoadedGearPair) -> tuple[LoadedMesh, ToothContact]:
     """Return the loaded mesh of the flanks that carry, all teeth alike, and their contact law."""
-    flanks = teeth_alike(pair.carrying_flanks)
+    flanks = pair.carrying_flanks.teeth_alike
     return loaded_transmission_error(flanks, pair.static.force, mesh_period_phases(flanks)), flanks
 
 

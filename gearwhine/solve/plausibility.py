@@ -385,9 +385,10 @@ def _sensor_lines(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
 def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_hz: float = 0.0) -> None:
     """Add its mechanisms and its band by damping to every line of the document's sensors.
 
-    ``parts`` are the amplitudes by what excites the line, ``parts_together_m_per_s2`` that of their sum, by the linear
-    model; ``band_db`` is [below, above], all damping doubled and halved. ``mesh_lines`` have them by sensor. What
-    stands in a document over a run is no line: it has the band alone.
+    ``parts`` are the amplitudes by what excites the line, ``part_shares`` the parts in phase with their sum, and
+    ``parts_together_m_per_s2`` the amplitude of the sum, by the linear model; ``band_db`` is [below, above], all
+    damping doubled and halved. ``mesh_lines`` have them by sensor. What stands in a document over a run is no line: it
+    has the band alone.
 
     Parameters
     ----------
@@ -411,7 +412,11 @@ def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_
         found: dict[str, Any] = {"band_db": bands[sensor][place].tolist()}
         if parts is not None and sensor in parts[place]:
             of_line = parts[place][sensor]
-            found |= {"parts": of_line.amplitudes, "parts_together_m_per_s2": of_line.together}
+            found |= {
+                "parts": of_line.amplitudes,
+                "part_shares": of_line.shares,
+                "parts_together_m_per_s2": of_line.together,
+            }
         return found
 
     for sensor, line in rows:
@@ -419,7 +424,7 @@ def add_mechanisms(document: dict[str, Any], mechanisms: LineMechanisms, within_
             line.update(figures(sensor, line["frequency_hz"]))
     for line in harmonics:
         by_sensor = {sensor: figures(sensor, line["frequency_hz"]) for sensor in bands}
-        for key in ("band_db", "parts", "parts_together_m_per_s2"):
+        for key in ("band_db", "parts", "part_shares", "parts_together_m_per_s2"):
             line[key] = {sensor: found[key] for sensor, found in by_sensor.items() if key in found}
 
 

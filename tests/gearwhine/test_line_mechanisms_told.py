@@ -46,6 +46,7 @@ def test_every_line_of_a_linear_machine_is_the_sum_of_its_parts(sense: int) -> N
     assert len(told) == 6
     for line in told.values():
         assert line["parts_together_m_per_s2"] == pytest.approx(line["amplitude_m_per_s2"], rel=1e-5)
+        assert sum(line["part_shares"].values()) == pytest.approx(1.0)
     assert set(lines[("top", 1.0)]["parts"]) == {"pitch_errors", "unbalance"}
     assert set(lines[("top", 3.0)]["parts"]) == {"torque_ripple"}
     assert set(lines[("right wall", 12.0)]["parts"]) == {"base_motion"}

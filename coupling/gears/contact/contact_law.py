@@ -278,8 +278,7 @@ class ToothContact:
         faces = self.faces
         if faces is None or not faces.shared.size or self.mean_load <= 0.0:
             return None
-        none = np.zeros(0)
-        alike = replace(self, pitch_gaps=none, pair_variants=none.astype(np.int64), mean_load=0.0)
+        alike = replace(self.teeth_alike, mean_load=0.0)
         phases = np.arange(_TILT_PHASES) / _TILT_PHASES
         places = alike.pairs(phases)
         slices = places.faces
@@ -438,6 +437,21 @@ class ToothContact:
             for curve in (curves.deviation, curves.stiffness):
                 phases.update((slope_jumps(curve) % 1.0).tolist())
         return tuple(sorted(phases))
+
+    @property
+    def teeth_alike(self) -> ToothContact:
+        """The same law without pitch deviations and damaged teeth."""
+        if self.hunting_period == 1:
+            return self
+        nothing, sound = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return replace(
+            self,
+            pitch_gaps=nothing,
+            back_pitch_gaps=nothing,
+            variants=(),
+            pair_variants=sound,
+            back_pair_variants=sound,
+        )
 
     @property
     def back_flanks(self) -> ToothContact:
