@@ -25,7 +25,6 @@ from gearwhine.results.motion import (
     SENSOR_COLUMNS,
     MeshFigures,
     NamedParts,
-    band_words,
     damping_sentence,
     leading_lines,
     line_table,
@@ -945,9 +944,9 @@ def _content(document: Document) -> Iterator[str | Table]:
     if traced := _signature_table(document):
         yield from traced
         yield (
-            "Levels of rms values re 1 µm/s². What excites a line by the linear model, each alone; with phase they add "
-            "up to it. Shares are in phase with the line and add up to it; of parts that cancel each other some "
-            "exceed 100 %."
+            "Levels of rms values re 1 µm/s², with what all damping doubled and halved changes. What excites a line by "
+            "the linear model, each alone; with phase they add up to it. Shares are in phase with the line and add up "
+            "to it; of parts that cancel each other some exceed 100 %."
         )
     if document.get("run") is not None:
         yield _acceleration(document["run"])
@@ -987,11 +986,11 @@ def _highest_orders(orders: list[Document]) -> list[Document]:
 _HIGHEST_ORDERS = 3  # of a signal on the terminal
 _MEAN_COLUMN = replace(SENSOR_COLUMNS[-1], heading="means over the run: Hz (m/s², peak)")
 _MEANS = "Spectrum of the whole run: means over its speeds, at some of which an order reaches more"
+_BAND = ("band_db.0", "band_db.1")
 _SIGNATURE_COLUMNS = (
     Column("sensor", "sensor"),
     Column("Hz", "frequency_hz", ".0f"),
-    Column("dB", "level_db", ".0f"),
-    Column("damping × 2, / 2", band_words, numbers=("band_db.0", "band_db.1")),
+    Column("dB", "level_db", shown=lambda row: f"{row['level_db']:.0f}{_band(row)}", numbers=_BAND),
     Column("what it is", lambda row: row["name"] if row["kind"] != "mode" else f"free {row['name']}"),
     MECHANISM,
     Column("near", lambda row: _near(row["near_mode"]), numbers=("near_mode.frequency_hz",)),
@@ -1019,6 +1018,12 @@ def _signature_table(document: Document) -> tuple[Table, ...]:
         if "contributions" in peak
     ]
     return table_of(_SIGNATURE_COLUMNS, rows)
+
+
+def _band(row: Document) -> str:
+    """Return a line's band by damping in whole decibels, such as `` -3 +1``; empty where there is none."""
+    band = row.get("band_db")
+    return "" if band is None else " {:+.0f} {:+.0f}".format(*(value + 0.0 for value in band))
 
 
 def _near(mode: Document | None) -> str:

@@ -173,7 +173,7 @@ def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
             left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
             _spectrum(right, (stable or list(solved.motions))[:1], name)
         else:
-            end, span = _FEW_TEETH / meshes[number], f"the sum of all over {_FEW_TEETH} mesh periods"
+            end, span = _FEW_TEETH / meshes[number], f"sum over {_FEW_TEETH} mesh periods"
             times = np.linspace(0.0, end, _SUM_POINTS)
             left.plot(MILLI * times, _sum_of(solved, name, times), color=INK, lw=0.9)
             left.set(xlabel="time [ms]", xlim=(0.0, MILLI * end))
