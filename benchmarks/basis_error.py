@@ -14,9 +14,8 @@ import numpy as np
 from gearwhine import coupling
 from gearwhine.case import load_case
 from gearwhine.coupling.linear.frequency_response import BasisError, mesh_error_response
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import basis_error, build_machine, reduce_housing
+from gearwhine.solve.machine import described_machine, load_machine, reduce_housing
 
 HERTZ = 2.0 * np.pi
 LIMITS = (2400.0, 3200.0)
@@ -28,9 +27,9 @@ def machine_of(mesh_size: str, limit: float, *, told: bool) -> tuple[coupling.Co
     changes = [f'housing.box.mesh_size="{mesh_size} mm"', f"housing.frequency_limit={limit}"]
     case = load_case("nasa-gear-noise-rig", changes).case
     housing = reduce_housing(case, solve_housing(case))
-    pairs = solve_gears(case)
-    machine = build_machine(case, housing, pairs)
-    return machine, basis_error(case, machine, housing, pairs) if told else None
+    machine = described_machine(case, housing)
+    loaded = load_machine(machine, machine.operating_point(), housing)
+    return loaded.coupled, loaded.basis_error() if told else None
 
 
 def study(mesh_size: str, limit: float) -> None:

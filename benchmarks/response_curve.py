@@ -18,8 +18,7 @@ from timing import Result, arguments, machine
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.coupling import periodic_response, response_curve
 from gearwhine.coupling.periodic.continuation import ResponseCurve
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.machine import build_machine
+from gearwhine.solve.machine import described_machine
 from gearwhine.solve.steady_state import CURVE_TOLERANCE
 from gearwhine.solve.transient import solve_transient
 
@@ -36,7 +35,7 @@ def processor_seconds(work: Callable[[], Result]) -> tuple[float, Result]:
 
 def curve_of(case: Case, low: float, high: float, points: int) -> ResponseCurve:
     """The branch between two speeds [rpm]."""
-    built = build_machine(case, None, solve_gears(case))
+    built = described_machine(case, None).assembled
     return response_curve(
         lambda speed: built.at_speed(speed).system, low * RPM, high * RPM, points=points, tolerance=CURVE_TOLERANCE
     )
@@ -55,7 +54,7 @@ def main() -> None:
     common = [f"operation.torque={given.torque}", f"gear_pair.0.damping_ratio={given.damping}"]
     for name, changes in (("as it is", common), ("balanced", [*common, BALANCED])):
         case = load_case("spur-pair", changes).case
-        built = build_machine(case, None, solve_gears(case))
+        built = described_machine(case, None).assembled
         print(f"\n{name}, {built.system.size} coordinates")
         transients = {}
         for method in ("newmark", "exact"):

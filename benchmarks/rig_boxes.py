@@ -43,14 +43,13 @@ from gearwhine.coupling import TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.coupled_system import embed
 from gearwhine.figures.style import BLUE, FOOT, HEAD, RED, legend, panel_pair, panel_title, sheet
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.parametric_housing import fitted_case, with_entry
 from gearwhine.housing.acoustics.boundary_elements import surface_product
 from gearwhine.housing.acoustics.surface_velocity import face_surface
 from gearwhine.housing.updating.mesh_bias import MeshBias
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import build_machine, reduce_housing
+from gearwhine.solve.machine import described_machine, reduce_housing
 from gearwhine.solve.updating import update_housing, updated_case
 
 FloatArray = npt.NDArray[np.float64]
@@ -128,7 +127,7 @@ def settled_runs(name: str | Path, solved: SolvedHousing, dominant: list[int] | 
         Modes that ``runs(speed, eight=True)`` keeps alone, from 0, as the source did.
     """
     nominal = load_case(name).case
-    whole, pairs = reduce_housing(nominal, solved), solve_gears(nominal)
+    whole = reduce_housing(nominal, solved)
     assert nominal.transient is not None
     given = nominal.transient
 
@@ -139,7 +138,7 @@ def settled_runs(name: str | Path, solved: SolvedHousing, dominant: list[int] | 
         if eight:
             assert dominant is not None
             housing, frequencies = replace(whole, component=_kept(whole.component, dominant)), frequencies[dominant]
-        machine = build_machine(case, housing, pairs)
+        machine = described_machine(case, housing).assembled
         assert machine.housing is not None
         which = len(machine.rotors)
         own = np.array([embed(machine.system.components, which, row) for row in np.eye(machine.housing.size)])

@@ -44,6 +44,7 @@ from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, 
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
@@ -83,6 +84,8 @@ class CoupledMachine:
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     mean_faces : MeanFaces or None
         Faces of its meshes under the mean load, for the machine at other speeds.
+    speed_profile : SpeedProfile or None
+        Speed over time of the run that it is assembled for; None at constant speed.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -94,6 +97,7 @@ class CoupledMachine:
     dashpots: tuple[ShaftDashpots, ...] = ()
     speed_range: tuple[float, float] = (1.0, 1.0)
     mean_faces: "MeanFaces | None" = None
+    speed_profile: SpeedProfile | None = None
 
     @property
     def speeds(self) -> dict[str, float]:

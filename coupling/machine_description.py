@@ -30,6 +30,7 @@ from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
 from gearwhine.coupling.machine.axial_location import AxialLocation, axial_support
+from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.components import (
     HousingComponent,
@@ -38,6 +39,7 @@ from gearwhine.coupling.machine.components import (
     rotor_component,
 )
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
+from gearwhine.coupling.machine.excitation import Run, machine_driving, unbalanced_torque
 from gearwhine.coupling.machine.face_compliance import face_compliance
 from gearwhine.coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
 from gearwhine.coupling.machine.gear_train import (
@@ -50,11 +52,18 @@ from gearwhine.coupling.machine.gear_train import (
     imbalances_of_shafts,
     require_balanced_outputs,
 )
-from gearwhine.coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
+from gearwhine.coupling.machine.loads import (
+    BowReactions,
+    MachineLoads,
+    Ripple,
+    ShaftForce,
+    Torque,
+    TorqueOverTime,
+    Unbalance,
+    largest_torques,
+)
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from gearwhine.coupling.machine.parts import (
-    CONSTANT,
-    Driving,
     Shaft,
     ShaftGear,
     carrying_length,
@@ -67,6 +76,7 @@ from gearwhine.coupling.machine.parts import (
 )
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.solids import force_findings, machine_findings, unbalance_findings
+from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.shooting import periodic_response
@@ -115,6 +125,19 @@ class Machine:
         Station of the input torque, from the left end of its shaft [m].
     forces : sequence of ShaftForce
         Constant forces from outside, such as belts and weights on the ends of shafts.
+    torque_over_time : TorqueOverTime, optional
+        Torque added to the input over time; the outputs share it in their proportions, unless one has its own.
+    ripple : sequence of Ripple
+        Harmonic parts of the input torque.
+    motor : TorqueLine, optional
+        Input torque over speed, of a run whose speed is free.
+    load : TorqueLine, optional
+        Torque over speed that the outputs take in all, at the first driver's shaft, of such a run; by default
+        ``torque`` at any speed.
+    base : BaseMotion, optional
+        Motion of the ground under bearings and the housing's supports.
+    gravity : sequence of float, optional
+        Acceleration of free fall along x, y, z [m/s²]; parts have no weight by default.
 
     Raises
     ------
@@ -139,6 +162,12 @@ class Machine:
     housing: HousingComponent | HousingModes | None = None
     torque_at: float = 0.0
     forces: Sequence[ShaftForce] = ()
+    torque_over_time: TorqueOverTime | None = None
+    ripple: Sequence[Ripple] = ()
+    motor: TorqueLine | None = None
+    load: TorqueLine | None = None
+    base: BaseMotion | None = None
+    gravity: Sequence[float] | None = None
 
     def __repr__(self) -> str:
         """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""
@@ -150,7 +179,7 @@ class Machine:
 
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
-        keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces")
+        keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
         refuse(_type_findings(self), CouplingError)
         require_names(self)
         require_stations(self)
@@ -231,13 +260,22 @@ class Machine:
                     "torque comes in"
                 )
         require_balanced_outputs(self.train, self.torque, self.outputs)
+        return self.torques_from_outside(self.torque)
+
+    def torques_from_outside(self, torque: float) -> tuple[Torque, ...]:
+        """Return the torques about z by an input torque [N m], which the outputs take in their proportions."""
         ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
-        return self.train.applied_torques(self.torque, self.speed, self.outputs, self.torque_at, ends=ends)
+        return self.train.applied_torques(torque, self.speed, self.outputs, self.torque_at, ends=ends)
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
         """Mean torque that each pair takes from its driver [N m], positive where power flows to the driven gear."""
         return self.train.mean_pair_torques(self.constant_torques, self.speed)
+
+    @cached_property
+    def unbalanced_torque(self) -> float:
+        """Largest torque over time that nothing balances, by which the train turns away from its rotation [N m]."""
+        return unbalanced_torque(self)
 
     @cached_property
     def axial_locations(self) -> tuple[AxialLocation, ...]:
@@ -311,13 +349,14 @@ class Machine:
         """Return a shaft's rotor with its gears, which are discs that stiffen it over their faces."""
         return rotor_with_gears(self.shaft(name).rotor, self._gears_on(name))
 
-    def loaded_pairs(self) -> tuple[LoadedGearPair, ...]:
+    def loaded_pairs(self, progress: Callable[[str], None] = lambda text: None) -> tuple[LoadedGearPair, ...]:
         """Contact law of every gear pair, and its static mesh under the mean torque.
 
         Flanks whose misalignment is None take that of the operating point, see :attr:`assembled`.
         """
         loaded, pairs = [], self._aligned.gear_pairs
         for pair, geometry, torque in zip(pairs, self.pair_geometries, self.pair_torques, strict=True):
+            progress(f"gear pair {pair.driver} -> {pair.driven}")
             driver, driven = (
                 inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
                 for gear in self._gears_of(pair)
@@ -344,7 +383,7 @@ class Machine:
         self,
         pairs: Sequence[LoadedGearPair] | None = None,
         components: Sequence[RotorComponent] | None = None,
-        driving: Driving = CONSTANT,
+        run: Run | None = None,
     ) -> CoupledMachine:
         """Assemble the coupled equations of motion.
 
@@ -354,18 +393,21 @@ class Machine:
             Pairs; by default :meth:`loaded_pairs`.
         components : sequence of RotorComponent, optional
             Components; by default :meth:`rotor_components`.
-        driving : Driving
-            Torques that vary, motion of the base, gravity.
+        run : SpeedRun or FreeRun, optional
+            Speed over time; constant by default.
 
         Raises
         ------
         CouplingError
             As :func:`gearwhine.coupling.assemble_machine`.
+        TransientError
+            Where a free speed cannot start or stalls.
         gearwhine.rotors.RotorError
             Where a bearing's table over speed does not reach as far as the speeds.
         """
         pairs = self.loaded_pairs() if pairs is None else pairs
         components = self.rotor_components() if components is None else components
+        driving = machine_driving(self, components, run)
         bows = [
             BowReactions(shaft.name, shaft.bow.at, bow_shape(self.rotor(shaft.name), shaft.bow).reactions)
             for shaft in self.shafts
@@ -378,13 +420,13 @@ class Machine:
                 for unbalance in shaft.unbalances
             ],
             bows=bows,
-            torques=self.constant_torques if driving.torques is None else driving.torques,
+            torques=driving.torques,
             drives=driving.drives,
             base=driving.base,
             gravity=driving.gravity,
             forces=self.forces,
         )
-        return assemble_machine(
+        assembled = assemble_machine(
             components,
             self.housing_component,
             speeds=self.speeds,
@@ -394,17 +436,13 @@ class Machine:
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
             speed_range=driving.speed_range,
         )
+        return replace(assembled, speed_profile=driving.speed_profile)
 
-    def operating_point(self, gravity: Sequence[float] | None = None) -> OperatingPoint:
+    def operating_point(self) -> OperatingPoint:
         """Solve static equilibrium under the mean torques: loads, deflections, misalignment, load over the faces.
 
         Without any torque no flanks carry, and the result has no gear pairs: it is the equilibrium of preloads and
         weight.
-
-        Parameters
-        ----------
-        gravity : sequence of float, optional
-            Acceleration of free fall along x, y, z [m/s²].
 
         Raises
         ------
@@ -436,7 +474,7 @@ class Machine:
                 pairs,
                 self.housing_component,
                 self.constant_torques,
-                gravity,
+                self.gravity,
                 self.forces,
                 list(rims.values()) if pairs else (),
             )
@@ -453,7 +491,7 @@ class Machine:
             As :meth:`operating_point`.
         """
         outputs = [output if output.torque is None else replace(output, torque=0.0) for output in self.outputs]
-        return replace(self, torque=0.0, outputs=outputs, forces=()).operating_point()
+        return replace(self, torque=0.0, outputs=outputs, forces=(), gravity=None).operating_point()
 
     @property
     def needs_operating_point(self) -> bool:
@@ -466,9 +504,7 @@ class Machine:
         unaligned = any(pair.misalignment is None for pair in self.gear_pairs)
         return unaligned and bool(self.bearings) and any(torque.value != 0.0 for torque in self.constant_torques)
 
-    def at_operating_point(
-        self, point: OperatingPoint | None = None, *, gravity: Sequence[float] | None = None
-    ) -> "Machine":
+    def at_operating_point(self, point: OperatingPoint | None = None) -> "Machine":
         """Return the machine linearised about its static equilibrium.
 
         Rolling bearings whose stiffness is not given get their tangent stiffness under load, with the force that they
@@ -479,28 +515,52 @@ class Machine:
         ----------
         point : OperatingPoint, optional
             Operating point; by default :meth:`operating_point`.
-        gravity : sequence of float, optional
-            Acceleration of free fall along x, y, z [m/s²].
 
         Raises
         ------
         CouplingError, EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
-        point = self.operating_point(gravity) if point is None else point
-        about = self._with_flanks_of(point) if point.pairs else self
+        point = self.operating_point() if point is None else point
+        about = self.with_flanks_of(point) if point.pairs else self
         return replace(about, bearings=[bearing.linearised for bearing in point.bearings])
 
-    def _with_flanks_of(self, point: OperatingPoint) -> "Machine":
-        """Return the machine whose pairs have the gap over the face of an operating point, where they give none."""
-        gaps = point.flank_gaps([pair.label for pair in self.gear_pairs if pair.misalignment is None])
+    def with_flanks_of(self, point: OperatingPoint | None) -> "Machine":
+        """Return the machine whose pairs have the gap over the face of an operating point, where they give none.
+
+        Without a point flanks that give none are aligned.
+        """
+        open_pairs = [pair.label for pair in self.gear_pairs if pair.misalignment is None]
+        gaps = {} if point is None else point.flank_gaps(open_pairs)
         pairs = [
-            replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
+            replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
             if pair.misalignment is None
             else pair
             for pair in self.gear_pairs
         ]
         return replace(self, gear_pairs=pairs)
+
+    def linearised(self, point: OperatingPoint | None) -> "Machine":
+        """Return the machine whose bearings and flanks that are left to an operating point are those of a given one.
+
+        Parameters
+        ----------
+        point : OperatingPoint or None
+            None for flanks that are aligned where their misalignment is None.
+
+        Raises
+        ------
+        CouplingError
+            Where a bearing is left to an operating point, and there is none.
+        """
+        if any(mounted.needs_load for mounted in self.bearings):
+            if point is None:
+                names = [mounted.bearing.name for mounted in self.bearings if mounted.needs_load]
+                raise CouplingError(f"no operating point; the stiffness of {', '.join(names)} follows from it")
+            return self.at_operating_point(point)
+        if not self._needs_alignment:
+            return self
+        return self.with_flanks_of(point)
 
     @cached_property
     def _linearised(self) -> "Machine":
@@ -514,13 +574,13 @@ class Machine:
         if not self._needs_alignment:
             return self
         try:
-            return self._with_flanks_of(self.operating_point())
+            return self.with_flanks_of(self.operating_point())
         except (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError) as error:
             if any(mounted.needs_load for mounted in self.bearings):
                 raise
             message = f"flanks are taken as aligned, as the machine has no operating point: {error}"
             warnings.warn(message, stacklevel=2)
-            return self
+            return self.with_flanks_of(None)
 
     @cached_property
     def assembled(self) -> CoupledMachine:
@@ -612,9 +672,8 @@ class Machine:
         *,
         points_per_revolution: int = 1024,
         tolerance: float = 5e-4,
-        driving: Driving = CONSTANT,
     ) -> Motion:
-        """Integrate the motion from static equilibrium, by Newmark's method with adaptive steps.
+        """Integrate the motion at constant speed from static equilibrium, by Newmark's method with adaptive steps.
 
         Parameters
         ----------
@@ -627,8 +686,6 @@ class Machine:
             frequency; the largest step is the interval of so many.
         tolerance : float
             Tolerance of the local error of a step, see :class:`gearwhine.coupling.TransientSettings`.
-        driving : Driving
-            Torques that vary, motion of the base, gravity.
 
         Raises
         ------
@@ -640,7 +697,7 @@ class Machine:
         if self.speed == 0.0:
             raise CouplingError("a machine that stands still has no revolutions; expected a speed")
         period = 2.0 * np.pi / abs(self.speed)
-        coupled = self.assembled if driving is CONSTANT else self._linearised.assemble(driving=driving)
+        coupled = self.assembled
         duration, record_from = revolutions * period, discard * period
         least = least_sampling_rate(coupled.system, record_from, duration)[0] * period
         samples = points_per_revolution * 2 ** max(math.ceil(math.log2(max(least / points_per_revolution, 1.0))), 0)

@@ -177,17 +177,16 @@ class Study:
 
     @property
     def machine(self) -> Machine:
-        """The shafts, gears, bearings and gear pairs of the case as one object, on its solved housing.
+        """The shafts, gears, bearings and gear pairs of the case as one object, with all that loads it.
 
-        It has the constant torques of `[operation]`; torques over time, motion of the base and gravity stay in the
-        case, and :meth:`simulate` applies them.
+        It stands in the solved housing of the case.
         """
-        from gearwhine.from_case.machine import describe_machine
-        from gearwhine.solve.machine import reduce_housing
+        from gearwhine.solve.machine import described_machine, reduce_housing
 
         solved = self.housing
-        part = None if solved is None else reduce_housing(self.case, solved, self.progress).component
-        return describe_machine(self.case, part)
+        return described_machine(
+            self.case, None if solved is None else reduce_housing(self.case, solved, self.progress)
+        )
 
     def check(self) -> Result[CheckedCase]:
         """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""

@@ -10,6 +10,7 @@ import math
 import numbers
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal, TypeVar
 
 Severity = Literal["error", "warning"]
@@ -190,3 +191,32 @@ def attribute_findings(part: Part, owner: object, **rules: Rule) -> Iterator[Fin
         value = getattr(owner, attribute)
         if not rule.accepts(value):
             yield Finding(part, attribute, value if value is not None else "None", rule.expected)
+
+
+def table_findings(
+    part: Part, owner: object, places: str, values: str, *, least: int = 1, values_are: Number | None = None
+) -> Iterator[Finding]:
+    """Yield findings of a table in two attributes: places that ascend, a finite value for each.
+
+    Parameters
+    ----------
+    part : Part
+    owner : object
+    places, values : str
+        Attributes of the places and of the values.
+    least : int
+        Least number of places.
+    values_are : Number, optional
+        Rule of each value; any finite number by default.
+    """
+    row, other = getattr(owner, places), getattr(owner, values)
+    findings = list(
+        attribute_findings(part, owner, **{places: Numbers(), values: Numbers(each=values_are or Number())})
+    )
+    if not findings and any(after <= before for before, after in pairwise(row)):
+        findings.append(Finding(part, places, row, "numbers that ascend"))
+    if not findings and len(row) < least:
+        findings.append(Finding(part, places, row, f"{least} numbers or more"))
+    if not findings and len(other) != len(row):
+        findings.append(Finding(part, values, other, f"one value for each of the {len(row)} {places}"))
+    yield from findings

@@ -24,8 +24,16 @@ from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
 from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
 from gearwhine.coupling.gears.geometry.profile import meshing_rotations
 from gearwhine.coupling.machine.coordinates import trains
-from gearwhine.coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
+from gearwhine.coupling.machine.loads import (
+    AnyTorque,
+    Ripple,
+    Torque,
+    TorqueOverTime,
+    TorqueRipple,
+    largest_torques,
+)
 from gearwhine.coupling.machine.mounted_parts import GearMesh
+from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import Number, Rule, Text, attribute_findings, refuse
 
 LARGEST_OFFSET = 1e-6
@@ -91,14 +99,21 @@ class Output:
         Torque against the rotation of the shaft [N m]; None: the outputs share the power equally.
     at : float, optional
         Distance from the shaft's left end [m]; None: the right end.
+    over_time : TorqueOverTime, optional
+        Torque taken off besides; its share of the input's where no output has one.
+    ripple : sequence of Ripple
+        Harmonic parts of the torque taken off.
     """
 
     shaft: str
     torque: float | None = None
     at: float | None = None
+    over_time: TorqueOverTime | None = None
+    ripple: Sequence[Ripple] = ()
 
     def __post_init__(self) -> None:
-        """Check that torque and place are numbers."""
+        """Keep own copies; check that torque and place are numbers."""
+        keep_tuples(self, "ripple")
         place = Number(at_least=0.0, optional=True, unit="m")
         rules: dict[str, Rule] = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
         refuse(attribute_findings(("output", str(self.shaft)), self, **rules), CouplingError)

@@ -4,6 +4,7 @@
 :mod:`gearwhine.coupling.machine.base_motion` does it for a moving base and gravity.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -13,7 +14,7 @@ import numpy.typing as npt
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.housing.own_copies import keep_arrays, keep_tuples
-from gearwhine.numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse, table_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -109,6 +110,68 @@ class TorqueRipple:
                 f"a torque ripple on {self.rotor!r} of order {self.order} and frequency {self.frequency}; "
                 "expected one of the two"
             )
+
+
+@dataclass(frozen=True)
+class TorqueOverTime:
+    """Torque added over time, positive as the torque it is added to: linear between times, constant beyond them.
+
+    Attributes
+    ----------
+    times : sequence of float
+        Ascending times [s].
+    torques : sequence of float
+        Torque at each time [N m].
+    """
+
+    times: Sequence[float]
+    torques: Sequence[float]
+
+    def __post_init__(self) -> None:
+        """Keep own copies; require a torque for each time, and times that ascend."""
+        keep_tuples(self, "times", "torques")
+        refuse(table_findings(("torque over time", ""), self, "times", "torques"), CouplingError)
+
+    def on(self, rotor: str, at: float, factor: float) -> TorqueHistory:
+        """Return the torque about z, times a factor, on a rotor at a station [m]."""
+        return TorqueHistory(rotor, at, np.array(self.times), factor * np.array(self.torques))
+
+
+@dataclass(frozen=True)
+class Ripple:
+    """Harmonic part of a torque, amplitude cos(w t + phase), positive as the torque it is added to.
+
+    Attributes
+    ----------
+    amplitude : float
+        [N m]
+    phase : float
+        [rad]
+    order : float or None
+        Cycles per revolution of the shaft.
+    frequency : float or None
+        Frequency w independent of the speed [rad/s]; either this or the order is given.
+    """
+
+    amplitude: float
+    phase: float = 0.0
+    order: float | None = None
+    frequency: float | None = None
+
+    def __post_init__(self) -> None:
+        """Require finite numbers, and either an order or a frequency."""
+        positive = Number(above=0.0, optional=True)
+        rules: dict[str, Rule] = {"amplitude": Number(unit="N m"), "phase": Number(unit="rad")}
+        refuse(attribute_findings(("ripple", ""), self, **rules, order=positive, frequency=positive), CouplingError)
+        if (self.order is None) == (self.frequency is None):
+            raise CouplingError(
+                f"a torque ripple of order {self.order} and frequency {self.frequency}; expected one of the two"
+            )
+
+    def on(self, rotor: str, at: float, sense: float) -> TorqueRipple:
+        """Return the ripple about z on a rotor at a station [m], positive in a sense of rotation."""
+        amplitude = math.copysign(self.amplitude, sense * self.amplitude)
+        return TorqueRipple(rotor, at, amplitude, self.phase, self.order, self.frequency)
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,9 @@ from gearwhine.coupling.gears.geometry.blank import CoreLength, blank_around
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.beam import shear_modulus
-from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, Output
-from gearwhine.coupling.machine.loads import AnyTorque, Drive, ShaftForce
+from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
@@ -145,38 +144,6 @@ class ShaftGear:
     def body_inertia(self) -> tuple[float, float, float]:
         """Mass [kg], polar and diametral moment of inertia [kg m²] of the gear's body, its core included."""
         return self.gear.inertia if self.inertia is None else self.inertia
-
-
-@dataclass(frozen=True)
-class Driving:
-    """Excitation of a machine beside its constant torques.
-
-    Attributes
-    ----------
-    torques : sequence of coupling torques, or None
-        Torques with stations on their rotors, in place of the constant torques that follow from the machine's torque.
-    drives : sequence of Drive
-        Stations of the torques that accelerate a train.
-    speed_range : tuple of float
-        Lowest and highest speed of the run, as parts of the machine's speed.
-    base : BaseMotion, optional
-        Motion of the ground.
-    gravity : sequence of float, optional
-        Acceleration of free fall along x, y, z [m/s²].
-    """
-
-    torques: Sequence[AnyTorque] | None = None
-    drives: Sequence[Drive] = ()
-    speed_range: tuple[float, float] = (1.0, 1.0)
-    base: BaseMotion | None = None
-    gravity: Sequence[float] | None = None
-
-    def __post_init__(self) -> None:
-        """Keep own copies."""
-        keep_tuples(self, "torques", "drives", "speed_range", "gravity")
-
-
-CONSTANT = Driving()
 
 
 class MachineParts(Protocol):

@@ -18,7 +18,7 @@ J = Σ J_r (ω_r/ω)² at the first driver's rotor. Where a shaft is a little fa
 the torques change by their slope over speed: :class:`gearwhine.coupling.machine.loads.TorqueSlope`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,6 +26,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError, TransientError
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.findings import Number, attribute_findings, refuse, table_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -107,6 +109,81 @@ class SpeedProfile:
             root = np.sqrt(rows[:, 2] ** 2 + 2.0 * rows[:, 3] * far)
             after = np.where(far == 0.0, 0.0, 2.0 * far / (rows[:, 2] + root))
         return np.asarray(np.where(np.isfinite(after), rows[:, 0] + after, np.nan))
+
+
+@dataclass(frozen=True)
+class SpeedRun:
+    """Run of a machine through given speeds.
+
+    Attributes
+    ----------
+    times : sequence of float
+        Ascending times, two or more, the first of them 0 [s].
+    speeds : sequence of float
+        Speed of the first driver's shaft at each time without its sense [rad/s]; linear between.
+    """
+
+    times: Sequence[float]
+    speeds: Sequence[float]
+
+    def __post_init__(self) -> None:
+        """Keep own copies; require a speed for each time, times that ascend from 0, and a machine that turns."""
+        keep_tuples(self, "times", "speeds")
+        speeds = Number(at_least=0.0, unit="rad/s")
+        refuse(table_findings(("run", ""), self, "times", "speeds", least=2, values_are=speeds), CouplingError)
+        if self.times[0] != 0.0 or not any(self.speeds):
+            raise CouplingError(f"a run from {self.times[0]:g} s on; expected times from 0 s on, and speeds above 0")
+
+    @property
+    def duration(self) -> float:
+        """Duration [s]."""
+        return float(self.times[-1])
+
+
+@dataclass(frozen=True)
+class FreeRun:
+    """Run of a machine whose speed follows from its motor and its load.
+
+    Attributes
+    ----------
+    start : float
+        Speed of the first driver's shaft at t = 0, without its sense [rad/s].
+    duration : float
+        [s]
+    """
+
+    start: float
+    duration: float
+
+    def __post_init__(self) -> None:
+        """Require a speed and a duration."""
+        start, duration = Number(at_least=0.0, unit="rad/s"), Number(above=0.0, unit="s")
+        refuse(attribute_findings(("run", ""), self, start=start, duration=duration), CouplingError)
+
+
+@dataclass(frozen=True)
+class TorqueLine:
+    """Torque over the speed of the first driver's shaft, linear between speeds and constant beyond them.
+
+    Attributes
+    ----------
+    speeds : sequence of float
+        Ascending speeds without their sense [rad/s].
+    torques : sequence of float
+        Torque at each speed [N m].
+    """
+
+    speeds: Sequence[float]
+    torques: Sequence[float]
+
+    def __post_init__(self) -> None:
+        """Keep own copies; require a torque for each speed, and speeds that ascend."""
+        keep_tuples(self, "speeds", "torques")
+        refuse(table_findings(("torque over speed", ""), self, "speeds", "torques", least=2), CouplingError)
+
+    def at(self, speed: float) -> float:
+        """Torque at a speed [N m]."""
+        return float(np.interp(speed, self.speeds, self.torques))
 
 
 _PIECES = 1024

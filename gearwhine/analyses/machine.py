@@ -10,7 +10,6 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.coupling import CoupledMachine
-from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.output.dataset import labelled
@@ -28,7 +27,14 @@ from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import basis_error, line_mechanisms, point_of_pairs, solve_machine, solve_pairs
+from gearwhine.solve.machine import (
+    LoadedMachine,
+    described_machine,
+    load_machine,
+    reduce_housing,
+    run_of,
+    solve_pairs,
+)
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
     add_mechanisms,
@@ -127,9 +133,8 @@ def gears(
             housing = solve_housing(case, progress, folder=folder)
         elif case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
             housing = kept_housing(case, folder, progress)
-    point = point_of_pairs(case, housing, progress)
-    loaded = solve_pairs(case, housing, progress, point=point)
-    aims = relief_aims(case, loaded, progress, housing=housing, folder=folder)
+    loaded, point = solve_pairs(case, housing, progress)
+    aims = relief_aims(case, loaded, progress, point=point, housing=housing, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
     document = gears_document(pairs)
     if point is not None and case.housing is not None:
@@ -202,8 +207,16 @@ def operating_point(
     elif housing is None and case.housing is not None:
         refuse = check_before_modes(case) if ranked else None
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
+    part = None if housing is None else reduce_housing(case, housing, progress)
     solved = solve_load(
-        case, housing, progress, over_torque=over_torque, sensitivity=ranked, line=line, over_hunting_period=True
+        case,
+        described_machine(case, part),
+        progress,
+        over_torque=over_torque,
+        sensitivity=ranked,
+        line=line,
+        over_hunting_period=True,
+        housing=housing,
     )
     document = load_document(case.title, solved)
     add_warnings(document, load_warnings(case, solved))
@@ -232,39 +245,40 @@ def operating_point(
 
 
 @dataclass(frozen=True)
-class _LoadedMachine:
+class _LoadedCase:
     """Machine of a case, assembled about its operating point.
 
     Attributes
     ----------
     case : Case
         The case whose torques and speed over time the machine has.
-    machine : CoupledMachine
+    loaded : LoadedMachine
     housing : SolvedHousing or None
     load : SolvedLoad or None
         Its operating point; None where nothing loads it.
-    pairs : tuple of LoadedGearPair
     warnings : list of dict
         Warnings of the operating point.
     """
 
     case: Case
-    machine: CoupledMachine
+    loaded: LoadedMachine
     housing: SolvedHousing | None
     load: SolvedLoad | None
-    pairs: tuple[LoadedGearPair, ...]
     warnings: list[dict[str, Any]]
+
+    @property
+    def machine(self) -> CoupledMachine:
+        """The coupled system and its parts."""
+        return self.loaded.coupled
 
     def add_to(self, document: dict[str, Any], progress: Progress) -> None:
         """Add the operating point, its warnings and the errors of the modal basis to a document of the machine."""
         if self.load is not None:
             document["load"] = load_part(self.load)
         add_warnings(document, self.warnings)
-        point = None if self.load is None else self.load.point
-        error = basis_error(self.case, self.machine, self.housing, self.pairs, progress, point=point)
-        add_uncertainty(document, error, document["trusted_below_hz"])
+        add_uncertainty(document, self.loaded.basis_error(progress), document["trusted_below_hz"])
         progress("mechanisms of the lines, and their bands by damping")
-        add_mechanisms(document, line_mechanisms(self.machine, self.housing))
+        add_mechanisms(document, self.loaded.mechanisms)
         document["damping"] = damping_document(self.case)
         if bodies := gear_body_document(self.case):
             document["gear_bodies"] = bodies
@@ -278,7 +292,7 @@ class _LoadedMachine:
             yield from draw_load(self.case, self.load)
 
 
-def _loaded_machine(
+def _loaded_case(
     case: Case,
     housing: SolvedHousing | None,
     folder: Path | None,
@@ -286,7 +300,7 @@ def _loaded_machine(
     *,
     fresh: bool,
     varies: bool = True,
-) -> _LoadedMachine:
+) -> _LoadedCase:
     """Solve the housing and the operating point of a case, and assemble its machine about that.
 
     ``varies`` takes the speed and the torques over time of a `[transient]`; without, they are those of operation.
@@ -294,12 +308,12 @@ def _loaded_machine(
     require_machine(case)
     if housing is None and case.housing is not None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    load, warnings = find_load(case, housing, progress)
+    part = None if housing is None else reduce_housing(case, housing, progress)
+    machine = described_machine(case, part)
+    load, warnings = find_load(case, machine, progress)
     taken = case if varies else case.model_copy(update={"transient": None})
-    housing, pairs, machine = solve_machine(
-        taken, progress, housing=housing, point=None if load is None else load.point
-    )
-    return _LoadedMachine(taken, machine, housing, load, pairs, warnings)
+    loaded = load_machine(machine, None if load is None else load.point, part, run_of(taken), progress)
+    return _LoadedCase(taken, loaded, housing, load, warnings)
 
 
 def system(
@@ -339,7 +353,7 @@ def system(
         Where the modes fail their certificate.
     """
     require(case, "rotor", "operation", command="system")
-    loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh)
+    loaded = _loaded_case(case, housing, folder, progress, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     solved = solve_system(
         case,
@@ -411,7 +425,7 @@ def steady(
         Where no periodic motion is found.
     """
     require(case, "rotor", "operation", command="steady")
-    loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh, varies=False)
+    loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
     solved = solve_steady(
         loaded.case,
         loaded.machine,
@@ -486,7 +500,7 @@ def sound(
     further_warnings: list[dict[str, Any]] = []
     steady = case.model_copy(update={"transient": None})
     if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
-        loaded = _loaded_machine(case, housing, folder, progress, fresh=fresh, varies=False)
+        loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
         machine, further_warnings = loaded.machine, loaded.warnings
         steady_state = solve_steady(loaded.case, machine, housing, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
+from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.output import staging
@@ -41,7 +42,7 @@ from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import basis_error, build_machine, line_mechanisms, reduce_housing, solve_pairs
+from gearwhine.solve.machine import described_machine, load_machine, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
@@ -64,6 +65,7 @@ from gearwhine.solve.transient_record import stored_record
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
     from gearwhine.housing.correlation import Comparison
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
@@ -134,13 +136,20 @@ def run(
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
     timed("housing", begin)
     begin = time.perf_counter()
-    part = None if housing is None or not (case.rotor and case.operation) else reduce_housing(case, housing, progress)
-    load, warnings_of_load = find_load(case, part, progress)
-    point = None if load is None else load.point
+    described, part, load, loaded, warnings_of_load = None, None, None, None, list[dict[str, Any]]()
+    pairs: tuple[LoadedGearPair, ...] = ()
+    if case.rotor and case.operation:
+        part = None if housing is None else reduce_housing(case, housing, progress)
+        described = described_machine(case, part)
+        load, warnings_of_load = find_load(case, described, progress)
     timed("load", begin)
     begin = time.perf_counter()
-    pairs = solve_pairs(case, part, progress, point=point)
-    analysed = analyse_pairs(case, pairs, point)
+    if described is not None:
+        loaded = load_machine(described, None if load is None else load.point, part, run_of(case), progress)
+        pairs = loaded.pairs
+    elif case.gear_pair:
+        pairs = solve_gears(case, progress)
+    analysed = analyse_pairs(case, pairs, None if load is None else load.point)
     timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
     if rotors:
         document = joined(document, rotors_document(rotors))
@@ -156,11 +165,9 @@ def run(
             add_warnings(document, comparison_warnings(comparison))
 
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
-    if case.rotor and case.operation:
+    if loaded is not None and described is not None:
         begin = time.perf_counter()
-        machine = build_machine(case, part, pairs, progress, point=point)
-        basis = basis_error(case, machine, part, pairs, progress, point=point)
-        mechanisms = line_mechanisms(machine, part)
+        machine, mechanisms, basis = loaded.coupled, loaded.mechanisms, loaded.basis_error(progress)
         system = solve_system(case, machine, housing, progress)
         document["system"] = system_document(system)
         add_warnings(document, unstable_modes_warnings(system.stability))
@@ -197,7 +204,9 @@ def run(
                 add_warnings(document, settling_warnings(case, transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
             add_mechanisms(document, mechanisms, transient.line_tolerance_hz)
-            add_warnings(document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(case)])
+            add_warnings(
+                document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(described, loaded.run)]
+            )
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)
             timed("transient", begin)

@@ -32,9 +32,10 @@ from gearwhine.case.fields import (
 if TYPE_CHECKING:
     from gearwhine.coupling import BaseMotion
     from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
+    from gearwhine.coupling.machine.loads import Ripple, TorqueOverTime
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
-    from gearwhine.coupling.machine.loads import TorqueHistory as BuiltHistory
-    from gearwhine.coupling.machine.loads import TorqueRipple as BuiltRipple
+    from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
+    from gearwhine.coupling.machine.speed_profile import TorqueLine as BuiltLine
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -55,6 +56,12 @@ class TorqueLine(Table):
         _check_table("speed", self.speed, "torque", self.torque)
         return self
 
+    def build(self) -> BuiltLine:
+        """Build the torque over speed."""
+        from gearwhine.coupling.machine.speed_profile import TorqueLine as BuiltLine
+
+        return BuiltLine(self.speed, self.torque)
+
 
 class TorqueHistory(Table):
     """Torque added over time [N m over s]: linear between the times, constant beyond."""
@@ -69,13 +76,11 @@ class TorqueHistory(Table):
         _check_table("time", self.time, "torque", self.torque)
         return self
 
-    def build(self, rotor: str, at: float, factor: float) -> BuiltHistory:
-        """Build the torque history, times a factor, on a rotor at a station [m]."""
-        from numpy import array
+    def build(self) -> TorqueOverTime:
+        """Build the torque over time."""
+        from gearwhine.coupling.machine.loads import TorqueOverTime
 
-        from gearwhine.coupling.machine.loads import TorqueHistory as BuiltHistory
-
-        return BuiltHistory(rotor, at, array(self.time), factor * array(self.torque))
+        return TorqueOverTime(self.time, self.torque)
 
 
 class TorqueRipple(Table):
@@ -96,13 +101,12 @@ class TorqueRipple(Table):
             raise wrong("either an 'order' of the shaft's rotation or a 'frequency'", "order")
         return self
 
-    def build(self, rotor: str, at: float, sense: float) -> BuiltRipple:
-        """Build the torque ripple on a rotor at a station [m], positive in the sense of a positive torque there."""
-        from gearwhine.coupling.machine.loads import TorqueRipple as BuiltRipple
+    def build(self) -> Ripple:
+        """Build the ripple."""
+        from gearwhine.coupling.machine.loads import Ripple
 
         frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
-        amplitude = math.copysign(self.amplitude, sense * self.amplitude)
-        return BuiltRipple(rotor, at, amplitude, self.phase, self.order, frequency)
+        return Ripple(self.amplitude, self.phase, self.order, frequency)
 
 
 class OrderTracking(Table):
@@ -166,6 +170,13 @@ class Run(Table):
     def duration(self) -> float:
         """Duration of the run [s]."""
         return self.times[-1] if self.time is None else self.time
+
+    def build(self) -> SpeedRun | FreeRun:
+        """Build the run of the machine."""
+        from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
+
+        times, speeds = self.line
+        return FreeRun(speeds[0], self.duration) if self.free else SpeedRun(times, speeds)
 
     @property
     def line(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -308,7 +319,8 @@ class Output(Table):
         """Build the output torque of the gear train."""
         from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
 
-        return BuiltOutput(self.rotor, self.torque, self.at)
+        history = None if self.over_time is None else self.over_time.build()
+        return BuiltOutput(self.rotor, self.torque, self.at, history, [ripple.build() for ripple in self.ripple])
 
 
 class ShaftForce(Table):

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, Rotor, require
-from gearwhine.coupling import BaseMotion, Machine, MountedBearing, Shaft
+from gearwhine.coupling import Machine, MountedBearing, Shaft
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.from_case.gear_pairs import build_pair
@@ -76,6 +76,12 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         housing=housing,
         torque_at=operation.at or 0.0,
         forces=[force.build() for force in operation.force],
+        torque_over_time=None if operation.over_time is None else operation.over_time.build(),
+        ripple=[ripple.build() for ripple in operation.ripple],
+        motor=None if operation.motor is None else operation.motor.build(),
+        load=None if operation.load is None else operation.load.build(),
+        base=None if operation.base is None else operation.base.build(),
+        gravity=operation.gravity,
     )
 
 
@@ -108,7 +114,7 @@ def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str,
     built = {rotor.name: (build_bearings(case, rotor.name), rolling_states(case, rotor.name)) for rotor in case.rotor}
     if not any(case.finds_load(bearing) for bearing in case.bearing):
         return built
-    point = describe_machine(case, grounded=True).operating_point(gravity(case))
+    point = describe_machine(case, grounded=True).operating_point()
     loaded = {}
     for name, (_, states) in built.items():
         on_rotor = [load for load in point.bearings if load.mounted.rotor == name]
@@ -117,11 +123,6 @@ def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str,
         }
         loaded[name] = tuple(load.linearised.bearing for load in on_rotor), states | open_loads
     return loaded
-
-
-def gravity(case: Case) -> tuple[float, ...] | None:
-    """Acceleration of free fall of a case [m/s²], shape (3,); None where its parts have no weight."""
-    return None if case.operation is None else case.operation.gravity
 
 
 def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
@@ -133,9 +134,3 @@ def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:
         return _TWO_PI * table.frequency_limit, None
     limit = (case.housing.frequency_limit or 0.0) if case.housing else 0.0
     return _TWO_PI * max(LATERAL_LIMIT_HZ, _HOUSING_FACTOR * limit), None
-
-
-def base_motion(case: Case) -> BaseMotion | None:
-    """Motion of the ground of a case, if it moves."""
-    base = None if case.operation is None else case.operation.base
-    return None if base is None else base.build()

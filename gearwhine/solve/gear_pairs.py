@@ -45,7 +45,7 @@ from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import build_machine
+from gearwhine.solve.machine import described_machine, reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -369,10 +369,13 @@ def relief_aims(
     pairs: tuple[LoadedGearPair, ...],
     progress: Progress = silent,
     *,
+    point: OperatingPoint | None = None,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
 ) -> tuple[ReliefAim, ...]:
     """Objective of the tip-relief search for each pair.
+
+    ``point`` is the machine's operating point, where it is solved already.
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
     √(½ Σ (w_n a_n)²), with a_n the linear response to transmission error and load shuttling together about the case's
@@ -392,7 +395,11 @@ def relief_aims(
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = housing or solve_housing(case, progress, folder=folder)
-    model = MeshHarmonicModel(build_machine(case, housing, pairs, progress))
+    described = described_machine(case, reduce_housing(case, housing, progress))
+    if point is None and described.needs_operating_point:
+        point = described.operating_point()
+    machine = described.linearised(point)
+    model = MeshHarmonicModel(machine.assemble(pairs, machine.rotor_components(progress=progress)))
     rows = zip(range(len(aims)), pairs, aims, strict=True)
     return tuple(_aim_of(model, housing, number, pair, aim) for number, pair, aim in rows)
 

@@ -2,34 +2,31 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from gearwhine.case import Case, require
-from gearwhine.coupling import CoupledMachine
+from gearwhine.case import Case
+from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.gears import GearError
-from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
-from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.components import HousingComponent, housing_component
+from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.time.histories import Histories
-from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine, gravity, require_machine
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import ModeSet
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.residual_modes import leading_residual_modes
 from gearwhine.progress import Progress, silent
 from gearwhine.rotors import EquilibriumError, RotorError
-from gearwhine.solve.housing_modes import SolvedHousing, base_participation, solve_housing
+from gearwhine.solve.housing_modes import SolvedHousing, base_participation
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -86,134 +83,121 @@ def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silen
     )
 
 
-def build_machine(
-    case: Case,
-    housing: SolvedHousing | ReducedHousing | None,
-    pairs: tuple[LoadedGearPair, ...],
-    progress: Progress = silent,
-    *,
-    point: OperatingPoint | None = None,
-    limit_factor: float = 1.0,
-) -> CoupledMachine:
-    """Assemble the machine of a case at its operating speed.
+@dataclass(frozen=True, eq=False)
+class LoadedMachine:
+    """Machine about its operating point: its parts, its gear pairs under load, and the coupled system.
 
-    ``point`` is its operating point where that is known already. ``limit_factor`` multiplies the frequency, or the
-    number, up to which modes of the shafts are retained.
+    Attributes
+    ----------
+    machine : Machine
+        Bearings and flanks that are left to the operating point are those of it.
+    pairs : tuple of LoadedGearPair
+    coupled : CoupledMachine
+        Assembled for its run.
+    run : SpeedRun, FreeRun or None
+        None at constant speed.
+    housing : ReducedHousing or None
+    """
+
+    machine: Machine
+    pairs: tuple[LoadedGearPair, ...]
+    coupled: CoupledMachine
+    run: Run | None
+    housing: ReducedHousing | None
+
+    def basis_error(self, progress: Progress = silent) -> BasisError | None:
+        """Estimate the modal truncation error by a machine of other residual attachments and more shaft modes.
+
+        None where there is no housing, and so no sensor.
+        """
+        if self.housing is None or self.housing.coarser is None or not self.housing.component.sensors:
+            return None
+        progress("comparing with another modal basis")
+        other = replace(self.machine, housing=self.housing.coarser)
+        components = other.rotor_components(limit_factor=_MORE_MODES)
+        return BasisError(self.coupled, other.assemble(self.pairs, components, self.run))
+
+    @property
+    def mechanisms(self) -> LineMechanisms:
+        """What excites the lines of its sensors, which show motion in space."""
+        base = self.coupled.loads.base
+        if base is None or self.housing is None:
+            return LineMechanisms(self.coupled)
+        rows = {name: base.row_at(port.position, port.direction) for name, port in self.housing.sensors.items()}
+        return LineMechanisms(self.coupled, rows)
+
+
+def described_machine(case: Case, housing: ReducedHousing | None) -> Machine:
+    """Describe the machine of a case in its solved housing, or on rigid seats."""
+    return describe_machine(case, None if housing is None else housing.component, grounded=housing is None)
+
+
+def load_machine(
+    machine: Machine,
+    point: OperatingPoint | None,
+    housing: ReducedHousing | None = None,
+    run: Run | None = None,
+    progress: Progress = silent,
+) -> LoadedMachine:
+    """Assemble a machine about its operating point.
+
+    Parameters
+    ----------
+    machine : Machine
+    point : OperatingPoint or None
+        None where nothing loads the machine, or where it is not found: flanks are aligned then.
+    housing : ReducedHousing, optional
+        Of the machine.
+    run : SpeedRun or FreeRun, optional
+    progress : callable
 
     Raises
     ------
-    CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
-        Where the parts do not make a machine.
+    gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
+        Where the parts do not make a machine, or a bearing is left to an operating point that is not there.
     gearwhine.coupling.TransientError
         Where a free speed cannot start or stalls.
     """
-    if isinstance(housing, SolvedHousing):
-        housing = reduce_housing(case, housing, progress)
-    machine = describe_machine(case, None if housing is None else housing.component)
-    if any(mounted.needs_load for mounted in machine.bearings):
-        if point is None:
-            progress("static equilibrium of the machine under its mean load")
-        machine = machine.at_operating_point(point, gravity=gravity(case))
-    components = machine.rotor_components(limit_factor=limit_factor, progress=progress)
-    return machine.assemble(pairs, components, driving(case, components))
-
-
-def solve_machine(
-    case: Case,
-    progress: Progress = silent,
-    *,
-    housing: SolvedHousing | None = None,
-    folder: Path | None = None,
-    fresh: bool = False,
-    point: OperatingPoint | None = None,
-) -> tuple[SolvedHousing | None, tuple[LoadedGearPair, ...], CoupledMachine]:
-    """Solve the housing and the gears of the case, and assemble the machine.
-
-    ``housing`` and ``point`` are its housing and its operating point where they are solved already; ``folder`` and
-    ``fresh`` are those of :func:`gearwhine.solve.housing_modes.solve_housing`.
-    """
-    require(case, "rotor", "operation", command="system")
-    require_machine(case)
-    if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
-    pairs = solve_pairs(case, housing, progress, point=point)
-    return housing, pairs, build_machine(case, housing, pairs, progress, point=point)
+    about = machine.linearised(point)
+    pairs = about.loaded_pairs(progress)
+    coupled = about.assemble(pairs, about.rotor_components(progress=progress), run)
+    return LoadedMachine(about, pairs, coupled, run, housing)
 
 
 def solve_pairs(
-    case: Case,
-    housing: SolvedHousing | ReducedHousing | None,
-    progress: Progress = silent,
-    *,
-    point: OperatingPoint | None = None,
-) -> tuple[LoadedGearPair, ...]:
-    """Solve the gear pairs of a case; none for one without.
+    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+) -> tuple[tuple[LoadedGearPair, ...], OperatingPoint | None]:
+    """Solve the gear pairs of a case, and the operating point of which flanks have their misalignment.
 
-    The gap of flanks whose misalignment is to be found is that of the operating point, on rigid seats where there is no
-    housing; ``point`` is that point where it is known already.
+    The point is that in the housing, or on rigid seats without one. It is None where the misalignment of no pair is
+    left to it, and where the machine has none and only misalignments that the case leaves out would follow from it.
 
     Raises
     ------
     CaseError, gearwhine.coupling.gears.GearError, gearwhine.coupling.CouplingError,
     gearwhine.coupling.EquilibriumNotFoundError
-        Where a pair cannot be solved as it stands, or the machine has no operating point.
+        Where a pair cannot be solved as it stands, or flanks or bearings are left explicitly to an operating point that
+        the machine does not have.
     """
-    if not case.gear_pair:
-        return ()
-    point = point or point_of_pairs(case, housing, progress)
-    unaligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
-    return solve_gears(case, progress, {} if point is None else point.flank_gaps(unaligned))
-
-
-def point_of_pairs(
-    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
-) -> OperatingPoint | None:
-    """Solve the operating point that gives gear pairs their misalignment, on rigid seats where there is no housing.
-
-    None where no pair is left to it, and where the machine has none and only misalignments that the case leaves out
-    would follow from it.
-
-    Raises
-    ------
-    CaseError, gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
-        Where the machine has no operating point, and bearings or flanks are left to it explicitly.
-    """
-    if not any(case.finds_misalignment(pair) for pair in case.gear_pair):
-        return None
-    progress("misalignment of the flanks at the operating point")
+    if not case.rotor or case.operation is None:
+        return solve_gears(case, progress), None
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
-    component = None if housing is None else housing.component
-    machine = describe_machine(case, component, grounded=component is None)
-    try:
-        return machine.operating_point(gravity(case))
-    except NO_OPERATING_POINT:
-        if case.needs_operating_point:
-            raise
-        return None
+    machine, point = described_machine(case, housing), None
+    if any(pair.misalignment is None for pair in machine.gear_pairs):
+        progress("misalignment of the flanks at the operating point")
+        try:
+            point = machine.operating_point()
+        except NO_OPERATING_POINT:
+            if case.needs_operating_point:
+                raise
+    return machine.with_flanks_of(point).loaded_pairs(progress), point
 
 
-def basis_error(
-    case: Case,
-    machine: CoupledMachine,
-    housing: SolvedHousing | ReducedHousing | None,
-    pairs: tuple[LoadedGearPair, ...],
-    progress: Progress = silent,
-    *,
-    point: OperatingPoint | None = None,
-) -> BasisError | None:
-    """Estimate the modal truncation error: compare with a machine of other residual attachments and more shaft modes.
-
-    ``point`` is the operating point about which both are linearised, where it is known already. None where there is no
-    housing, and so no sensor.
-    """
-    if isinstance(housing, SolvedHousing):
-        housing = reduce_housing(case, housing, progress)
-    if housing is None or housing.coarser is None or not housing.component.sensors:
-        return None
-    progress("comparing with another modal basis")
-    coarser = replace(housing, component=housing.coarser)
-    return BasisError(machine, build_machine(case, coarser, pairs, point=point, limit_factor=_MORE_MODES))
+def run_of(case: Case) -> Run | None:
+    """Return the run of a case's transient; None at constant speed."""
+    run = None if case.transient is None else case.transient.run
+    return None if run is None else run.build()
 
 
 def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
@@ -268,8 +252,9 @@ def _housing_component(
     )
 
 
-def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None, base: BaseMotion | None) -> Histories:
+def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None, machine: CoupledMachine) -> Histories:
     """Return histories as accelerometers show them: motion in space, not relative to a moving base."""
+    base = machine.loads.base
     if base is None or housing is None:
         return relative
     absolute = {
@@ -277,13 +262,3 @@ def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None
         for name, port in housing.sensors.items()
     }
     return replace(relative, sensor_acceleration=absolute)
-
-
-def line_mechanisms(machine: CoupledMachine, housing: SolvedHousing | ReducedHousing | None) -> LineMechanisms:
-    """Return what excites the lines of a machine's sensors, which show motion in space."""
-    base = machine.loads.base
-    if base is None or housing is None:
-        return LineMechanisms(machine)
-    return LineMechanisms(
-        machine, {name: base.row_at(port.position, port.direction) for name, port in housing.sensors.items()}
-    )

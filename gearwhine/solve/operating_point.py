@@ -6,7 +6,7 @@ differ from those of the equilibrium.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -21,13 +21,13 @@ from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
-from gearwhine.from_case.machine import describe_machine, require_machine
+from gearwhine.from_case.machine import require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import NO_OPERATING_POINT, ReducedHousing, reduce_housing
+from gearwhine.solve.machine import NO_OPERATING_POINT
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
@@ -124,10 +124,6 @@ class SolvedLoad:
     point : OperatingPoint
     bearings : tuple of LoadedBearing
     pairs : tuple of LoadedPair
-    on_housing : bool
-        Whether the compliance of the housing acts; seats are rigid without.
-    gravity : tuple of float or None
-        Gravity along x, y, z [m/s²].
     over_torque : dict of float to OperatingPoint
         Equilibria by the torque of the first driver [N m], where they are asked for.
     sensitivity : LoadSensitivity or None
@@ -138,10 +134,18 @@ class SolvedLoad:
     point: OperatingPoint
     bearings: tuple[LoadedBearing, ...]
     pairs: tuple[LoadedPair, ...]
-    on_housing: bool
-    gravity: tuple[float, ...] | None
     over_torque: dict[float, OperatingPoint]
     sensitivity: LoadSensitivity | None = None
+
+    @property
+    def on_housing(self) -> bool:
+        """Whether the compliance of a housing acts; seats are rigid without."""
+        return self.machine.housing is not None
+
+    @property
+    def gravity(self) -> Sequence[float] | None:
+        """Gravity along x, y, z [m/s²]."""
+        return self.machine.gravity
 
     @cached_property
     def shafts(self) -> tuple["DeflectedShaft", ...]:
@@ -189,21 +193,22 @@ def _deflected(deflection: ShaftDeflection, machine: Machine) -> DeflectedShaft:
 
 def solve_load(
     case: Case,
-    housing: SolvedHousing | ReducedHousing | None,
+    machine: Machine,
     progress: Progress = silent,
     *,
     over_torque: bool = False,
     sensitivity: bool = False,
     line: str | None = None,
     over_hunting_period: bool = False,
+    housing: SolvedHousing | None = None,
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine under its torques and its weight.
 
     Parameters
     ----------
     case : Case
-    housing : SolvedHousing, ReducedHousing or None
-        Housing of the case; None for rigid seats, even where the case has a housing. Gradients need a solved one.
+    machine : Machine
+        Its machine, on rigid seats where it has no housing.
     progress : callable
     over_torque : bool
         Whether to solve for the equilibria at `TORQUES` as well.
@@ -213,32 +218,27 @@ def solve_load(
         Line that parameters are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
     over_hunting_period : bool
         Whether to solve pairs with pitch deviations or damaged teeth over their hunting period, too.
+    housing : SolvedHousing, optional
+        Solved housing of the machine, by which there are gradients.
 
     Raises
     ------
-    CaseError
-        Where the case has no rotors or nothing loads them.
     gearwhine.coupling.CouplingError
-        Where the parts make no machine, or a load drives a motion that nothing holds.
+        Where a load drives a motion that nothing holds.
     gearwhine.coupling.EquilibriumNotFoundError
         Where no equilibrium is found.
     """
-    require_load(case)
-    operation = case.operation
-    assert operation is not None
-    part = reduce_housing(case, housing, progress) if isinstance(housing, SolvedHousing) else housing
-    machine = describe_machine(case, None if part is None else part.component, grounded=part is None)
     progress("static equilibrium of the machine")
-    point = machine.operating_point(operation.gravity)
+    point = machine.operating_point()
     points: dict[float, OperatingPoint] = {}
-    for number, part in enumerate(TORQUES if over_torque and operation.torque != 0.0 else ()):
+    for number, part in enumerate(TORQUES if over_torque and machine.torque != 0.0 else ()):
         progress("static equilibrium over torque", number / len(TORQUES))
         outputs = [
             output if output.torque is None else replace(output, torque=part * output.torque)
             for output in machine.outputs
         ]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
-        points[part * operation.torque] = loaded.operating_point(operation.gravity)
+        points[part * machine.torque] = loaded.operating_point()
     ratings, loads, preloads = given_ratings(case), _given_loads(case), _preloads(machine, progress)
     bearings = tuple(
         LoadedBearing(
@@ -258,9 +258,8 @@ def solve_load(
         )
     gradients = None
     if sensitivity:
-        assert not isinstance(housing, ReducedHousing), "gradients by the housing need its mesh"
         gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
-    return SolvedLoad(machine, point, bearings, pairs, housing is not None, operation.gravity, points, gradients)
+    return SolvedLoad(machine, point, bearings, pairs, points, gradients)
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:
@@ -286,7 +285,7 @@ def _given_loads(case: Case) -> dict[str, FloatArray]:
 
 
 def find_load(
-    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+    case: Case, machine: Machine, progress: Progress = silent
 ) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
     """Find the operating point of a case beside another analysis, and its warnings.
 
@@ -295,7 +294,7 @@ def find_load(
 
     Parameters
     ----------
-    case, housing, progress
+    case, machine, progress
         As :func:`solve_load`.
 
     Raises
@@ -306,7 +305,7 @@ def find_load(
     if not case.is_loaded:
         return None, []
     try:
-        solved = solve_load(case, housing, progress)
+        solved = solve_load(case, machine, progress)
     except NO_OPERATING_POINT as error:
         if case.needs_operating_point:
             raise

@@ -13,15 +13,16 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
-from gearwhine.coupling import CoupledMachine, coupled_modes
+from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.linear.complex_modes import Stability
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.machine.excitation import Run
+from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact
-from gearwhine.from_case.driving import unbalanced_torque
 from gearwhine.output.quantity import warning
 from gearwhine.rotors.rolling_bearings import RollingBearing
 from gearwhine.solve.signature import SolvedSignature, TracedLine
@@ -190,19 +191,11 @@ def operation_warnings(case: Case) -> list[dict[str, Any]]:
     return warnings
 
 
-def unbalanced_torque_warnings(case: Case) -> list[dict[str, Any]]:
-    """Warn of torques over time that do not balance, so that a train turns away from its nominal rotation.
-
-    Parameters
-    ----------
-    case : Case
-        With an operation and a transient.
-    """
-    net = unbalanced_torque(case)
+def unbalanced_torque_warnings(machine: Machine, run: Run | None) -> list[dict[str, Any]]:
+    """Warn of torques over time that do not balance, so that a train turns away from its nominal rotation."""
+    net, free = machine.unbalanced_torque, isinstance(run, FreeRun)
     if net == 0.0:
         return []
-    assert case.transient is not None
-    free = case.transient.run is not None and case.transient.run.free
     speed = "the speed told is that of motor and load alone" if free else "its speed is no longer that of operation"
     remedy = "put them into [operation.motor] and [operation.load]" if free else "balance them, or take a free run"
     message = (

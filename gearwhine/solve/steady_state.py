@@ -13,7 +13,6 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
 from gearwhine.coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
 from gearwhine.coupling.gears.geometry.pair import pair_label
-from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.coupling.periodic.response import PeriodicResponse
@@ -28,7 +27,6 @@ from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
 from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from gearwhine.coupling.time.histories import histories as coupled_histories
-from gearwhine.from_case.machine import base_motion
 from gearwhine.output.quantity import RPM, warning
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -308,15 +306,14 @@ def solve_steady(
         return _superposed(case, machine, housing, speed, groups, progress)
     if not over_speed:
         response = periodic_response(machine.system)
-        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response, base_motion(case)),))
+        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
     low, high = _speed_range(case)
     low, high = with_sense_of_operation(case, (low, high))
-    base = base_motion(case)
     rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
     def seen(at: float, response: PeriodicResponse) -> None:
         if rms:
-            motion = _motion(case, machine.at_speed(at), housing, at, response, base)
+            motion = _motion(case, machine.at_speed(at), housing, at, response)
             for name, value in motion.sensor_rms.items():
                 rms[name].append(value)
 
@@ -330,7 +327,7 @@ def solve_steady(
     )
     progress("the motions at the speed of operation")
     responses = curve.at(speed) if curve.passes(speed) else [periodic_response(machine.system)]
-    motions = tuple(_motion(case, machine, housing, speed, response, base) for response in responses)
+    motions = tuple(_motion(case, machine, housing, speed, response) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
     loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
     assumed = tuple(
@@ -349,7 +346,7 @@ def _loudest(
     for place in sorted(set(places.values())):
         speed = float(curve.speeds[place])
         machine_there = machine.at_speed(speed)
-        motion = _motion(case, machine_there, housing, speed, curve.motion(place), base_motion(case))
+        motion = _motion(case, machine_there, housing, speed, curve.motion(place))
         samples = len(motion.histories.times)
         record = motion.response.record(with_modal_rows(machine_there, transient_outputs(machine_there)), samples)
         modal = amplitude_spectrum(
@@ -400,13 +397,14 @@ def _superposed(
     progress: Progress,
 ) -> SolvedSteady:
     progress(f"the motions of {len(groups)} groups of excitations without a short common period")
-    superposed, base = superposed_response(machine.system, groups), base_motion(case)
+    superposed, loads = superposed_response(machine.system, groups), machine.loads
     motions = tuple(
         replace(
-            _motion(case, machine, housing, speed, one.response, None if base is None else one.group.part_of(base)),
+            _motion(case, replace(machine, loads=of_group), housing, speed, one.response),
             excitation=one.name,
         )
         for one in superposed.motions
+        for of_group in [loads if loads.base is None else replace(loads, base=one.group.part_of(loads.base))]
     )
     return SolvedSteady(machine, motions, superposed=superposed)
 
@@ -431,7 +429,6 @@ def _motion(
     housing: SolvedHousing | None,
     speed: float,
     response: PeriodicResponse,
-    base: BaseMotion | None,
 ) -> SteadyMotion:
     assert case.operation is not None
     ratio = abs(speed / case.operation.speed)
@@ -441,4 +438,4 @@ def _motion(
     rate = max(_OVERSAMPLING * limit, least_sampling_rate(response.system)[0])
     samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
     record = response.record(transient_outputs(machine), samples)
-    return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, base), limit)
+    return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, machine), limit)

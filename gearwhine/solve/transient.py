@@ -30,8 +30,6 @@ from gearwhine.coupling.time.transient import (
     integration_key,
     transient_figures,
 )
-from gearwhine.from_case.driving import driving
-from gearwhine.from_case.machine import base_motion
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.output.files import PRESENTATION, installed, source_digest
 from gearwhine.progress import Progress, silent
@@ -228,17 +226,15 @@ def solve_transient(
     require(case, "operation", "transient", command="run")
     assert case.transient is not None
     assert case.operation is not None
-    turning = driving(case, machine.rotors).turning
+    turning = machine.speed_profile
     fastest = 1.0 if turning is None else max(1.0, float(turning.speed_ratios.max()))
     limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
     modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
 
-    base = base_motion(case)
-
     def named(result: MotionRecord) -> Signals:
         relative = coupled_histories(machine, result, turning)
-        return Signals(in_space(relative, housing, base), modal_record(machine, result, modal, housing=traced))
+        return Signals(in_space(relative, housing, machine), modal_record(machine, result, modal, housing=traced))
 
     nothing = named(empty_record(machine, outputs))
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
@@ -253,7 +249,7 @@ def solve_transient(
     key = integration_key(*integration, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
     blocks: Blocks = _InMemory()
     if keep is not None:
-        blocks = keep(_with_code(fingerprint(key, base), chosen))
+        blocks = keep(_with_code(fingerprint(key, machine.loads.base), chosen))
     last = blocks[len(blocks) - 1] if len(blocks) else None
     filter_state = nothing.columns if last is None else last["held"]
     integrated = integrate_blocks(

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine import __version__
-from gearwhine.case import Case, dump_case, mesh_frequencies
+from gearwhine.case import Case, dump_case
 from gearwhine.coupling.signals.line_names import LineName
 from gearwhine.coupling.signals.spectrum import Window
 from gearwhine.failures import explain
@@ -30,11 +30,10 @@ from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import (
     ReducedHousing,
-    basis_error,
-    build_machine,
-    line_mechanisms,
+    described_machine,
+    load_machine,
     reduce_housing,
-    solve_pairs,
+    run_of,
 )
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
@@ -126,18 +125,16 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        load, warnings_of_load = find_load(case, housing)
-        point = None if load is None else load.point
-        pairs = solve_pairs(case, housing, point=point)
-        machine = build_machine(case, housing, pairs, point=point)
-        frequencies = mesh_frequencies(case) if case.gear_pair else ()
-        solved = solve_transient(case, machine, frequencies, housing=housing)
+        described = described_machine(case, housing)
+        load, warnings_of_load = find_load(case, described)
+        loaded = load_machine(described, None if load is None else load.point, housing, run_of(case))
+        frequencies = described.mesh_frequencies
+        solved = solve_transient(case, loaded.coupled, frequencies, housing=housing)
         result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
         if load is not None:
             result.document["load"] = load_part(load)
-        error = basis_error(case, machine, housing, pairs, point=point)
-        add_uncertainty(result.document, error, solved.trusted_limit)
-        add_mechanisms(result.document, line_mechanisms(machine, housing), solved.line_tolerance_hz)
+        add_uncertainty(result.document, loaded.basis_error(), solved.trusted_limit)
+        add_mechanisms(result.document, loaded.mechanisms, solved.line_tolerance_hz)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
         return result

@@ -4,19 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import load_case
 from gearwhine.coupling import CoupledMachine, CouplingError
 from gearwhine.coupling.time.histories import modal_rows
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.machine import build_machine
 
 
 @pytest.fixture(scope="module")
 def machine() -> CoupledMachine:
     """Two rotors on isotropic bearings, whose averaged stiffness is their own, in one piece with their gears."""
     case = load_case("spur-pair", ["gear.*.bore=0"]).case
-    return build_machine(case, None, solve_gears(case))
+    return coupled(case)
 
 
 @pytest.mark.parametrize("name", ["input", "output"])

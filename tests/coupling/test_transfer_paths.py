@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -24,8 +25,6 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.coupling.signals import housing_paths, line_names, mode_parts
 from gearwhine.coupling.time.histories import modal_record, transient_outputs, with_modal_rows
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.machine import build_machine
 
 MODES = 4
 
@@ -50,7 +49,7 @@ def housing(seed: int = 2) -> HousingComponent:
 @pytest.fixture(scope="module")
 def grounded() -> CoupledMachine:
     case = load_case("spur-pair").case
-    return build_machine(case, None, solve_gears(case))
+    return coupled(case)
 
 
 def on_housing(machine: CoupledMachine, seed: int = 2) -> CoupledMachine:

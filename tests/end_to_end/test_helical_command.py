@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import mean_bearing_forces, solve_transient
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
@@ -75,7 +74,7 @@ def test_the_spectra_hold_the_axial_force_and_the_moments_of_bearings(results: P
 def test_the_response_to_an_error_holds_the_thrust_that_bearings_take() -> None:
     """Far below all modes the bearings of a shaft take the axial part of the teeth's force: F_bt tan β_b."""
     case = load_case("helical-pair").case
-    found = mesh_error_response(build_machine(case, None, solve_gears(case)), np.array([2.0 * np.pi]))
+    found = mesh_error_response(coupled(case), np.array([2.0 * np.pi]))
     base = math.asin(math.sin(math.radians(15.0)) * math.cos(math.radians(20.0)))
     (force,) = found.mesh_force.values()
     axial = {
@@ -96,7 +95,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
         'rotor.1.axis=["48 mm", "0 mm"]',
     )
     case = load_case("helical-pair", (*SHORTER, *straight)).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     spur, *_ = solve_transient(case, machine, mesh_frequencies(case)).histories.mesh_force.values()
     with xr.open_dataset(results / "results.nc") as data:
         helical = data["mesh_force"].isel(contact=0).values
@@ -107,7 +106,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
 def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:
     """Closed form: F_a = T / r tan β, in opposite senses on both shafts; radial bearings carry none of it."""
     case = load_case("helical-pair", SHORTER).case
-    solved = solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
+    solved = solve_transient(case, coupled(case), mesh_frequencies(case))
     forces = mean_bearing_forces(solved)
     thrust = 150.0 / (0.5 * 23 * 3e-3 / math.cos(math.radians(15.0))) * math.tan(math.radians(15.0))
     assert abs(forces["input-left"][2]) == pytest.approx(thrust, rel=2e-3)
@@ -120,7 +119,7 @@ def test_the_mesh_mode_does_not_lean_on_more_modes_of_the_shafts() -> None:
     found = []
     for limit in ("8 kHz", "40 kHz"):
         case = load_case("helical-pair", [f'rotor.{name}.frequency_limit="{limit}"' for name in (0, 1)]).case
-        modes = coupled_modes(build_machine(case, None, solve_gears(case)).system)
+        modes = coupled_modes(coupled(case).system)
         found.append(next(f for f, kind in zip(modes.frequencies_hz, modes.kinds, strict=True) if kind == "mesh"))
     # What modes lack over the face is a compliance without mass: it answers the motion as at rest.
     assert found[0] == pytest.approx(found[1], rel=1e-3)

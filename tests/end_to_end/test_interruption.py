@@ -20,7 +20,7 @@ from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import build_machine, solve_pairs
+from gearwhine.solve.machine import described_machine, load_machine, reduce_housing
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.signature import solve_signature
@@ -55,10 +55,12 @@ def write_whole(file: Path) -> set[str]:
     """
     case = load_case("small-gearbox", MANY[1::2]).case
     rotors, housing = solve_rotors(case), solve_housing(case)
-    load, _ = find_load(case, housing)
+    part = reduce_housing(case, housing)
+    described = described_machine(case, part)
+    load, _ = find_load(case, described)
     assert load is not None
-    pairs = solve_pairs(case, housing, point=load.point)
-    machine = build_machine(case, housing, pairs, point=load.point)
+    standing = load_machine(described, load.point, part)
+    pairs, machine = standing.pairs, standing.coupled
     system = solve_system(case, machine, housing)
     transient = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
     signature = solve_signature(transient, system.modes, housing.modes.frequencies_hz)

@@ -3,12 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
+from coupled_cases import coupled, loaded
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import ReducedHousing, basis_error, build_machine, reduce_housing
+from gearwhine.solve.machine import ReducedHousing, reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 Motions = dict[str, FloatArray]
@@ -41,7 +41,7 @@ def by_mesh_error(housings: dict[float, ReducedHousing], frequencies: FloatArray
     found = []
     for limit, housing in housings.items():
         case = case_of(limit, *changes)
-        machine = build_machine(case, housing, solve_gears(case))
+        machine = coupled(case, housing)
         response = mesh_error_response(machine, frequencies)
         found.append({name: np.abs(motion) for name, motion in response.sensor_acceleration.items()})
     return found
@@ -62,9 +62,7 @@ def test_the_told_error_covers_the_true_one(housings: dict[float, ReducedHousing
     frequencies = HERTZ * np.arange(60.0, LIMIT_HZ, 20.0)
     ours, exact = by_mesh_error(housings, frequencies)
     case = case_of(LIMIT_HZ)
-    pairs = solve_gears(case)
-    machine = build_machine(case, housings[LIMIT_HZ], pairs)
-    error = basis_error(case, machine, housings[LIMIT_HZ], pairs)
+    error = loaded(case, housings[LIMIT_HZ]).basis_error()
     assert error is not None
     for name, told in error.at(frequencies).items():
         true = np.abs(ours[name] / exact[name] - 1.0)

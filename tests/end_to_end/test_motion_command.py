@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results.run import transient_document
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import solve_transient
 
 FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")
@@ -30,7 +29,7 @@ def documents() -> dict[str, dict[str, Any]]:
     found = {}
     for method in MARCHED:
         case = load_case("spur-pair", (*SHORT[1::2], f"transient.method='{method}'")).case
-        machine = build_machine(case, None, solve_gears(case))
+        machine = coupled(case)
         found[method] = transient_document(solve_transient(case, machine, mesh_frequencies(case)))
     return found
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 
 from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
@@ -28,7 +29,6 @@ from gearwhine.rotors.rolling_bearings import (
     operating_clearance,
     static_rating,
 )
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.rotors import solve_rotors
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
@@ -121,10 +121,10 @@ def test_rolling_geometry_is_the_matrix_that_it_makes(rolling: dict[str, Any]) -
     same = rotors_document(solve_rotors(by_matrix))["rotors"][0]
     np.testing.assert_allclose(same["lateral_hz"], document["lateral_hz"], rtol=1e-9)
     np.testing.assert_allclose(same["whirl"][0]["frequency_hz"], document["whirl"][0]["frequency_hz"], rtol=1e-9)
-    machine = build_machine(case, None, ())
-    coupled = coupled_modes(machine.system).frequencies_hz
+    machine = coupled(case)
+    of_machine = coupled_modes(machine.system).frequencies_hz
     # The system keeps more modes and damps the shaft by half a percent; its lowest whirl is the rotor's own.
-    lowest = sorted(frequency for frequency in coupled if frequency > 1.0)[:4]
+    lowest = sorted(frequency for frequency in of_machine if frequency > 1.0)[:4]
     np.testing.assert_allclose(lowest, document["whirl"][0]["frequency_hz"][:4], rtol=2e-3)
 
 

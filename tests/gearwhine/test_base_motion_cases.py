@@ -8,15 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.solve.housing_modes import base_participation, solve_housing
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import solve_transient
 
 BASE = {
@@ -93,7 +92,7 @@ def test_sensors_show_the_motion_in_space() -> None:
     document["transient"] = {"revolutions": 3, "discard": 2}
     case = parse_case(document)
     housing = solve_housing(case)
-    machine = build_machine(case, housing, solve_gears(case))
+    machine = coupled(case, housing)
     solved = solve_transient(case, machine, (2566.0,), housing=housing)
     assert np.mean(solved.histories.sensor_acceleration["top"]) == pytest.approx(300.0, rel=0.02)
     # Sideways, along the right wall's normal, it does not.

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
-from gearwhine.solve.machine import solve_machine
 from gearwhine.solve.transient import solve_transient
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
@@ -80,7 +80,8 @@ def test_what_cannot_be_is_refused_by_its_key(changes: dict[str, Any], key: str)
 def test_all_of_it_moves_together() -> None:
     """Energies add up, the load's share of the first bearing comes out, and friction costs about half a percent."""
     case = spur_pair(pair={"friction": 0.06, "backlash": "60 um"}, **rolling("nonlinear"))
-    _, pairs, machine = solve_machine(case)
+    standing = about_operating_point(case)
+    pairs, machine = standing.pairs, standing.coupled
     solved = solve_transient(case, machine, (pairs[0].mesh_frequency,))
     document = transient_document(solved)
     assert document["energy_error"] < 5e-3

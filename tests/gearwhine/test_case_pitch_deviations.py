@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
 from gearwhine.coupling.gears.geometry.pitch_deviations import pitch_gaps
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.rotors import build_gear
-from gearwhine.solve.machine import build_machine
 
 MICROMETRES = [0.0, 1.0, -2.5, *([0.5] * 25)]
 
@@ -56,7 +56,7 @@ def test_bundled_cases_have_none() -> None:
 def test_they_reach_both_flanks_of_the_machine() -> None:
     case = case_with([f"{value} um" for value in MICROMETRES])
     pairs = solve_gears(case)
-    drive, back = build_machine(case, None, pairs).system.contacts
+    drive, back = coupled(case).system.contacts
     expected = -np.array(MICROMETRES) * 1e-6 * math.cos(math.radians(20.0))
     np.testing.assert_allclose(drive.contact.pitch_gaps, expected, rtol=1e-9)
     np.testing.assert_array_equal(drive.contact.pitch_gaps, pitch_gaps(pairs[0].geometry))

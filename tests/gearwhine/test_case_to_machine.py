@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from lopsided_case import AXES, GEARS, MODULE, PAIRS, SPEEDS, START, STIFFNESS, UNBALANCES, lopsided
 
 from gearwhine.case import Case, parse_case
 from gearwhine.coupling import CoupledMachine, GapLaw, Torque
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.loads import TorqueRipple
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import build_machine
 
 Change = Callable[[dict[str, Any]], None]
 
@@ -30,7 +29,7 @@ def case_with(change: Change = lambda document: None, **keys: Any) -> Case:
 
 def machine_of(change: Change = lambda document: None) -> CoupledMachine:
     case = case_with(change)
-    return build_machine(case, None, solve_gears(case))
+    return coupled(case)
 
 
 def entry(document: dict[str, Any], table: str, name: str) -> dict[str, Any]:

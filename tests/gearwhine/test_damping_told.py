@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.case import parse_case
@@ -12,7 +13,6 @@ from gearwhine.results.check import sections
 from gearwhine.results.motion import amplitude_words, band_words, level_words
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, catalogue_bearing
 from gearwhine.solve.damping import damping_warnings, part_dampings
-from gearwhine.solve.machine import solve_machine
 
 BALLS = {"catalogue": {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}}
 
@@ -49,7 +49,7 @@ def document(**bearing: Any) -> dict[str, Any]:
 def test_a_rolling_bearing_is_damped_by_its_stiffness(given: dict[str, Any], time: float) -> None:
     """C = τ K of the tangent under load, in all directions; from Python as from a case."""
     case = parse_case(document(**given))
-    _, _, machine = solve_machine(case)
+    machine = about_operating_point(case).coupled
     for mounted in machine.bearings:
         stiffness, damping = mounted.bearing.spatial_stiffness, mounted.bearing.spatial_damping
         assert stiffness[0, 0] > 1e7

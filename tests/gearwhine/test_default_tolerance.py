@@ -2,18 +2,17 @@
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from scipy.signal import argrelmax
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 
 def solved(tolerance: str) -> SolvedTransient:
     settings = ("transient.revolutions=12", "transient.discard=10", f"transient.tolerance={tolerance}")
     case = load_case("helical-pair", settings).case
-    return solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
+    return solve_transient(case, coupled(case), mesh_frequencies(case))
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from lopsided_case import PAIRS, lopsided
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
@@ -22,7 +23,6 @@ from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.rotors import Campbell
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.signature import SolvedSignature, solve_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
@@ -42,8 +42,8 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     transient = "[transient]\nrevolutions = 4\ndiscard = 2\npoints_per_revolution = 200\ntolerance = 5e-3\n"
     path.write_text(lopsided(more=transient), encoding="utf-8")
     case = load_case(str(path)).case
-    pairs, housing = solve_gears(case), solve_housing(case)
-    machine = build_machine(case, housing, pairs)
+    housing = solve_housing(case)
+    machine = coupled(case, housing)
     solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
     modes = solve_system(case, machine, housing).modes
     signature = solve_signature(solved, modes, housing.modes.frequencies_hz)

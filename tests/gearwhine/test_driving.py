@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point, coupled
 
 from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
 from gearwhine.coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
 from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.machine.components import RotorComponent
+from gearwhine.coupling.machine.excitation import Driving, machine_driving
 from gearwhine.coupling.machine.loads import TorqueHistory, TorqueRipple, TorqueSlope, largest_torques
 from gearwhine.coupling.machine.speed_profile import free_speed
 from gearwhine.coupling.signals.spectrum import lines_at
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
-from gearwhine.solve.machine import build_machine, solve_machine
+from gearwhine.solve.machine import described_machine, run_of
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 RPM = math.pi / 30.0
@@ -44,9 +47,13 @@ def spur_pair(transient: dict[str, Any], **operation: Any) -> dict[str, Any]:
 
 
 def run(case: Case) -> SolvedTransient:
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     # Nominal mesh frequencies matter to sampling alone.
     return solve_transient(case, machine, (500.0,))
+
+
+def driving_of(case: Case, rotors: Sequence[RotorComponent]) -> Driving:
+    return machine_driving(described_machine(case, None), rotors, run_of(case))
 
 
 @pytest.mark.parametrize(
@@ -198,7 +205,7 @@ def test_free_run_of_a_geared_machine() -> None:
     assert solved.turning is not None
     # 90 - 90 ω/ω₀ - 10 - 30 ω/ω₀ about its end.
     inertia, top = 2.0 * float(np.sum(solved.machine.rotors[0].turning ** 2)), 3000.0 * RPM
-    assert train_inertia(case, solved.machine.rotors) == pytest.approx(inertia, rel=1e-9)
+    assert solved.machine.train_inertia == pytest.approx(inertia, rel=1e-9)
     end, constant = top * 80.0 / 120.0, inertia * top / 120.0
     speed = end + (600.0 * RPM - end) * np.exp(-solved.turning.times / constant)
     np.testing.assert_allclose(1500.0 * RPM * solved.turning.speed_ratios, speed, rtol=1e-6)
@@ -224,8 +231,7 @@ def test_the_mesh_of_a_free_run_is_that_of_its_mean_load() -> None:
     steady = parse_case(document)
     operation, transient = document["operation"] | lines, {"run": {"from": "2000 rpm", "time": "2 s"}}
     free = parse_case(document | {"operation": operation, "transient": transient})
-    pairs = solve_gears(steady)
-    expected, machine = (build_machine(case, None, pairs).system for case in (steady, free))
+    expected, machine = (coupled(case).system for case in (steady, free))
     np.testing.assert_allclose(machine.load, expected.load, rtol=1e-12)
     (mean,) = (one for one in mean_meshes(expected) if one is not None)
     (found,) = (one for one in mean_meshes(machine) if one is not None)
@@ -256,12 +262,11 @@ def test_a_free_run_at_its_speed_has_the_lines_of_the_steady_motion() -> None:
     steady = parse_case(document)
     transient = {"run": {"from": "3000 rpm", "time": "0.2 s"}, "discard": 5, "tolerance": 1e-4}
     free = parse_case(document | {"operation": document["operation"] | lines, "transient": transient})
-    pairs = solve_gears(steady)
     (mesh,) = mesh_frequencies(steady)
-    machine = build_machine(steady, None, pairs)
+    machine = coupled(steady)
     response = periodic_response(machine.system)
     period = histories(machine, response.record(transient_outputs(machine), 256))
-    run = solve_transient(free, build_machine(free, None, pairs), (mesh,)).histories
+    run = solve_transient(free, coupled(free), (mesh,)).histories
     interval = float(run.times[1] - run.times[0])
     for name, load in period.bearing_load.items():
         expected = np.abs(lines_at(load.T, response.period / 256, np.array([mesh]), "uniform"))[:2, 0]
@@ -277,8 +282,8 @@ def test_torques_of_a_case() -> None:
         over_time={"time": [0, 1], "torque": [0, 6]},
         ripple=[{"amplitude": 2, "order": 3}, {"amplitude": 1, "frequency": "50 Hz"}],
     )
-    rotors = build_machine(parse_case(document), None, solve_gears(parse_case(document))).rotors
-    steady, geared, added, taken, order, frequency = driving(parse_case(document), rotors).torques
+    rotors = coupled(parse_case(document)).rotors
+    steady, geared, added, taken, order, frequency = driving_of(parse_case(document), rotors).torques
     assert isinstance(steady, Torque)
     assert isinstance(geared, Torque)
     assert (steady.value, geared.value) == pytest.approx((71.77, 71.77))
@@ -293,7 +298,8 @@ def test_torques_of_a_case() -> None:
 def test_a_braked_train_rests_on_its_back_flanks() -> None:
     """The torque over the base radius presses the teeth behind, relieved and part of the time in pairs as they are."""
     case = load_case("spur-pair", ["operation.torque=-100 N*m"]).case
-    _, pairs, machine = solve_machine(case)
+    standing = about_operating_point(case)
+    pairs, machine = standing.pairs, standing.coupled
     drive, back = machine.system.contacts
     q = static_equilibrium(machine.system)
     compression = [float(contact.direction @ q) - contact.clearance for contact in (drive, back)]
@@ -353,7 +359,7 @@ def test_the_largest_torques_are_those_of_constants_and_histories_together() -> 
 
     def assemble(document: dict[str, Any]) -> CoupledMachine:
         case = parse_case(document)
-        return build_machine(case, None, solve_gears(case))
+        return coupled(case)
 
     for part in ({}, {"operation": operation, "transient": run}):
         with pytest.raises(ValueError, match="thrust"):
@@ -408,7 +414,7 @@ def test_torque_taken_off_besides_is_against_the_rotation_of_a_driving_output_to
         "over_time": {"time": [0, 1], "torque": [0, 2]},
         "ripple": [{"amplitude": 1, "order": 1, "phase": "30 deg"}],
     }
-    torques = driving(two_motors(besides, operation={"speed": f"{1000 * sense} rpm"}), ()).torques
+    torques = driving_of(two_motors(besides, operation={"speed": f"{1000 * sense} rpm"}), ()).torques
     steady = {torque.rotor: torque.value for torque in torques if isinstance(torque, Torque)}
     assert steady == pytest.approx({"first": 20.0 * sense, "taker": 30.0 * sense, "giver": -10.0 * sense})
     last = {torque.rotor: torque.values[-1] for torque in torques if isinstance(torque, TorqueHistory)}
@@ -428,10 +434,10 @@ def test_the_slope_of_a_driving_output_is_that_of_its_torque(sense: int) -> None
         "load": {"speed": [0, 500], "torque": [0, 100]},
     }
     case = two_motors({}, operation=operation, transient={"run": {"from": "300 rpm", "time": "10 ms"}})
-    rotors = build_machine(case, None, solve_gears(case)).rotors
+    rotors = coupled(case).rotors
     slopes = {
         torque.rotor: float(np.interp(0.8, torque.speed_ratios, torque.slopes))
-        for torque in driving(case, rotors).torques
+        for torque in driving_of(case, rotors).torques
         if isinstance(torque, TorqueSlope)
     }
     assert slopes == pytest.approx({"first": 0.0, "taker": -1.5 * 0.2, "giver": 0.5 * 0.2})

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case, parse_case
 from gearwhine.coupling.gears import (
@@ -34,7 +35,6 @@ from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques, with_coarser_slices
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import build_machine
 
 
 @cache
@@ -366,7 +366,7 @@ def test_the_level_at_a_sensor_is_an_aim() -> None:
     (aim,) = relief_aims(case, solved)
     assert isinstance(aim, SensorLevel)
     assert aim.weights == {1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}
-    machine = build_machine(case, housing, solved)
+    machine = coupled(case, housing)
     contact, frequency = solved[0].contact, solved[0].mesh_frequency
     assert frequency is not None
     mesh = loaded_transmission_error(contact, solved[0].static.force, mesh_period_phases(contact, 200))

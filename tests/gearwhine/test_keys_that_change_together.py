@@ -1,10 +1,10 @@
 """Keys that change together: `*` in a change, and several keys of one `--over`; materials whose shear is their own."""
 
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import CaseError, Material, load_case, swept_keys
 from gearwhine.from_case.mesh import material_of
-from gearwhine.solve.machine import build_machine
 from gearwhine.sweep.points import sweep_points
 
 
@@ -81,9 +81,9 @@ def test_a_shear_modulus_of_its_own_is_that_of_shafts_alone() -> None:
     changes = ["material.steel.shear_modulus=70 GPa", "gear.*.stiffens_shaft=false"]
     case = load_case("spur-pair", changes).case
     assert case.material["steel"].shear_modulus == 70e9
-    rotor = build_machine(case, None, ()).rotors[0]
+    rotor = coupled(case).rotors[0]
     stiff_steel = load_case("spur-pair", ["material.steel.shear_modulus=90 GPa", *changes[1:]]).case
-    stiffer = build_machine(stiff_steel, None, ()).rotors[0]
+    stiffer = coupled(stiff_steel).rotors[0]
     # Elastic torsion goes with the root of the shear modulus.
     ratio = stiffer.modal.torsional.frequencies[1] / rotor.modal.torsional.frequencies[1]
     assert ratio == pytest.approx((90.0 / 70.0) ** 0.5, rel=1e-9)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.case.gears import ReliefAim
@@ -23,7 +24,7 @@ from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import build_machine, full_housing_component
+from gearwhine.solve.machine import full_housing_component
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"
@@ -80,7 +81,7 @@ def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gea
     case = helical_case(relief, *more)
     pairs = solve_gears(case)
     point = describe_machine(case, full_housing_component(case, housing)).operating_point()
-    return Gearbox(case, housing, pairs, LineModel(build_machine(case, housing, pairs), point, pairs, (False,)))
+    return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.operating_point import solve_load
+from gearwhine.solve.machine import described_machine, reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import (
     by_case_parameters,
     by_changes,
@@ -70,7 +70,7 @@ def solve() -> Solve:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
             housing = solve_housing(case)
-        return housing, solve_load(case, housing).point
+        return housing, described_machine(case, reduce_housing(case, housing)).operating_point()
 
     return solved
 

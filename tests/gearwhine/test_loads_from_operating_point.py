@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.analyses import machine as analyses
@@ -18,7 +19,7 @@ from gearwhine.coupling.errors import EquilibriumNotFoundError
 from gearwhine.coupling.gears import loaded_transmission_error
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
 from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibrium
-from gearwhine.solve.machine import solve_machine, solve_pairs
+from gearwhine.solve.machine import described_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
@@ -78,7 +79,7 @@ def test_bearings_are_linearised_where_the_machine_rests(case: gw.Case) -> None:
     from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 
     point = describe_machine(case).operating_point()
-    _, _, machine = solve_machine(case)
+    machine = about_operating_point(case).coupled
     q = static_equilibrium(machine.system)
     for load, connector in zip(point.bearings, machine.system.linear, strict=False):
         assert connector.offset is not None
@@ -104,7 +105,7 @@ def test_a_belt_in_the_case_loads_its_bearings(case: gw.Case) -> None:
 def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
     """The contact of a pair left to the operating point has the load over its face that was found there."""
     point = describe_machine(case).operating_point()
-    (pair,) = solve_pairs(case, None)
+    (pair,), _ = solve_pairs(case, None)
     assert pair.contact.faces is not None
     assert pair.static.line_loads is not None
     (found,) = point.pairs
@@ -114,7 +115,7 @@ def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
     mean = weights @ load / weights.sum()
     # The tilt changes the profile's side of the contact a little, which the pair's own contact leaves out.
     assert mean == pytest.approx(found.line_load, abs=0.02 * float(found.line_load.max()))
-    (given,) = solve_pairs(parse_case(document(misalignment="0.2 mrad")), None)
+    (given,), _ = solve_pairs(parse_case(document(misalignment="0.2 mrad")), None)
     assert given.pair.misalignment == 2e-4
     assert not given.pair.face_gap
 
@@ -133,7 +134,7 @@ def test_nonlinear_bearings_start_at_their_load() -> None:
     """A bearing that follows its elements in motion is left to the operating point as well."""
     case = parse_case(document(law="nonlinear"))
     point = describe_machine(case).operating_point()
-    _, _, machine = solve_machine(case)
+    machine = about_operating_point(case).coupled
     for connector in machine.system.nonlinear:
         assert connector.law.reference == pytest.approx(point.bearing(connector.name).deflection, rel=1e-12)
 
@@ -239,16 +240,14 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
-    found, told = find_load(parse_case(changed), None)
+    found, told = find_load(parse_case(changed), described_machine(parse_case(changed), None))
     assert found is None
     assert told[0]["message"].startswith("no operating point is found")
     assert told[0]["message"].endswith(": no static equilibrium of the machine")
     with pytest.raises(EquilibriumNotFoundError):
-        find_load(parse_case(document()), None)
-    assert find_load(parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}}), None) == (
-        None,
-        [],
-    )
+        find_load(parse_case(document()), described_machine(parse_case(document()), None))
+    idle = parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}})
+    assert find_load(idle, described_machine(idle, None)) == (None, [])
 
 
 def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
@@ -280,7 +279,7 @@ def test_a_misalignment_left_out_is_that_of_the_equilibrium(given: Any) -> None:
     bare, named = given(), given()
     bare["gear_pair"][0].pop("misalignment", None)
     named["gear_pair"][0]["misalignment"] = "found"
-    (pair,), (found,) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(named), None)
+    ((pair,), _), ((found,), _) = solve_pairs(parse_case(bare), None), solve_pairs(parse_case(named), None)
     assert pair.pair.face_gap == found.pair.face_gap != ()
     study = gw.build(**bare)
     load = study.operating_point()
@@ -309,7 +308,8 @@ def test_aligned_flanks_by_the_case_are_told_beside_what_is_found() -> None:
 def test_the_library_takes_the_same_misalignment_as_the_case() -> None:
     """A pair of `gw.Machine` without one is as the machine stands; apart from a machine its flanks are aligned."""
     case = parse_case(typed())
-    _, (pair,), coupled = solve_machine(case)
+    standing = about_operating_point(case)
+    (pair,), coupled = standing.pairs, standing.coupled
     machine = describe_machine(case)
     bare = replace(machine, gear_pairs=[gw.GearPair("pinion", "wheel")])
     (same,) = bare.loaded_pairs()
@@ -322,7 +322,7 @@ def test_the_library_takes_the_same_misalignment_as_the_case() -> None:
 def test_a_gap_of_a_hundredth_of_the_teeth_deflection_is_none() -> None:
     """The largest gap of spur teeth that motion leaves out moves no harmonic of their transmission error by 0.01 dB."""
     aligned, tilted = (
-        solve_pairs(gw.load("spur-pair", {"gear_pair.0.misalignment": angle}).case, None)[0]
+        solve_pairs(gw.load("spur-pair", {"gear_pair.0.misalignment": angle}).case, None)[0][0]
         for angle in (0.0, 0.01 * SPUR_DEFLECTION / 6.35e-3)
     )
     deflection = aligned.static.force / aligned.static.mean_mesh_stiffness
@@ -345,10 +345,10 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
     given["rotor"][1]["axis"] = ["72.5 mm", "0 m"]
     given["bearing"] = [bearing | ACROSS for bearing in given["bearing"] if bearing["name"].endswith("left")]
     case = parse_case(given)
-    load, (entry,) = find_load(case, None)
+    load, (entry,) = find_load(case, described_machine(case, None))
     assert load is None
     assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
-    (pair,) = solve_pairs(case, None)
+    (pair,), _ = solve_pairs(case, None)
     assert (pair.pair.misalignment, pair.pair.face_gap) == (None, ())
     with pytest.warns(UserWarning, match="flanks are taken as aligned, as the machine has no operating point: .*"):
         _ = describe_machine(case).assembled

@@ -6,7 +6,7 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case.speeds_and_torques import range_of_tables, table_range
-from gearwhine.from_case.driving import unbalanced_torque
+from gearwhine.solve.machine import described_machine
 
 RAMP = {"time": ["0 s", "1 ms"], "torque": ["0 N*m", "6 N*m"]}
 OUTPUT = [{"rotor": "output", "torque": "20 N*m", "over_time": RAMP}]
@@ -15,17 +15,17 @@ OUTPUT = [{"rotor": "output", "torque": "20 N*m", "over_time": RAMP}]
 def test_torque_taken_off_over_time_is_unbalanced_unless_the_input_gives_it() -> None:
     """At the first driver, over the ratio of speeds: here 28 teeth drive as many."""
     alone = gw.load("spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT}).case
-    assert unbalanced_torque(alone) == pytest.approx(6.0)
+    assert described_machine(alone, None).unbalanced_torque == pytest.approx(6.0)
     both = gw.load(
         "spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": RAMP}
     ).case
-    assert unbalanced_torque(both) == 0.0
+    assert described_machine(both, None).unbalanced_torque == 0.0
     # An input that falls as the output rises leaves both.
     falling = {"time": RAMP["time"], "torque": ["0 N*m", "-6 N*m"]}
     apart = {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": falling}
-    assert unbalanced_torque(gw.load("spur-pair", apart).case) == pytest.approx(12.0)
+    assert described_machine(gw.load("spur-pair", apart).case, None).unbalanced_torque == pytest.approx(12.0)
     shared = gw.load("spur-pair", {"operation.over_time": RAMP}).case
-    assert unbalanced_torque(shared) == 0.0
+    assert described_machine(shared, None).unbalanced_torque == 0.0
 
 
 def test_a_run_under_unbalanced_torques_says_so() -> None:

@@ -7,6 +7,7 @@ from reducer_case import reducer
 
 from gearwhine.case import Case, parse_case
 from gearwhine.solve.case_summary import check_case
+from gearwhine.solve.machine import described_machine
 from gearwhine.solve.operating_point import load_warnings, solve_load
 from gearwhine.solve.plausibility import operation_warnings
 
@@ -29,7 +30,7 @@ def test_a_pair_behind_which_nothing_is_taken_off_is_told() -> None:
     assert "exchanged" in told["message"]
     idle = case_of(exchanged)
     assert told in check_case(idle).warnings
-    assert told in load_warnings(idle, solve_load(idle, None))
+    assert told in load_warnings(idle, solve_load(idle, described_machine(idle, None)))
     # Where the case says where the torque leaves, it is meant so.
     output = f'output = [{{ rotor = "middle", torque = {60.0 * 72.0 / 21.0} }}]\n'
     assert operation_warnings(case_of(exchanged + output)) == []

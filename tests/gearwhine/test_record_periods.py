@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones
-from gearwhine.solve.machine import solve_machine
 from gearwhine.solve.transient_record import Sampling, sampling
 
 SHAFT = 5500.0 / 60.0  # both shafts of the pair [Hz]
@@ -28,7 +28,7 @@ def sampled(*settings: str, recorded: float = 7, largest: int = 1 << 27) -> Samp
     """Sampling of the spur pair's record of some revolutions after seven."""
     turns = (f"transient.revolutions={7 + recorded}", "transient.discard=7")
     case = load_case("spur-pair", (*turns, *settings)).case
-    _, _, machine = solve_machine(case)
+    machine = about_operating_point(case).coupled
     return sampling(case, machine.system, None, 1e3, 40, 200, largest=largest)
 
 

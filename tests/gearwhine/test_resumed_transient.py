@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.files import held_lock
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 from gearwhine.solve.transient_record import BlockFiles, stored_record
 
@@ -31,7 +30,7 @@ def solve() -> Solve:
     """The transient of a pair of gears on two rotors, five revolutions of which three count."""
     settings = ["transient.revolutions=5", "transient.discard=2", "rotor.input.modes=6", "rotor.output.modes=6"]
     case = load_case("spur-pair", settings).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
 
     def solve(**options: Any) -> SolvedTransient:
         return solve_transient(case, machine, mesh_frequencies(case), samples_per_block=BLOCK, **options)

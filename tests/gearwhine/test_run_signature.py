@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import coupled
 from idler_case import idler
 
 from gearwhine.case import Case, load_case, mesh_frequencies
@@ -13,12 +14,10 @@ from gearwhine.coupling import SpeedProfile
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run
 from gearwhine.figures.machine.transient import _speed
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.dataset import arrays_of
 from gearwhine.output.quantity import document_of
 from gearwhine.output.sections import Table
 from gearwhine.results.run import RUN, RUN_SIGNATURE, report, run_signature_document, sections, transient_document
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
 
@@ -36,7 +35,7 @@ def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, So
         *more,
     )
     case = load_case("spur-pair", changes).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     return case, solve_transient(case, machine, mesh_frequencies(case))
 
 
@@ -262,7 +261,7 @@ def test_pairs_that_share_an_order_share_its_curve(tmp_path: Path) -> None:
     """An idler passes its tooth frequency on: one order for both of its meshes, and one for shafts of one speed."""
     run = "transient.run={ from = '1500 rpm', to = '4500 rpm', time = '0.1 s' }"
     case = load_case(idler(tmp_path), (*FEW, "rotor.third.modes=2", "transient.revolutions=", run)).case
-    solved = solve_transient(case, build_machine(case, None, solve_gears(case)), mesh_frequencies(case))
+    solved = solve_transient(case, coupled(case), mesh_frequencies(case))
     found = solve_run_signature(case, solved)
     assert found is not None
     meshes = {f"{n}× pinion -> wheel, {n}× wheel -> end": 28.0 * n for n in (1, 2, 3)}

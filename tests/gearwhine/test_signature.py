@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.coupling import coupled_modes
 from gearwhine.results.run import transient_document
 from gearwhine.solve import transient_record
-from gearwhine.solve.machine import solve_machine
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.signature import solve_signature
 from gearwhine.solve.transient import solve_transient
 
@@ -78,7 +79,7 @@ def test_sidebands_are_of_the_pressed_flanks_of_their_own_pair(tmp_path: Path) -
     Its lines are found again in a Fourier sum over the history of each force.
     """
     case = load_case(two_stages(tmp_path), BRAKED).case
-    _, _, machine = solve_machine(case)
+    machine = about_operating_point(case).coupled
     solved = solve_transient(case, machine, mesh_frequencies(case))
     signature = solve_signature(solved, coupled_modes(machine.system), None)
     pairs = transient_document(solved, signature)["gear_pairs"]
@@ -106,7 +107,8 @@ def test_lines_of_a_long_record_and_their_parts_are_of_all_its_stretches(monkeyp
     monkeypatch.setattr(transient_record, "_LONGEST_STRETCH", 700)
     settings = ["housing.box.mesh_size=40 mm", "transient.revolutions=17", "transient.discard=1"]
     case = load_case("small-gearbox", [*settings, "transient.tolerance=1e-3"]).case
-    housing, _, machine = solve_machine(case)
+    housing = solve_housing(case)
+    machine = about_operating_point(case, housing).coupled
     assert housing is not None
     solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing, record_bytes=1 << 16)
     assert solved.averages > 5

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.figures.machine.steady_state import draw_response_curve
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results.steady_state import curve_sentences
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import solve_steady
 from gearwhine.solve.transient import solve_transient
 
@@ -28,7 +27,7 @@ def test_the_transient_settles_to_it() -> None:
     """Newmark's march, after twenty revolutions: their forces agree as far as its own tolerance goes."""
     changes = [*FEW, BALANCED, "transient.revolutions=21", "transient.discard=20", "transient.tolerance=1e-5"]
     case = load_case("spur-pair", changes).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     marched = solve_transient(case, machine, mesh_frequencies(case))
     (motion,) = solve_steady(case, machine, None).motions
     (settled,) = (force for name, force in marched.histories.mesh_force.items() if "back" not in name)
@@ -140,7 +139,7 @@ def test_a_branch_that_is_left_is_told_on_screen() -> None:
 
 def test_what_stands_still_or_has_no_range_is_refused() -> None:
     case = load_case("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     with pytest.raises(CaseError, match="a range of speeds"):
         solve_steady(case, machine, None, over_speed=True)
     still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case

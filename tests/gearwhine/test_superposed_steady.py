@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 from reducer_case import reducer
 
 from gearwhine.case import CaseError, load_case
@@ -18,10 +19,8 @@ from gearwhine.coupling.periodic import orbit, periodic_response, shooting, supe
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion, solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
@@ -31,7 +30,7 @@ def machine_of(folder: Path, text: str) -> CoupledMachine:
     place = folder / "reducer.toml"
     place.write_text(text, encoding="utf-8")
     case = load_case(str(place), []).case
-    return build_machine(case, None, solve_gears(case))
+    return coupled(case)
 
 
 @pytest.fixture(scope="module")
@@ -150,7 +149,7 @@ def test_groups_of_hunting_teeth(tmp_path: Path) -> None:
 def test_load_shuttling_of_a_damaged_mesh_is_of_one_motion_with_it() -> None:
     """A crack repeats with the pinion's 23 teeth; harmonics of the mesh fit in, and their lines add with phases."""
     case = load_case("helical-pair", ['gear.pinion.fault=[{kind="crack",tooth=5,depth="1 mm"}]']).case
-    system = build_machine(case, None, solve_gears(case)).system
+    system = coupled(case).system
     shuttling = [abs(load.frequency) for load in system.harmonic_loads]
     assert max(shuttling) > 2.5 * 2.0 * np.pi * system.contacts[0].mesh_frequency
     assert common_cycles(system) > 40.0
@@ -192,7 +191,7 @@ def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> No
     place = tmp_path / "reducer.toml"
     place.write_text(reducer(unbalanced="input"), encoding="utf-8")
     case = load_case(str(place), []).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     with pytest.raises(CaseError, match="holds 504 cycles of the fastest one"):
         solve_steady(case, machine, None, over_speed=True)
 
@@ -213,7 +212,7 @@ def test_the_steady_motion_of_a_braked_machine_is_told_of_its_back_flanks() -> N
     """The mean force of the flanks that carry is the torque over the base radius."""
     changes = ["operation.torque=-100 N*m", "gear_pair.0.backlash=0.1 mm", "rotor.0.modes=1", "rotor.1.modes=1"]
     case = load_case("spur-pair", changes).case
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     assert machine.loaded_contacts == (1,)
     (motion,) = steady_document(case.title, solve_steady(case, machine, None))["motions"]
     base_radius = 0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0))

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from coupled_cases import coupled
 from matplotlib.figure import Figure
 
 import gearwhine
@@ -15,11 +16,10 @@ from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
 from gearwhine.case.input_files import file_contents
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
-from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import build_machine, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.transient import solve_transient
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
 from gearwhine.sweep.points import code_digest
@@ -97,7 +97,7 @@ def solved() -> tuple:
 
 def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
     point, housing, result = solved
-    machine = build_machine(point.case, housing, solve_gears(point.case))
+    machine = coupled(point.case, housing)
     whole = solve_transient(point.case, machine, mesh_frequencies(point.case), housing=housing)
     for name, spectrum in whole.sensor_spectra.items():
         np.testing.assert_array_equal(result.sensor_spectra[name], spectrum.amplitude[: result.orders.size])

@@ -17,16 +17,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
+from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
-from gearwhine.from_case.gear_pairs import pair_geometries, solve_gears
+from gearwhine.from_case.gear_pairs import pair_geometries
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes
-from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import starting_state
 
 FloatArray = npt.NDArray[np.float64]
@@ -68,7 +68,7 @@ def case() -> Case:
 def run(case: Case) -> Run:
     assert case.transient is not None
     assert case.operation is not None
-    machine = build_machine(case, None, solve_gears(case))
+    machine = coupled(case)
     period = 2.0 * np.pi / case.operation.speed
     stages = {stage: modal_rows(machine, f"stage-{stage}") for stage in (1, 2, 3)}
     outputs = transient_outputs(machine)
@@ -255,7 +255,7 @@ def test_the_load_comes_on_at_once_where_the_case_says_so(case: Case, run: Run) 
         assert run.force[mesh][0] == 0.0
         assert run.force[mesh][: PER_REVOLUTION // 10].max() > 1.5 * run.force[mesh].mean()
     resting = load_case("three-stage", ("transient.start=equilibrium",)).case
-    assert starting_state(resting, build_machine(resting, None, solve_gears(resting))) is None
+    assert starting_state(resting, coupled(resting)) is None
 
 
 def test_stage_1_has_the_most_elliptical_orbit(run: Run, remark: Callable[[str, str], None]) -> None:

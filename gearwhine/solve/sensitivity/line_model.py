@@ -21,7 +21,6 @@ from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.driving import driving
 from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.housing import ModeSet, modal_damping
@@ -31,7 +30,7 @@ from gearwhine.housing.updating import modal_sensitivities
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
-from gearwhine.solve.machine import full_housing_component
+from gearwhine.solve.machine import full_housing_component, run_of
 from gearwhine.solve.sensitivity.housing_changes import HousingChange
 
 if TYPE_CHECKING:
@@ -190,7 +189,6 @@ def solve_lines(
     about = machine.at_operating_point(point)
     pairs = solve_gears(case, progress, {pair.names: pair.station_gap for pair in point.pairs})
     components = about.rotor_components(progress=progress)
-    excitation = driving(case, components)
     misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
     radiation = _radiation(case, replace(housing, modes=modes), progress)
 
@@ -198,7 +196,7 @@ def solve_lines(
         damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
         extended = replace(housing, modes=modes, damping_matrix=damping)
         stands = replace(about, housing=full_housing_component(case, extended, progress))
-        model = LineModel(stands.assemble(pairs, components, excitation), point, pairs, misalignment_is_found)
+        model = LineModel(stands.assemble(pairs, components, run_of(case)), point, pairs, misalignment_is_found)
         lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
         return SolvedLines(model, lines, _sound(case, extended, model, radiation, heard, progress), extended)
 
