@@ -22,7 +22,7 @@ import numpy as np
 import gearwhine
 from gearwhine.housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-from gearwhine.progress import Progress
+from gearwhine.numerics.progress import Progress
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")

@@ -10,11 +10,11 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.numerics.progress import Progress
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
-from gearwhine.output.quantity import warning
 from gearwhine.output.report import MovingShape
-from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:

@@ -6,7 +6,9 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Protocol, TypeVar
+from typing import TypeVar
+
+from gearwhine.numerics.progress import Progress, silent
 
 Item = TypeVar("Item")
 Solution = TypeVar("Solution")
@@ -14,20 +16,6 @@ Solution = TypeVar("Solution")
 _THREADS = 2
 _OFTEN = 30.0  # seconds between reports of long work
 _WORTH_SAYING = 5.0  # least time left that is shown [s]
-
-
-class Progress(Protocol):
-    """Receives the present work in words, and its completed fraction (0 to 1) where that is known.
-
-    Words after a colon are news of the same work: its clock goes on.
-    """
-
-    def __call__(self, message: str, fraction: float | None = None) -> None:
-        """Report the present work and its completed fraction."""
-
-
-def silent(message: str, fraction: float | None = None) -> None:
-    """Say nothing."""
 
 
 def in_order(

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwhine.case import Case, CaseSource, LoadedCase, load_case
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.analyses.case import Format

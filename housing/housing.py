@@ -266,12 +266,14 @@ class Housing:
         modes = self.with_discretisation_errors(free, whole, modes)
         health = self.health(free, whole, modes)
         health.require()
+        sensor_ports = self.sensor_ports()
         return HousingModes(
             housing=self,
             mode_set=modes,
             health=health,
             seats={name: modes.project_all(port) for name, port in seat_ports.items()},
-            sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in self.sensor_ports().items()},
+            sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in sensor_ports.items()},
+            sensor_ports=sensor_ports,
             damping_matrix=modal_damping(modes, whole) if whole.damping.nnz else None,
             participation=self.participation(whole, modes),
         )
@@ -366,6 +368,8 @@ class HousingModes:
         Motions of modes and residual modes at each seat.
     sensors : mapping of str to ndarray, shape (n,)
         Motions of modes and residual modes along each sensor.
+    sensor_ports : mapping of str to SensorPort
+        Sensors on the mesh.
     damping_matrix : ndarray, shape (n, n), or None
         Φᵀ C Φ of the fixtures' dashpots [1/s].
     participation : ndarray, shape (n, 6)
@@ -377,6 +381,7 @@ class HousingModes:
     health: HealthReport
     seats: Mapping[str, FloatArray]
     sensors: Mapping[str, FloatArray]
+    sensor_ports: Mapping[str, SensorPort]
     damping_matrix: FloatArray | None
     participation: FloatArray
 

@@ -103,13 +103,17 @@ class LineMechanisms:
     ----------
     machine : CoupledMachine
         Assembled about its operating point.
-    base_rows : mapping of str to ndarray, shape (6,)
-        Acceleration of the place of each sensor along it by unit accelerations of the base, for sensors that show
-        motion in space.
     """
 
     machine: CoupledMachine
-    base_rows: Mapping[str, FloatArray] | None = None
+
+    @cached_property
+    def _base_rows(self) -> dict[str, FloatArray]:
+        """Acceleration of each sensor by unit accelerations of the base, (6,): sensors show motion in space."""
+        base, housing = self.machine.loads.base, self.machine.housing
+        if base is None or housing is None:
+            return {}
+        return {name: base.row_at(at.position, at.direction) for name, at in housing.sensor_places.items()}
 
     @cached_property
     def model(self) -> MeshHarmonicModel:
@@ -178,9 +182,9 @@ class LineMechanisms:
     def _of_base(self, sensor: str, frequency: float) -> complex:
         """Acceleration of the place of a sensor with a base that moves at a frequency [m/s²]."""
         base = self.machine.loads.base
-        if base is None or self.base_rows is None:
+        if base is None or sensor not in self._base_rows:
             return 0.0
-        return complex(base.harmonic_amplitude(frequency) @ self.base_rows[sensor])
+        return complex(base.harmonic_amplitude(frequency) @ self._base_rows[sensor])
 
     def _sources(self, frequency: float, reach: float) -> Iterator[tuple[float, str, ComplexArray]]:
         """Yield frequency [rad/s], mechanism and load of every excitation within a reach of a frequency."""

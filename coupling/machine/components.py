@@ -65,6 +65,14 @@ class Component:
 
 
 @dataclass(frozen=True)
+class SensorPlace:
+    """Position of a sensor [m] and the unit vector of its direction, shapes (3,)."""
+
+    position: FloatArray
+    direction: FloatArray
+
+
+@dataclass(frozen=True)
 class HousingComponent(Component):
     """The housing on its supports: its modes, then its residual attachments where it has them.
 
@@ -81,6 +89,10 @@ class HousingComponent(Component):
         base moves or there is weight.
     seat_axes : mapping of str to tuple of float
         x and y of each seat's centre [m], where they are known.
+    sensor_places : mapping of str to SensorPlace
+        Place of each sensor, by which it shows motion in space where the base moves.
+    complete_below : float or None
+        Frequency below which its modes are complete [rad/s]; None where that is not known.
     """
 
     seats: Mapping[str, FloatArray]
@@ -88,6 +100,8 @@ class HousingComponent(Component):
     sensors: Mapping[str, FloatArray]
     participation: FloatArray | None = None
     seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    sensor_places: Mapping[str, SensorPlace] = field(default_factory=dict)
+    complete_below: float | None = None
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
         """Return a seat's rigid motion at z along the shaft [m]: x, y, z, rotations about x and y, shape (5, n).
@@ -271,6 +285,7 @@ def housing_component(
     damping_matrix: FloatArray | None = None,
     participation: FloatArray | None = None,
     seat_axes: Mapping[str, tuple[float, float]] | None = None,
+    sensor_places: Mapping[str, SensorPlace] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -281,7 +296,7 @@ def housing_component(
         Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
-    seats, seat_z, sensors, participation, seat_axes
+    seats, seat_z, sensors, participation, seat_axes, sensor_places
         See :class:`HousingComponent`; by :meth:`gearwhine.housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -318,6 +333,8 @@ def housing_component(
         sensors=sensors,
         participation=participation,
         seat_axes=seat_axes or {},
+        sensor_places=sensor_places or {},
+        complete_below=modes.certificate.limit,
     )
 
 
@@ -331,6 +348,7 @@ def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingC
         seat_z={seat: center[2] for seat, center in seats.items()},
         seat_axes={seat: center[:2] for seat, center in seats.items()},
         sensors=modes.sensors,
+        sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensor_ports.items()},
         damping_matrix=modes.damping_matrix,
         participation=modes.participation,
         name=name,

@@ -240,14 +240,14 @@ def empty_record(machine: CoupledMachine, outputs: TransientOutputs) -> MotionRe
     return MotionRecord(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
 
-def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfile | None = None) -> Histories:
+def histories(machine: CoupledMachine, result: MotionRecord) -> Histories:
     """Time histories by name of a transient or a periodic response with :func:`transient_outputs`.
 
-    ``profile`` is the speed over time, by default the nominal one.
+    Sensors show motion in space, as accelerometers do: where the base moves it is added.
     """
     gears = _gears(machine)
     deflections = result.displacement[:, 3 * len(gears) :]
-    nominal_time, rates, _ = (profile or SpeedProfile.steady()).at(result.times)
+    nominal_time, rates, _ = (machine.speed_profile or SpeedProfile.steady()).at(result.times)
     nonlinear = {connector.name: connector for connector in machine.system.nonlinear}
     forces = {}
     column = 0
@@ -259,11 +259,11 @@ def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfi
             forces[connector.name] += _beside_linear(
                 connector, nonlinear[connector.name], deflections[:, columns], nominal_time
             )
-    names = [] if machine.housing is None else list(machine.housing.sensors)
+    sensors = _in_space(machine, result)
     contacts = [contact.name for contact in machine.system.contacts]
     return Histories(
         times=result.times,
-        sensor_acceleration={name: result.acceleration[:, i] for i, name in enumerate(names)},
+        sensor_acceleration=sensors,
         gear_motion={gear.name: result.displacement[:, 3 * i : 3 * i + 3] for i, gear in enumerate(gears)},
         bearing_reaction=forces,
         mesh_force={name: result.force[:, i] for i, name in enumerate(contacts)},
@@ -275,6 +275,19 @@ def histories(machine: CoupledMachine, result: MotionRecord, profile: SpeedProfi
         },
         bearing_axes={connector.name: connector.axes for connector in _bearings(machine)},
     )
+
+
+def _in_space(machine: CoupledMachine, result: MotionRecord) -> dict[str, FloatArray]:
+    """Acceleration of each sensor, that of the base included [m/s²]."""
+    housing, base = machine.housing, machine.loads.base
+    if housing is None:
+        return {}
+    sensors = {name: result.acceleration[:, i] for i, name in enumerate(housing.sensors)}
+    if base is None:
+        return sensors
+    for name, place in housing.sensor_places.items():
+        sensors[name] = sensors[name] + base.acceleration_at(place.position, place.direction, result.times)
+    return sensors
 
 
 def _gears(machine: CoupledMachine) -> list[MountedGear]:

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import staging
 from gearwhine.output.files import finish_moves
 from gearwhine.output.manifest import require_as_written
-from gearwhine.output.quantity import add_warnings, warning
+from gearwhine.output.quantity import add_warnings
 from gearwhine.output.sections import Column, Document, Section, table_of
-from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result

@@ -12,9 +12,10 @@ from gearwhine.housing import HousingError
 from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.meshes import Mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
-from gearwhine.output.quantity import add_warnings, joined, warning
-from gearwhine.progress import Progress, silent
+from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.comparison import (
     COMPARISON,
     comparison_document,

@@ -12,9 +12,10 @@ from gearwhine.case.acoustics import Acoustics
 from gearwhine.coupling import CoupledMachine
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.dataset import labelled
-from gearwhine.output.quantity import add_warnings, joined, warning
-from gearwhine.progress import Progress, silent
+from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part

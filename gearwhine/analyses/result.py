@@ -15,12 +15,13 @@ from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.failures import DamagedResultsError
 from gearwhine.housing.storage.netcdf import Variables, write_netcdf
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import COMMANDS, finite, json_text, staging
 from gearwhine.output.files import finish_moves
 from gearwhine.output.manifest import require_as_written
-from gearwhine.output.quantity import add_warnings, warning
+from gearwhine.output.quantity import add_warnings
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
-from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
     import xarray as xr

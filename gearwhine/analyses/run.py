@@ -15,11 +15,11 @@ from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import add_warnings, joined
-from gearwhine.progress import Progress, silent
 from gearwhine.results.comparison import comparison_document, write_comparison
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes

@@ -16,7 +16,7 @@ from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, FreshRun, hand_ov
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
-    from gearwhine.progress import Progress
+    from gearwhine.numerics.progress import Progress
 
 
 def run(

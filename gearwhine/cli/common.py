@@ -15,7 +15,7 @@ from cyclopts import Parameter, Token
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.case import Case, LoadedCase
-    from gearwhine.progress import Progress
+    from gearwhine.numerics.progress import Progress
 
 
 def _folder(type_: object, tokens: Sequence[Token]) -> Path:

@@ -9,7 +9,7 @@ from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, r
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
-    from gearwhine.progress import Progress
+    from gearwhine.numerics.progress import Progress
 
 
 def mesh(

@@ -13,7 +13,7 @@ from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, o
 
 if TYPE_CHECKING:
     from gearwhine.case import Case, LoadedCase
-    from gearwhine.progress import Progress
+    from gearwhine.numerics.progress import Progress
 
 
 def rotors(

@@ -19,7 +19,7 @@ from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
 from gearwhine.coupling.machine.parts import inertia_with_discs
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.rotors import build_gear, shaft_gears
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -21,8 +21,8 @@ from gearwhine.meshes import GeometryError, Mesh, MeshDefect, diagnose, resoluti
 from gearwhine.meshes.gmsh_meshing import expected_elements
 from gearwhine.meshes.lengths import UNITS, length_text
 from gearwhine.meshes.quality import WaveCarrier, resolving_size, wall_thickness
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -36,7 +36,7 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
 from gearwhine.meshes.box.morph import MorphError
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
 _SAME = 1e-9  # relative difference of numbers written in different units

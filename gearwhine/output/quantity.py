@@ -178,11 +178,6 @@ def plain(value: Any) -> Any:
     return value
 
 
-def warning(name: str, message: str, **figures: Any) -> Document:
-    """Return an entry of a document's ``warnings``; ``figures`` have their units in their keys."""
-    return {"name": name, "message": message} | figures
-
-
 def add_warnings(document: Document, warnings: Iterable[Mapping[str, Any]] = ()) -> None:
     """Append warnings to those that a document has; a message that it has already is not repeated."""
     listed = list(document.get("warnings", ()))

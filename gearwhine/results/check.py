@@ -8,9 +8,9 @@ import numpy as np
 
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
 from gearwhine.coupling.machine.axial_location import ARRANGEMENTS
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
-from gearwhine.progress import Progress, silent
 from gearwhine.results.gears import GEOMETRY, backlash_words
 from gearwhine.results.housing import MESH_SIZE
 from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.files import file_stems
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of, warning
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results.bearing_lives import life_quantities
 from gearwhine.results.housing import COUNT_CERTIFICATE

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.case.errors import key_of
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of, warning
+from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:

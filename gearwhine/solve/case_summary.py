@@ -21,8 +21,8 @@ from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.part_fits import fit_warnings

@@ -47,8 +47,8 @@ from gearwhine.housing.measured import (
     write_universal,
 )
 from gearwhine.meshes import Mesh
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]

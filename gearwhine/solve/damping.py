@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearwhine.case import Case
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing
 

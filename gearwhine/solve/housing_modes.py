@@ -54,9 +54,9 @@ from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
 from gearwhine.housing.storage.netcdf import LabelledArray, content_key
 from gearwhine.meshes import Mesh, mesh_quality
 from gearwhine.meshes.lengths import length_text
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
 from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 FloatArray = npt.NDArray[np.float64]

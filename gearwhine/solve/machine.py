@@ -1,7 +1,6 @@
 """Machine of a case with its solved housing: reduced housing, gear pairs at the operating point, coupled system."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,16 +14,15 @@ from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
-from gearwhine.coupling.machine.components import HousingComponent, housing_component
+from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
 from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.coupling.time.histories import Histories
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import ModeSet
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.residual_modes import leading_residual_modes
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.rotors import EquilibriumError, RotorError
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation
 
@@ -37,14 +35,6 @@ _MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparis
 
 
 @dataclass(frozen=True)
-class SensorPlace:
-    """Sensor position [m] and the unit vector of its direction, shapes (3,)."""
-
-    position: FloatArray
-    direction: FloatArray
-
-
-@dataclass(frozen=True)
 class ReducedHousing:
     """Solved housing reduced to the quantities that a machine needs: kilobytes, without mesh and shapes.
 
@@ -53,34 +43,22 @@ class ReducedHousing:
     component : HousingComponent
     frequencies_hz : ndarray, shape (n_modes,)
         Natural frequencies of its modes [Hz].
-    trusted_limit_hz : float
-        Frequency below which they are complete [Hz].
     warnings : tuple of dict
         Warnings about the housing, as in the documents.
-    sensors : mapping of str to SensorPlace
     coarser : HousingComponent or None
         The component with fewer residual modes; the difference estimates the truncation error.
     """
 
     component: HousingComponent
     frequencies_hz: FloatArray
-    trusted_limit_hz: float
     warnings: tuple[dict[str, Any], ...] = ()
-    sensors: Mapping[str, SensorPlace] = field(default_factory=dict)
     coarser: HousingComponent | None = None
 
 
 def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> ReducedHousing:
     """Reduce a solved housing to the quantities that a machine needs."""
     component, coarser = _housing_components(case, solved, progress)
-    return ReducedHousing(
-        component,
-        solved.modes.frequencies_hz,
-        solved.trusted_limit_hz,
-        tuple(solved.warnings),
-        {name: SensorPlace(port.position, port.direction) for name, port in solved.sensors.items()},
-        coarser,
-    )
+    return ReducedHousing(component, solved.modes.frequencies_hz, tuple(solved.warnings), coarser)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,12 +97,8 @@ class LoadedMachine:
 
     @property
     def mechanisms(self) -> LineMechanisms:
-        """What excites the lines of its sensors, which show motion in space."""
-        base = self.coupled.loads.base
-        if base is None or self.housing is None:
-            return LineMechanisms(self.coupled)
-        rows = {name: base.row_at(port.position, port.direction) for name, port in self.housing.sensors.items()}
-        return LineMechanisms(self.coupled, rows)
+        """What excites the lines of its sensors."""
+        return LineMechanisms(self.coupled)
 
 
 def described_machine(case: Case, housing: ReducedHousing | None) -> Machine:
@@ -248,17 +222,6 @@ def _housing_component(
         seat_axes={seat.name: seat.center[:2] for seat in case.housing.seat},
         damping_matrix=damping,
         sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
+        sensor_places={name: SensorPlace(port.position, port.direction) for name, port in solved.sensors.items()},
         participation=participation,
     )
-
-
-def in_space(relative: Histories, housing: SolvedHousing | ReducedHousing | None, machine: CoupledMachine) -> Histories:
-    """Return histories as accelerometers show them: motion in space, not relative to a moving base."""
-    base = machine.loads.base
-    if base is None or housing is None:
-        return relative
-    absolute = {
-        name: relative.sensor_acceleration[name] + base.acceleration_at(port.position, port.direction, relative.times)
-        for name, port in housing.sensors.items()
-    }
-    return replace(relative, sensor_acceleration=absolute)

@@ -22,8 +22,8 @@ from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.from_case.machine import require_machine
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing

@@ -14,7 +14,7 @@ from gearwhine.case.housing import Seat
 from gearwhine.from_case.mesh_health import surface_point_warnings
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor, Segment
 
 _FIT = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]

@@ -26,8 +26,8 @@ from gearwhine.case import (
 from gearwhine.case import Rotor as GivenRotor
 from gearwhine.from_case.machine import rotor_bearings
 from gearwhine.from_case.rotors import build_rotor
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
-from gearwhine.progress import Progress, silent
 from gearwhine.rotors import (
     AxisSpring,
     Bearing,

@@ -31,10 +31,10 @@ from gearwhine.coupling.time.transient import (
     transient_figures,
 )
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.files import PRESENTATION, installed, source_digest
-from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import ReducedHousing, in_space
+from gearwhine.solve.machine import ReducedHousing
 from gearwhine.solve.transient_record import (
     RECORD_BYTES,
     Arrays,
@@ -233,8 +233,7 @@ def solve_transient(
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
 
     def named(result: MotionRecord) -> Signals:
-        relative = coupled_histories(machine, result, turning)
-        return Signals(in_space(relative, housing, machine), modal_record(machine, result, modal, housing=traced))
+        return Signals(coupled_histories(machine, result), modal_record(machine, result, modal, housing=traced))
 
     nothing = named(empty_record(machine, outputs))
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))

@@ -69,8 +69,8 @@ from gearwhine.housing.updating import (
 )
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.meshes import Mesh
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.comparison import map_measured, read_measured
 
 _TWO_PI = 2.0 * np.pi

@@ -23,7 +23,7 @@ import numpy.typing as npt
 from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
 from gearwhine.coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.sweep.resonances import NEAR, SOUND, Resonances
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult

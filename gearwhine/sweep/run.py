@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
-from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
 from gearwhine.solve.machine import ReducedHousing, reduce_housing
 from gearwhine.solve.sound import check_before_modes

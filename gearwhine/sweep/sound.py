@@ -21,8 +21,10 @@ from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.modal_radiation import POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
 from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
-from gearwhine.output.quantity import document_of, warning
-from gearwhine.progress import Progress, in_order, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
+from gearwhine.output.quantity import document_of
+from gearwhine.progress import in_order
 from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
 from gearwhine.solve.sound.proofs import (
     doubts,

@@ -1,6 +1,7 @@
 """Warnings of a command gathered in its document."""
 
-from gearwhine.output.quantity import add_warnings, joined, warning
+from gearwhine.numerics.result_warnings import warning
+from gearwhine.output.quantity import add_warnings, joined
 
 
 def test_each_message_stands_once_and_every_document_has_the_list() -> None:

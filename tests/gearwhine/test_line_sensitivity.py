@@ -30,7 +30,7 @@ from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case
 from gearwhine.housing.material import element_constants
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
 from gearwhine.meshes import Mesh
-from gearwhine.progress import silent
+from gearwhine.numerics.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing

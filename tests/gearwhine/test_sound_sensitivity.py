@@ -20,8 +20,8 @@ from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
+from gearwhine.numerics.progress import silent
 from gearwhine.output.sections import Table
-from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing

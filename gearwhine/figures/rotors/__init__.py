@@ -26,8 +26,8 @@ from gearwhine.figures.rotors.responses import (
 from gearwhine.figures.rotors.shaft import draw_shaft
 from gearwhine.figures.style import shortened
 from gearwhine.from_case.rotors import shaft_gears
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
-from gearwhine.progress import Progress, silent
 from gearwhine.rotors import Bearing, Rotor
 from gearwhine.rotors import Segment as RotorSegment
 from gearwhine.solve.rotors import SolvedRotor

@@ -28,7 +28,7 @@ from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.updating import modal_sensitivities
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
-from gearwhine.progress import Progress
+from gearwhine.numerics.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
 from gearwhine.solve.machine import full_housing_component, run_of
 from gearwhine.solve.sensitivity.housing_changes import HousingChange

@@ -19,7 +19,7 @@ from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.sensitivity.housing_changes import (
     HousingChange,

@@ -26,7 +26,7 @@ from gearwhine.housing.errors import TriangleSizeError
 from gearwhine.housing.fem.surface import FlatFace, flat_faces
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import pick_facets
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
 

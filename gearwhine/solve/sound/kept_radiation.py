@@ -12,8 +12,9 @@ from gearwhine.case import Case
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.files import source_digest
-from gearwhine.progress import Progress, in_order, silent
+from gearwhine.progress import in_order
 from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]

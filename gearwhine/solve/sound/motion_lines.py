@@ -19,7 +19,7 @@ from gearwhine.coupling.signals.line_names import LineName, line_names
 from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.solve.steady_state import SolvedSteady
 from gearwhine.solve.transient import SolvedTransient
 

@@ -10,7 +10,7 @@ from gearwhine.housing.acoustics.boundary_elements import SoundField
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
 from gearwhine.housing.acoustics.sound_levels import power_level
-from gearwhine.output.quantity import warning
+from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -29,8 +29,9 @@ from gearwhine.housing.acoustics.sound_levels import (
     third_octave_bands,
 )
 from gearwhine.housing.errors import TriangleSizeError
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, in_order, silent
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
+from gearwhine.progress import in_order
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.sound.acoustics_checks import (
     acoustics_warnings,

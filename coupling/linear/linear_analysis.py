@@ -22,7 +22,7 @@ from gearwhine.coupling.linear.frequency_response import (
 )
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
-from gearwhine.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Steady state of a case: the periodic motion under its excitation, and the branch of such motions over speed."""
+"""Steady state of a machine: the periodic motion under its excitation, and the branch of such motions over speed."""
 
 import math
 from collections.abc import Iterator
@@ -8,13 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
-from gearwhine.case.errors import UNSAID
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
-from gearwhine.coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
-from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
-from gearwhine.coupling.periodic.continuation import ResponseCurve
+from gearwhine.coupling.periodic.continuation import ResponseCurve, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.superposition import (
     ExcitationGroup,
@@ -24,17 +21,15 @@ from gearwhine.coupling.periodic.superposition import (
     superposed_response,
 )
 from gearwhine.coupling.signals.line_names import line_names
-from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
+from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, amplitude_spectrum, signal_parts
 from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
 from gearwhine.coupling.time.histories import histories as coupled_histories
-from gearwhine.output.quantity import RPM, warning
-from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import in_space
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
 
-_SLOWEST = 0.5  # lowest speed of a branch over that of operation, where the case names no range
+_RPM = 60.0 / (2.0 * np.pi)
 _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of interest: little folds back below it
 _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
@@ -206,13 +201,13 @@ class SolvedSteady:
         if curve is None or not curve.gaps:
             return []
         low, high = sorted((abs(curve.begin), abs(curve.aim)))
-        gaps = [tuple(sorted((RPM * abs(first), RPM * abs(last)))) for first, last in curve.gaps]
-        narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW * RPM * (high - low)]
+        gaps = [tuple(sorted((_RPM * abs(first), _RPM * abs(last)))) for first, last in curve.gaps]
+        narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW * _RPM * (high - low)]
         warnings = []
         for first, last in (gap for gap in gaps if gap not in narrow):
             message = (
-                f"no motion was followed between {first:.5g} and {last:.5g} rpm of {RPM * low:.5g} to "
-                f"{RPM * high:.5g}: {_WHY_NOT}"
+                f"no motion was followed between {first:.5g} and {last:.5g} rpm of {_RPM * low:.5g} to "
+                f"{_RPM * high:.5g}: {_WHY_NOT}"
             )
             warnings.append(warning("branch range", message, from_rpm=first, to_rpm=last))
         if narrow:
@@ -250,13 +245,10 @@ class SolvedSteady:
 
 
 def solve_steady(
-    case: Case,
     machine: CoupledMachine,
-    housing: SolvedHousing | None,
     progress: Progress = silent,
     *,
-    over_speed: bool = False,
-    downwards: bool = False,
+    over_speed: tuple[float, float] | None = None,
     points: int = 100,
     exact: bool = False,
 ) -> SolvedSteady:
@@ -267,16 +259,10 @@ def solve_steady(
 
     Parameters
     ----------
-    case : Case
     machine : CoupledMachine
-        Machine of the case.
-    housing : SolvedHousing or None
-        Housing of the machine.
     progress : callable
-    over_speed : bool
-        Whether to follow the branch: over the range of ``[sweep]``, else from half to beyond the speed of operation.
-    downwards : bool
-        Whether the branch begins at the highest speed.
+    over_speed : tuple of float, optional
+        Signed speeds of the first driver's shaft from which and to which the branch is followed [rad/s].
     points : int
         Number of points on a straight branch.
     exact : bool
@@ -284,42 +270,36 @@ def solve_steady(
 
     Raises
     ------
-    CaseError
-        Where the range holds one speed only, or a branch is asked for of motions that are
-        superposed.
     gearwhine.coupling.CouplingError
-        Where the excitation does not repeat.
+        Where the machine stands still, the excitation does not repeat, or a branch is asked for of motions that are
+        superposed.
     gearwhine.coupling.PeriodicError
         Where no motion is found. A branch that is lost on its way is given as far as it was followed.
     """
-    require(case, "rotor", "operation", command="steady")
-    assert case.operation is not None
-    speed = case.operation.speed
+    speed = machine.speeds[machine.leading_rotor]
     if speed == 0.0:
-        raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
+        raise CouplingError("a speed of 0; expected a speed: what stands still has no motion that repeats")
     progress("compiling the search for periodic motions (the first time takes longer)")
     groups = () if exact else excitation_groups(machine.system)
-    if len(groups) > 1 and over_speed:
+    if len(groups) > 1 and over_speed is not None:
         cycles = common_cycles(machine.system)
-        raise CaseError([Problem("operation.speed", UNSAID, _NO_BRANCH.format(_period_in_words(cycles)))])
+        raise CouplingError(f"expected {_NO_BRANCH.format(_period_in_words(cycles))}")
     if len(groups) > 1:
-        return _superposed(case, machine, housing, speed, groups, progress)
-    if not over_speed:
+        return _superposed(machine, speed, groups, progress)
+    if over_speed is None:
         response = periodic_response(machine.system)
-        return SolvedSteady(machine, (_motion(case, machine, housing, speed, response),))
-    low, high = _speed_range(case)
-    low, high = with_sense_of_operation(case, (low, high))
+        return SolvedSteady(machine, (_motion(machine, speed, response),))
     rms: dict[str, list[float]] = {name: [] for name in machine.housing.sensors} if machine.housing is not None else {}
 
     def seen(at: float, response: PeriodicResponse) -> None:
         if rms:
-            motion = _motion(case, machine.at_speed(at), housing, at, response)
+            motion = _motion(machine.at_speed(at), at, response)
             for name, value in motion.sensor_rms.items():
                 rms[name].append(value)
 
     curve = response_curve(
         lambda at: machine.at_speed(at).system,
-        *((high, low) if downwards else (low, high)),
+        *over_speed,
         points=points,
         tolerance=CURVE_TOLERANCE,
         progress=lambda fraction: progress("following the motion over speed", fraction),
@@ -327,26 +307,21 @@ def solve_steady(
     )
     progress("the motions at the speed of operation")
     responses = curve.at(speed) if curve.passes(speed) else [periodic_response(machine.system)]
-    motions = tuple(_motion(case, machine, housing, speed, response) for response in responses)
+    motions = tuple(_motion(machine, speed, response) for response in responses)
     branch_rms = {name: np.array(values) for name, values in rms.items()}
-    loudest = () if housing is None else tuple(_loudest(case, machine, housing, curve, branch_rms))
-    assumed = tuple(
-        pair_label(pair.driver, pair.driven)
-        for pair in case.gear_pair
-        if not pair.model_fields_set & {"damping_ratio", "damping"}
-    )
-    return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest, assumed_damping=assumed)
+    loudest = () if machine.housing is None else tuple(_loudest(machine, curve, branch_rms))
+    return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)
 
 
 def _loudest(
-    case: Case, machine: CoupledMachine, housing: SolvedHousing, curve: ResponseCurve, rms: dict[str, FloatArray]
+    machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, FloatArray]
 ) -> Iterator[LoudestPoint]:
     """Yield the loudest point of each sensor on a branch; none of a sensor that does not move."""
     places = {name: int(values.argmax()) for name, values in rms.items() if values.any()}
     for place in sorted(set(places.values())):
         speed = float(curve.speeds[place])
         machine_there = machine.at_speed(speed)
-        motion = _motion(case, machine_there, housing, speed, curve.motion(place))
+        motion = _motion(machine_there, speed, curve.motion(place))
         samples = len(motion.histories.times)
         record = motion.response.record(with_modal_rows(machine_there, transient_outputs(machine_there)), samples)
         modal = amplitude_spectrum(
@@ -370,7 +345,7 @@ def _loudest(
                 amplitude=amplitude,
                 excitation=line_names(machine_there, [frequency], _NAMED * spectrum.spacing)[0].name,
                 mode=mode + 1,
-                mode_hz=float(housing.modes.frequencies_hz[mode]),
+                mode_hz=float(np.sqrt(machine_there.housing.stiffness[mode, mode])) / (2.0 * np.pi),
                 share=float(shares[mode]),
             )
 
@@ -389,9 +364,7 @@ def _period_in_words(cycles: float) -> str:
 
 
 def _superposed(
-    case: Case,
     machine: CoupledMachine,
-    housing: SolvedHousing | None,
     speed: float,
     groups: tuple[ExcitationGroup, ...],
     progress: Progress,
@@ -400,7 +373,7 @@ def _superposed(
     superposed, loads = superposed_response(machine.system, groups), machine.loads
     motions = tuple(
         replace(
-            _motion(case, replace(machine, loads=of_group), housing, speed, one.response),
+            _motion(replace(machine, loads=of_group), speed, one.response),
             excitation=one.name,
         )
         for one in superposed.motions
@@ -409,33 +382,12 @@ def _superposed(
     return SolvedSteady(machine, motions, superposed=superposed)
 
 
-def _speed_range(case: Case) -> tuple[float, float]:
-    """Lowest and highest speed of the branch [rad/s]."""
-    assert case.operation is not None
-    if case.sweep is None:
-        return range_of_tables(case, _SLOWEST * abs(case.operation.speed), BEYOND_OPERATION * abs(case.operation.speed))
-    speeds = [abs(speed) for speed in case.sweep.speeds]
-    low, high = min(speeds), max(speeds)
-    if not 0.0 < low < high:
-        raise CaseError(
-            [Problem("sweep.speed", UNSAID, "a range of speeds above zero, over which a motion is followed")]
-        )
-    return low, high
-
-
-def _motion(
-    case: Case,
-    machine: CoupledMachine,
-    housing: SolvedHousing | None,
-    speed: float,
-    response: PeriodicResponse,
-) -> SteadyMotion:
-    assert case.operation is not None
-    ratio = abs(speed / case.operation.speed)
-    limit = _HARMONICS * ratio * max(mesh_frequencies(case), default=1000.0) if case.gear_pair else 1000.0
-    if housing is not None:
-        limit = housing.trusted_limit_hz
+def _motion(machine: CoupledMachine, speed: float, response: PeriodicResponse) -> SteadyMotion:
+    """Motion of a machine at its speed; it carries some harmonics of the meshes where no housing limits the model."""
+    limit = _HARMONICS * max((abs(contact.mesh_frequency) for contact in machine.system.contacts), default=250.0)
+    if machine.housing is not None and machine.housing.complete_below is not None:
+        limit = machine.housing.complete_below / (2.0 * np.pi)
     rate = max(_OVERSAMPLING * limit, least_sampling_rate(response.system)[0])
     samples = 2 ** math.ceil(math.log2(max(rate * response.period, _LEAST_SAMPLES)))
     record = response.record(transient_outputs(machine), samples)
-    return SteadyMotion(speed, response, in_space(coupled_histories(machine, record), housing, machine), limit)
+    return SteadyMotion(speed, response, coupled_histories(machine, record), limit)
