@@ -18,8 +18,8 @@ from timing import Result, arguments, machine
 from gearwhine.case import Case, load_case, mesh_frequencies
 from gearwhine.coupling import periodic_response, response_curve
 from gearwhine.coupling.periodic.continuation import ResponseCurve
+from gearwhine.coupling.periodic.steady_state import CURVE_TOLERANCE
 from gearwhine.solve.machine import described_machine
-from gearwhine.solve.steady_state import CURVE_TOLERANCE
 from gearwhine.solve.transient import solve_transient
 
 RPM = 2.0 * np.pi / 60.0

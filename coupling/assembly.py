@@ -8,6 +8,7 @@ is stated in :class:`gearwhine.coupling.machine.coupled_system.CoupledSystem`; l
 come from :mod:`gearwhine.coupling.statics`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -40,7 +41,7 @@ from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoord
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
-from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
+from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
@@ -108,6 +109,12 @@ class CoupledMachine:
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+
+    @property
+    def input_torque(self) -> float:
+        """Mean torque on the leading rotor from outside, in its sense of rotation [N m]."""
+        torques = (load for load in self.loads.torques if isinstance(load, Torque) and load.rotor == self.leading_rotor)
+        return math.copysign(1.0, self.speeds[self.leading_rotor]) * sum(torque.value for torque in torques)
 
     @property
     def train_inertia(self) -> float:

@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.coupling import Machine
+    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
+    from gearwhine.coupling.periodic.steady_state import SolvedSteady
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
     from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.sound.solution import SolvedSound
-    from gearwhine.solve.steady_state import SolvedSteady
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 

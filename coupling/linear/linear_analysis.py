@@ -1,17 +1,16 @@
 """Linear analyses of the coupled system: modes, Campbell diagram, responses at gears and sensors to mesh errors."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
-from gearwhine.case.errors import NOTHING
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, range_of_tables, with_sense_of_operation
-from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes, system_campbell
-from gearwhine.coupling import stability as coupled_stability
-from gearwhine.coupling.linear.campbell import SystemCampbell
-from gearwhine.coupling.linear.complex_modes import CoupledModes, Stability
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError, ModesError
+from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
+from gearwhine.coupling.linear.complex_modes import CoupledModes, Stability, coupled_modes
+from gearwhine.coupling.linear.complex_modes import stability as coupled_stability
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
@@ -23,7 +22,6 @@ from gearwhine.coupling.linear.frequency_response import (
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,15 +39,11 @@ _DIRECT = 24  # frequencies at which superposition is compared with the solved s
 
 @dataclass(frozen=True)
 class SolvedSystem:
-    """The coupled system of a case, linear about a contact.
+    """The coupled system of a machine, linear about a contact.
 
     Attributes
     ----------
     machine : gearwhine.coupling.CoupledMachine
-    speed : float
-        Speed of operation [rad/s].
-    housing : SolvedHousing or None
-        Housing of the machine.
     mesh_phase : float or None
         Phase of the first mesh at which the contact stands; None for the mean contact.
     contact : ContactState
@@ -72,8 +66,6 @@ class SolvedSystem:
     """
 
     machine: CoupledMachine
-    speed: float
-    housing: SolvedHousing | None
     mesh_phase: float | None
     contact: ContactState
     modes: CoupledModes
@@ -86,19 +78,22 @@ class SolvedSystem:
     lines: tuple[ResponseParts, ...] = ()
 
     @property
+    def speed(self) -> float:
+        """Speed of the first driver's shaft [rad/s]."""
+        return self.machine.speeds[self.machine.leading_rotor]
+
+    @property
     def unloaded(self) -> ContactState:
         """The contact with the mean mesh stiffness without load."""
         return unloaded_contact(self.machine.system)
 
 
 def solve_system(
-    case: Case,
     machine: CoupledMachine,
-    housing: SolvedHousing | None,
     progress: Progress = silent,
     *,
     mesh_phase: float | None = None,
-    over_speed: bool = False,
+    over_speed: Sequence[float] = (),
     sidebands: int = 0,
     mesh_harmonics: int = MESH_HARMONICS,
 ) -> SolvedSystem:
@@ -106,16 +101,13 @@ def solve_system(
 
     Parameters
     ----------
-    case : Case
     machine : CoupledMachine
-        Machine of the case.
-    housing : SolvedHousing or None
-        Housing of the machine.
     progress : callable
     mesh_phase : float, optional
         Phase at which the teeth of the first pair stand, 0 to 1; by default the mean contact.
-    over_speed : bool
-        Whether to solve the Campbell diagram and the response to unbalance as well.
+    over_speed : sequence of float
+        Signed speeds of the first driver's shaft [rad/s], two or more, ascending in size, over which to solve the
+        Campbell diagram and the response to unbalance as well; none by default.
     sidebands : int
         Number of shaft-order sidebands of either gear, drawn on each side of every mesh order.
     mesh_harmonics : int
@@ -123,60 +115,32 @@ def solve_system(
 
     Raises
     ------
-    CaseError
-        Where a phase is asked for without gears that turn, or a diagram without a speed.
+    gearwhine.coupling.CouplingError
+        Where a phase is asked for without gears that turn.
     gearwhine.coupling.ModesError
         Where modes fail their proof.
     """
     progress("modes of the coupled system")
     system = machine.system
-    contact = mean_contact(system) if mesh_phase is None else _instant(case, machine, mesh_phase)
+    contact = mean_contact(system) if mesh_phase is None else _instant(machine, mesh_phase)
     modes = coupled_modes(system, contact)
-    responses, error = _mesh_responses(case, machine, housing, modes, contact)
-    assert case.operation is not None
-    speed = case.operation.speed
-    lines = _sensor_lines(machine, housing) if mesh_phase is None else ()
-    solved = SolvedSystem(
-        machine, speed, housing, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines
-    )
-    return _over_speed(case, solved, housing, progress, sidebands, mesh_harmonics) if over_speed else solved
+    responses, error = _mesh_responses(machine, modes, contact)
+    lines = _sensor_lines(machine) if mesh_phase is None else ()
+    solved = SolvedSystem(machine, mesh_phase, contact, modes, coupled_stability(modes), responses, error, lines=lines)
+    return _over_speed(solved, over_speed, progress, sidebands, mesh_harmonics) if over_speed else solved
 
 
-def diagram_speeds(case: Case) -> tuple[float, ...]:
-    """Speeds of the first driver [rad/s] for the diagram: the sweep's, else up to beyond operation; ascending in size.
-
-    Raises
-    ------
-    CaseError
-        For a machine that stands still, whose bearings' tables leave no range, or a sweep of one speed.
-    """
-    assert case.operation is not None
-    operation = case.operation.speed
-    if operation == 0.0:
-        raise CaseError([Problem("operation.speed", 0.0, "a speed: a diagram over speed is of a machine that turns")])
-    if case.sweep is not None:
-        speeds = sorted({abs(speed) for speed in case.sweep.speeds})
-        if len(speeds) < 2:
-            raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
-        return with_sense_of_operation(case, speeds)
-    low, high = range_of_tables(case, 0.0, BEYOND_OPERATION * abs(operation))
-    return with_sense_of_operation(case, np.linspace(low, high, CAMPBELL_STEPS + 1).tolist())
-
-
-def _instant(case: Case, machine: CoupledMachine, phase: float) -> ContactState:
+def _instant(machine: CoupledMachine, phase: float) -> ContactState:
     """Return the state of contact when the first pair's teeth stand at a phase."""
-    require(case, "gear_pair", command="system --mesh-phase")
+    if not machine.system.contacts or machine.system.contacts[0].mesh_frequency == 0.0:
+        raise CouplingError("a phase of teeth that do not turn; expected gear pairs, and a speed")
     if not 0.0 <= phase <= 1.0:
-        raise CaseError([Problem("--mesh-phase", phase, "a part of the mesh period, 0 to 1")])
-    if machine.system.contacts[0].mesh_frequency == 0.0:
-        raise CaseError([Problem("operation.speed", 0.0, "a speed: teeth that do not turn have no phase")])
+        raise CouplingError(f"a mesh phase of {phase:g}; expected a part of the mesh period, 0 to 1")
     return contact_at(machine.system, time_of_phase(machine.system, phase))
 
 
 def _mesh_responses(
-    case: Case,
     machine: CoupledMachine,
-    housing: SolvedHousing | None,
     modes: CoupledModes,
     contact: ContactState,
 ) -> tuple[tuple[FrequencyResponse, ...], float | None]:
@@ -184,7 +148,7 @@ def _mesh_responses(
     touching = touching_meshes(machine, contact)
     if not touching:
         return (), None
-    limit = _frequency_limit(case, housing)
+    limit = _frequency_limit(machine)
     frequencies = resonance_grid(modes, _TWO_PI * min(_LOWEST_HZ, 0.1 * limit), _TWO_PI * limit)
     try:
         responses = [
@@ -203,34 +167,34 @@ def _mesh_responses(
     return tuple(responses), largest
 
 
-def _sensor_lines(machine: CoupledMachine, housing: SolvedHousing | None) -> tuple[ResponseParts, ...]:
+def _sensor_lines(machine: CoupledMachine) -> tuple[ResponseParts, ...]:
     """Motions at the mesh harmonics below the housing's limit; none without a sensor, a load or a speed."""
-    if housing is None or not housing.sensors:
+    housing = machine.housing
+    if housing is None or not housing.sensors or housing.complete_below is None:
         return ()
-    return MeshHarmonicModel(machine).parts(_TWO_PI * housing.trusted_limit_hz)
+    return MeshHarmonicModel(machine).parts(housing.complete_below)
 
 
-def _frequency_limit(case: Case, housing: SolvedHousing | None) -> float:
+def _frequency_limit(machine: CoupledMachine) -> float:
     """Return the upper frequency of responses [Hz]: that of the housing's modes, or some harmonics of the meshes."""
-    if housing is not None:
-        return housing.modes.certificate.limit / _TWO_PI
-    return _HARMONICS * max(mesh_frequencies(case)) if max(mesh_frequencies(case)) > 0.0 else 1000.0
+    if machine.housing is not None and machine.housing.complete_below is not None:
+        return machine.housing.complete_below / _TWO_PI
+    highest = max((abs(contact.mesh_frequency) for contact in machine.system.contacts), default=0.0)
+    return _HARMONICS * highest if highest > 0.0 else 1000.0
 
 
 def _over_speed(
-    case: Case,
     solved: SolvedSystem,
-    housing: SolvedHousing | None,
+    speeds: Sequence[float],
     progress: Progress,
     sidebands: int,
     mesh_harmonics: int,
 ) -> SolvedSystem:
     machine = solved.machine
-    speeds = diagram_speeds(case)
     lines = excitation_lines(machine, mesh_harmonics=range(1, mesh_harmonics + 1), sidebands=sidebands)
     mean = solved.contact if solved.mesh_phase is None else mean_contact(machine.system)
-    if housing is not None:
-        limit = housing.modes.certificate.limit
+    if machine.housing is not None and machine.housing.complete_below is not None:
+        limit = machine.housing.complete_below
     else:
         swinging = np.abs(solved.modes.eigenvalues[solved.modes.eigenvalues.imag > 0.0])
         lowest = float(np.sort(swinging)[:_MODES][-1]) if swinging.size else 0.0

@@ -13,6 +13,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
 from gearwhine.coupling.periodic.continuation import ResponseCurve, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.periodic.superposition import (
     ExcitationGroup,
     SuperposedResponse,
@@ -313,9 +314,7 @@ def solve_steady(
     return SolvedSteady(machine, motions, curve, branch_rms, loudest=loudest)
 
 
-def _loudest(
-    machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, FloatArray]
-) -> Iterator[LoudestPoint]:
+def _loudest(machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, FloatArray]) -> Iterator[LoudestPoint]:
     """Yield the loudest point of each sensor on a branch; none of a sensor that does not move."""
     places = {name: int(values.argmax()) for name, values in rms.items() if values.any()}
     for place in sorted(set(places.values())):

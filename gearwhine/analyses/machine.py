@@ -2,14 +2,17 @@
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, CaseSource, require, swept_keys
+from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
+from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
 from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.linear.linear_analysis import MESH_HARMONICS, SolvedSystem, solve_system
+from gearwhine.coupling.periodic.steady_state import SolvedSteady, solve_steady
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -23,8 +26,7 @@ from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
-from gearwhine.solve.coupled_system import MESH_HARMONICS, SolvedSystem, solve_system
-from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.damping import assumed_mesh_damping, damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
@@ -48,7 +50,6 @@ from gearwhine.solve.plausibility import (
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.sound import check_before_modes
-from gearwhine.solve.steady_state import SolvedSteady, solve_steady
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -356,24 +357,23 @@ def system(
     require(case, "rotor", "operation", command="system")
     loaded = _loaded_case(case, housing, folder, progress, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
+    over_speed = campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS
     solved = solve_system(
-        case,
         loaded.machine,
-        loaded.housing,
         progress,
         mesh_phase=mesh_phase,
-        over_speed=campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS,
+        over_speed=diagram_speeds(case) if over_speed else (),
         sidebands=sidebands,
         mesh_harmonics=mesh_harmonics,
     )
-    document = system_document(solved)
+    document = system_document(solved, loaded.housing)
     add_warnings(document, unstable_modes_warnings(solved.stability))
     loaded.add_to(document, progress)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_system
 
-        yield from draw_system(case, solved)
+        yield from draw_system(solved)
         yield from loaded.figures()
 
     return Result(
@@ -426,17 +426,19 @@ def steady(
         Where no periodic motion is found.
     """
     require(case, "rotor", "operation", command="steady")
+    assert case.operation is not None
+    if case.operation.speed == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
     loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
     solved = solve_steady(
-        loaded.case,
         loaded.machine,
-        loaded.housing,
         progress,
-        over_speed=curve or down,
-        downwards=down,
+        over_speed=branch_speeds(case, downwards=down) if curve or down else None,
         points=points,
         exact=exact,
     )
+    if solved.curve is not None:
+        solved = replace(solved, assumed_damping=assumed_mesh_damping(case))
     document = steady_document(case.title, solved)
     add_warnings(document, [*constant_speed_warnings(case), *machine_warnings(loaded.machine)])
     add_warnings(document, parted_flank_warnings(loaded.machine, solved.contact_loss))
@@ -445,7 +447,7 @@ def steady(
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_steady
 
-        yield from draw_steady(case, solved)
+        yield from draw_steady(case.title, solved)
         yield from loaded.figures()
 
     return Result(
@@ -503,7 +505,7 @@ def sound(
     if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
         loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
         machine, further_warnings = loaded.machine, loaded.warnings
-        steady_state = solve_steady(loaded.case, machine, housing, progress)
+        steady_state = solve_steady(machine, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))
     solved = solve_sound(case, housing, motion, machine, progress)
     document = {"title": case.title} | sound_document(solved)

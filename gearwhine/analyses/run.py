@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
+from gearwhine.coupling.linear.linear_analysis import solve_system
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
@@ -37,7 +38,6 @@ from gearwhine.results.run import (
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
-from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
@@ -66,8 +66,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
     from gearwhine.housing.correlation import Comparison
-    from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
@@ -168,8 +168,8 @@ def run(
     if loaded is not None and described is not None:
         begin = time.perf_counter()
         machine, mechanisms, basis = loaded.coupled, loaded.mechanisms, loaded.basis_error(progress)
-        system = solve_system(case, machine, housing, progress)
-        document["system"] = system_document(system)
+        system = solve_system(machine, progress)
+        document["system"] = system_document(system, housing)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         add_mechanisms(document["system"], mechanisms)
@@ -191,7 +191,7 @@ def run(
             keep = None
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            transient = solve_transient(case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep)
+            transient = solve_transient(case, machine, mesh_frequencies(case), progress, keep=keep)
             if has_traced_lines(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
@@ -379,7 +379,7 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
         yield from figures.draw_load(case, solved.load)
     if solved.system is not None:
         progress("drawing the coupled system")
-        yield from figures.draw_system(case, solved.system)
+        yield from figures.draw_system(solved.system)
     if solved.transient is not None:
         progress("drawing the motion")
         parts_of_motion = solved.transient, solved.signature, solved.housing, solved.comparison

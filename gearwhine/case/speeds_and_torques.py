@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from gearwhine.case.errors import NOTHING, CaseError, Problem
+from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem
 from gearwhine.case.gears import readable_pairs, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
@@ -134,6 +134,9 @@ def with_sense_of_operation(case: Case, speeds: Iterable[float]) -> tuple[float,
 BEYOND_OPERATION = 1.5
 """Default end of a Campbell diagram over the speed of operation."""
 
+SLOWEST_OF_BRANCH = 0.5
+"""Default beginning of a branch of motions over the speed of operation."""
+
 CAMPBELL_STEPS = 50
 RESPONSE_STEPS = 300
 
@@ -218,6 +221,49 @@ def range_of_tables(case: Case, lowest: float, highest: float) -> tuple[float, f
             [Problem("bearing", NOTHING, "tables over speed with a range in common, for a diagram over speed")]
         )
     return low, high
+
+
+def diagram_speeds(case: Case) -> tuple[float, ...]:
+    """Speeds of the first driver [rad/s] for the diagram: the sweep's, else up to beyond operation; ascending in size.
+
+    Raises
+    ------
+    CaseError
+        For a machine that stands still, whose bearings' tables leave no range, or a sweep of one speed.
+    """
+    assert case.operation is not None
+    operation = case.operation.speed
+    if operation == 0.0:
+        raise CaseError([Problem("operation.speed", 0.0, "a speed: a diagram over speed is of a machine that turns")])
+    if case.sweep is not None:
+        speeds = sorted({abs(speed) for speed in case.sweep.speeds})
+        if len(speeds) < 2:
+            raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
+        return with_sense_of_operation(case, speeds)
+    low, high = range_of_tables(case, 0.0, BEYOND_OPERATION * abs(operation))
+    return with_sense_of_operation(case, _evenly(low, high, CAMPBELL_STEPS))
+
+
+def branch_speeds(case: Case, *, downwards: bool = False) -> tuple[float, float]:
+    """Return the speeds from which and to which a motion is followed [rad/s]: the sweep's range, or about operation.
+
+    Raises
+    ------
+    CaseError
+        Where the sweep holds no range of speeds above zero, or the bearings' tables leave none.
+    """
+    assert case.operation is not None
+    operation = abs(case.operation.speed)
+    if case.sweep is None:
+        low, high = range_of_tables(case, SLOWEST_OF_BRANCH * operation, BEYOND_OPERATION * operation)
+    else:
+        speeds = [abs(speed) for speed in case.sweep.speeds]
+        low, high = min(speeds), max(speeds)
+        if not 0.0 < low < high:
+            expected = "a range of speeds above zero, over which a motion is followed"
+            raise CaseError([Problem("sweep.speed", UNSAID, expected)])
+    first, last = with_sense_of_operation(case, (high, low) if downwards else (low, high))
+    return first, last
 
 
 def _turned(case: Case, rotor: str, speeds: tuple[float, ...]) -> tuple[float, ...]:

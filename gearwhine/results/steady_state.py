@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from gearwhine.coupling.machine.mounted_parts import GearMesh
     from gearwhine.coupling.periodic.continuation import ResponseCurve
     from gearwhine.coupling.periodic.response import PeriodicResponse
+    from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion
     from gearwhine.coupling.periodic.superposition import SuperposedResponse
-    from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 _TILTS = ("about x", "about y")
 _EXACT = 0.02  # distance of a line from the frequency of its cause, over the spacing of lines

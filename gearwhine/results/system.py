@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
     from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
     from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
     from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
-    from gearwhine.solve.coupled_system import SolvedSystem
+    from gearwhine.solve.housing_modes import SolvedHousing
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 
@@ -443,6 +444,11 @@ def _unbalance(solved: "SolvedSystem") -> Any:
     return [_Response(response, along) for response in solved.unbalance]
 
 
+def _trusted_below(solved: "SolvedSystem") -> float | None:
+    housing = solved.machine.housing
+    return None if housing is None or housing.complete_below is None else housing.complete_below / HERTZ
+
+
 SYSTEM = (
     Quantity("speed_rpm", lambda solved: solved.speed * RPM),
     Quantity("mesh_phase", lambda solved: solved.mesh_phase),
@@ -480,11 +486,7 @@ SYSTEM = (
         "system_line",
     ),
     Quantity("superposition_error", lambda solved: solved.superposition_error),
-    Quantity(
-        "trusted_below_hz",
-        lambda solved: None if solved.housing is None else solved.housing.modes.certificate.limit / HERTZ,
-    ),
-    Part("static_error", lambda solved: static_error(solved.housing), STATIC_ERROR),
+    Quantity("trusted_below_hz", _trusted_below),
     Part(
         "campbell",
         lambda solved: ABSENT if solved.campbell is None else _Campbell(solved.campbell, solved.speed),
@@ -516,9 +518,13 @@ SYSTEM_SAME = ("speed_rpm", "mesh_phase", "mesh_stiffness", "modes")
 """Keys of the coupled system that no option over speed changes."""
 
 
-def system_document(solved: "SolvedSystem") -> dict[str, Any]:
-    """Return the coupled system as the command's JSON, without the curves of the results file."""
-    return document_of(SYSTEM, solved)
+def system_document(solved: "SolvedSystem", housing: "SolvedHousing | None" = None) -> dict[str, Any]:
+    """Return the coupled system as the command's JSON, without the curves of the results file.
+
+    ``housing`` gives the static error of its modes at the bearings.
+    """
+    of_housing = (Part("static_error", static_error, STATIC_ERROR),)
+    return document_of(SYSTEM, solved) | document_of(of_housing, housing)
 
 
 _NAMES = {"components": "", "bearings": "", "gear_meshes": "teeth of "}

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearwhine.case import Case
+from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.numerics.result_warnings import warning
 
 
@@ -93,6 +94,15 @@ def damping_warnings(case: Case) -> list[dict[str, Any]]:
         "level with all damping doubled and halved"
     )
     return [warning("damping", message, keys=[part.key for part in missing])]
+
+
+def assumed_mesh_damping(case: Case) -> tuple[str, ...]:
+    """Return the gear pairs whose mesh damping the case leaves to the default."""
+    return tuple(
+        pair_label(pair.driver, pair.driven)
+        for pair in case.gear_pair
+        if not (_gives(pair, "damping_ratio") or _gives(pair, "damping"))
+    )
 
 
 def _gives(table: Any, key: str) -> bool:

@@ -33,8 +33,6 @@ from gearwhine.coupling.time.transient import (
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.files import PRESENTATION, installed, source_digest
-from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import ReducedHousing
 from gearwhine.solve.transient_record import (
     RECORD_BYTES,
     Arrays,
@@ -198,7 +196,6 @@ def solve_transient(
     mesh_frequencies: tuple[float, ...],
     progress: Progress = silent,
     *,
-    housing: SolvedHousing | ReducedHousing | None = None,
     keep: Callable[[str], Blocks] | None = None,
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
@@ -228,7 +225,7 @@ def solve_transient(
     assert case.operation is not None
     turning = machine.speed_profile
     fastest = 1.0 if turning is None else max(1.0, float(turning.speed_ratios.max()))
-    limit = _trusted_limit(housing, tuple(fastest * frequency for frequency in mesh_frequencies))
+    limit = _trusted_limit(machine, tuple(fastest * frequency for frequency in mesh_frequencies))
     modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
 
@@ -307,8 +304,8 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
     return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
 
 
-def _trusted_limit(housing: SolvedHousing | ReducedHousing | None, mesh_frequencies: tuple[float, ...]) -> float:
+def _trusted_limit(machine: CoupledMachine, mesh_frequencies: tuple[float, ...]) -> float:
     """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears."""
-    if housing is not None:
-        return housing.trusted_limit_hz
+    if machine.housing is not None and machine.housing.complete_below is not None:
+        return machine.housing.complete_below / _TWO_PI
     return 4.0 * max(mesh_frequencies, default=1000.0)

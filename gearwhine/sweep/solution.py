@@ -129,7 +129,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
         load, warnings_of_load = find_load(case, described)
         loaded = load_machine(described, None if load is None else load.point, housing, run_of(case))
         frequencies = described.mesh_frequencies
-        solved = solve_transient(case, loaded.coupled, frequencies, housing=housing)
+        solved = solve_transient(case, loaded.coupled, frequencies)
         result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
         if load is not None:
             result.document["load"] = load_part(load)

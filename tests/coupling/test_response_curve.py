@@ -16,8 +16,8 @@ from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import periodic_response, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.steady_state import SolvedSteady
 from gearwhine.output.quantity import RPM
-from gearwhine.solve.steady_state import SolvedSteady
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -15,9 +15,9 @@ import xarray as xr
 
 from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.coupling.linear.linear_analysis import solve_system
 from gearwhine.output.dataset import arrays_of
 from gearwhine.results.operating_point import LOAD
-from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import described_machine, load_machine, reduce_housing
@@ -61,8 +61,8 @@ def write_whole(file: Path) -> set[str]:
     assert load is not None
     standing = load_machine(described, load.point, part)
     pairs, machine = standing.pairs, standing.coupled
-    system = solve_system(case, machine, housing)
-    transient = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
+    system = solve_system(machine)
+    transient = solve_transient(case, machine, mesh_frequencies(case))
     signature = solve_signature(transient, system.modes, housing.modes.frequencies_hz)
     whole = RunSolution(
         rotors, analyse_pairs(case, pairs, load.point), housing, None, system, transient, signature, None, load

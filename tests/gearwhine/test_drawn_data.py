@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.linear.linear_analysis import solve_system
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
@@ -21,7 +22,6 @@ from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.rotors import Campbell
-from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.signature import SolvedSignature, solve_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
@@ -44,8 +44,8 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     case = load_case(str(path)).case
     housing = solve_housing(case)
     machine = coupled(case, housing)
-    solved = solve_transient(case, machine, mesh_frequencies(case), housing=housing)
-    modes = solve_system(case, machine, housing).modes
+    solved = solve_transient(case, machine, mesh_frequencies(case))
+    modes = solve_system(machine).modes
     signature = solve_signature(solved, modes, housing.modes.frequencies_hz)
     figures = {f"{name}.png": figure for name, figure in draw_transient(case, solved, signature, housing, None)}
     return Drawn(solved, signature, figures)

@@ -12,10 +12,12 @@ from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, mesh_frequencies
+from gearwhine.case.speeds_and_torques import branch_speeds
 from gearwhine.cli import run_command
+from gearwhine.coupling import CouplingError
+from gearwhine.coupling.periodic.steady_state import solve_steady
 from gearwhine.figures.machine.steady_state import draw_response_curve
 from gearwhine.results.steady_state import curve_sentences
-from gearwhine.solve.steady_state import solve_steady
 from gearwhine.solve.transient import solve_transient
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
@@ -29,7 +31,7 @@ def test_the_transient_settles_to_it() -> None:
     case = load_case("spur-pair", changes).case
     machine = coupled(case)
     marched = solve_transient(case, machine, mesh_frequencies(case))
-    (motion,) = solve_steady(case, machine, None).motions
+    (motion,) = solve_steady(machine).motions
     (settled,) = (force for name, force in marched.histories.mesh_force.items() if "back" not in name)
     (steady,) = (force for name, force in motion.histories.mesh_force.items() if "back" not in name)
     assert motion.response.period == pytest.approx(60.0 / 5500.0 / 28, rel=1e-12)
@@ -139,12 +141,13 @@ def test_a_branch_that_is_left_is_told_on_screen() -> None:
 
 def test_what_stands_still_or_has_no_range_is_refused() -> None:
     case = load_case("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).case
-    machine = coupled(case)
     with pytest.raises(CaseError, match="a range of speeds"):
-        solve_steady(case, machine, None, over_speed=True)
+        branch_speeds(case)
     still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case
-    with pytest.raises(CaseError, match="stands still"):
-        solve_steady(still, machine, None)
+    with pytest.raises(CouplingError, match="stands still"):
+        solve_steady(coupled(still))
+    with pytest.raises(CaseError, match=r"operation\.speed.*stands still"):
+        gw.load("spur-pair", {"operation.speed": "0 rpm", "transient": ""}).steady()
 
 
 @pytest.mark.slow

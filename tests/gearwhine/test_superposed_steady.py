@@ -10,18 +10,18 @@ import xarray as xr
 from coupled_cases import coupled
 from reducer_case import reducer
 
-from gearwhine.case import CaseError, load_case
+from gearwhine.case import load_case
 from gearwhine.cli import run_command
-from gearwhine.coupling import CoupledMachine, PeriodicError, amplitude_spectrum
+from gearwhine.coupling import CoupledMachine, CouplingError, PeriodicError, amplitude_spectrum
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion, solve_steady
 from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
-from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion, solve_steady
 
 SHORT = (21, 30, 19, 56)  # 30 cycles of the first mesh are 19 of the second
 
@@ -192,8 +192,8 @@ def test_a_branch_of_superposed_motions_is_refused_at_once(tmp_path: Path) -> No
     place.write_text(reducer(unbalanced="input"), encoding="utf-8")
     case = load_case(str(place), []).case
     machine = coupled(case)
-    with pytest.raises(CaseError, match="holds 504 cycles of the fastest one"):
-        solve_steady(case, machine, None, over_speed=True)
+    with pytest.raises(CouplingError, match="holds 504 cycles of the fastest one"):
+        solve_steady(machine, over_speed=(100.0, 200.0))
 
 
 def test_many_changes_of_contact_are_no_fault(machine: CoupledMachine) -> None:
@@ -214,7 +214,7 @@ def test_the_steady_motion_of_a_braked_machine_is_told_of_its_back_flanks() -> N
     case = load_case("spur-pair", changes).case
     machine = coupled(case)
     assert machine.loaded_contacts == (1,)
-    (motion,) = steady_document(case.title, solve_steady(case, machine, None))["motions"]
+    (motion,) = steady_document(case.title, solve_steady(machine))["motions"]
     base_radius = 0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0))
     (pair,) = motion["gear_pairs"]
     assert pair["mean_force_n"] == pytest.approx(100.0 / base_radius, rel=1e-3)

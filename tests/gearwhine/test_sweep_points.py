@@ -98,7 +98,7 @@ def solved() -> tuple:
 def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
     point, housing, result = solved
     machine = coupled(point.case, housing)
-    whole = solve_transient(point.case, machine, mesh_frequencies(point.case), housing=housing)
+    whole = solve_transient(point.case, machine, mesh_frequencies(point.case))
     for name, spectrum in whole.sensor_spectra.items():
         np.testing.assert_array_equal(result.sensor_spectra[name], spectrum.amplitude[: result.orders.size])
     # Orders are cycles for each turn: one turn is recorded, so they are whole numbers.

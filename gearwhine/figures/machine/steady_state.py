@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling.periodic.continuation import ResponseCurve
+from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -34,7 +34,6 @@ from gearwhine.figures.style import (
     stretches,
 )
 from gearwhine.output.sections import arrowed
-from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -52,12 +51,12 @@ _MARKS = {  # marker, colour of its edge, and within: folds, where a machine jum
 }
 
 
-def draw_steady(case: Case, solved: SolvedSteady) -> Iterator[tuple[str, Figure]]:
+def draw_steady(title: str, solved: SolvedSteady) -> Iterator[tuple[str, Figure]]:
     """Draw a steady state: yield ``steady-motion`` and, over speed, ``steady-curve``, each with its figure."""
     if solved.machine.meshes:
-        yield "steady-motion", _motion_sheet(case, solved)
+        yield "steady-motion", _motion_sheet(title, solved)
     if solved.curve is not None:
-        yield "steady-curve", draw_response_curve("Steady motions over speed", solved, solved.curve, note=case.title)
+        yield "steady-curve", draw_response_curve("Steady motions over speed", solved, solved.curve, note=title)
 
 
 def draw_response_curve(title: str, solved: SolvedSteady, curve: ResponseCurve, *, note: str = "") -> Figure:
@@ -143,21 +142,22 @@ def _draw_branch(axes: Axes, speeds: FloatArray, lines: dict[str, FloatArray], c
             )
 
 
-def _motion_sheet(case: Case, solved: SolvedSteady) -> Figure:
-    drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
-    assert case.operation is not None
+def _motion_sheet(title: str, solved: SolvedSteady) -> Figure:
+    contacts = solved.machine.system.contacts
+    drives = [contacts[number].name for number in solved.machine.loaded_contacts]
     stable = [motion for motion in solved.motions if motion.response.stable]
-    speed = f"{case.operation.speed * RPM:.0f} rpm, {case.operation.torque:.4g} N·m"
+    machine = solved.machine
+    speed = f"{machine.speeds[machine.leading_rotor] * RPM:.0f} rpm, {machine.input_torque:.4g} N·m"
     unstable = "" if len(stable) == len(solved.motions) else "; grey: unstable"
     superposed = "" if solved.superposed is None else "; superposed from the motion by each excitation"
     # Names of excitations are long, and the same in all panels: they stand once, below.
     named = [] if solved.superposed is None else [arrowed(motion.excitation) for motion in solved.motions]
     below = legend_height(len(named), _COLUMNS)
-    rows, meshes = len(drives), mesh_frequencies(case)
+    rows, meshes = len(drives), [abs(contact.mesh_frequency) for contact in contacts[: len(machine.meshes)]]
     figure = sheet(
         HEAD + _FIRST + rows * _ROW + (rows - 1) * _ROW_GAP + FOOT + below,
         "Periodic motion: gear-mesh force",
-        f"{case.title}, {speed}{superposed}{unstable}",
+        f"{title}, {speed}{superposed}{unstable}",
     )
     handles: list[Artist] = []
     for number, name in enumerate(drives):

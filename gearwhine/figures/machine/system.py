@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling.linear.campbell import SystemCampbell
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.linear.linear_analysis import SolvedSystem
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -45,7 +45,6 @@ from gearwhine.figures.style import (
 )
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
-from gearwhine.solve.coupled_system import SolvedSystem
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -237,14 +236,12 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     )
 
 
-def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
-    """Draw the linear analyses of a case.
+def draw_system(solved: SolvedSystem) -> Iterator[tuple[str, Figure]]:
+    """Draw the linear analyses of a machine.
 
     Parameters
     ----------
-    case : Case
     solved : SolvedSystem
-        Coupled system of the case.
 
     Yields
     ------
@@ -253,14 +250,13 @@ def draw_system(case: Case, solved: SolvedSystem) -> Iterator[tuple[str, Figure]
         that touches.
     matplotlib.figure.Figure
     """
-    assert case.operation is not None
     if solved.campbell is not None:
-        speed = case.operation.speed
         yield (
             "system-campbell",
-            draw_system_campbell("Coupled modes over speed", solved.campbell, operating_speed=speed),
+            draw_system_campbell("Coupled modes over speed", solved.campbell, operating_speed=solved.speed),
         )
-    meshes = [frequency for frequency in mesh_frequencies(case) if frequency > 0.0] if case.gear_pair else []
+    contacts = solved.machine.system.contacts[: len(solved.machine.meshes)]
+    meshes = [abs(contact.mesh_frequency) for contact in contacts if contact.mesh_frequency != 0.0]
     pairs = [response.excitation.removeprefix("transmission error of ") for response in solved.responses]
     # An arrow is no letter of a file's name.
     named = [name.replace(" -> ", "-") for name in pairs]
