@@ -65,6 +65,7 @@ FloatArray = npt.NDArray[np.float64]
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 MODES_CODE = (
+    "gearwhine.numerics",
     "gearwhine.meshes",
     "gearwhine.housing.errors",
     "gearwhine.housing.housing",

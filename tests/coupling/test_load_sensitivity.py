@@ -75,14 +75,14 @@ def scaled(machine: Machine, number: int, size: float) -> OperatingPoint:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(machine_description, "static_bearing", stiffer)
-        return machine.operating_point(GRAVITY)
+        return replace(machine, gravity=GRAVITY).operating_point()
 
 
 def moved(machine: Machine, number: int, size: float) -> OperatingPoint:
     held = list(machine.bearings)
     own = held[number]
     held[number] = replace(own, bearing=replace(own.bearing, at=own.bearing.at + size))
-    return replace(machine, bearings=held).operating_point(GRAVITY)
+    return replace(machine, bearings=held, gravity=GRAVITY).operating_point()
 
 
 def difference(machine: Machine, number: int, change: Callable[..., OperatingPoint], step: float) -> FloatArray:
@@ -100,7 +100,7 @@ def test_bearings(machine: Machine) -> None:
 
     The error of the differences falls with the fourth power of their steps, where rolling elements bend the outcomes.
     """
-    point = machine.operating_point(GRAVITY)
+    point = replace(machine, gravity=GRAVITY).operating_point()
     tolerance = 1e-7
     (pair,) = pair_adjoints(point)
     assert tuple(pair) == OUTCOMES

@@ -7,7 +7,6 @@ import pytest
 from own_statics import STEEL
 
 from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftForce
-from gearwhine.coupling.machine.parts import Driving
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment
 
@@ -29,8 +28,9 @@ def bearing_forces(frequency_limit: float | None) -> np.ndarray[tuple[int, ...],
         [MountedBearing(bearing, "shaft", None) for bearing in bearings],
         speed=200.0,
         forces=[ShaftForce("shaft", MIDDLE, FORCE)],
+        gravity=GRAVITY,
     )
-    system = machine.assemble(driving=Driving(gravity=GRAVITY)).system
+    system = machine.assemble().system
     place = static_equilibrium(system)
     found = np.zeros((2, 5))
     for force, connector in zip(found, system.linear, strict=True):

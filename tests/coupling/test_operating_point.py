@@ -19,7 +19,6 @@ from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
 from gearwhine.coupling.machine.components import HousingComponent, PedestalComponent
-from gearwhine.coupling.machine.parts import Driving
 from gearwhine.coupling.statics.operating_point import CAUSES
 from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 from gearwhine.rotors import EquilibriumError, Pedestal, Rotor, RotorError, Segment
@@ -88,7 +87,7 @@ def test_a_free_housing_carries_what_balances_and_nothing_else() -> None:
     with pytest.raises(CouplingError, match=r"nothing holds .*, and the loads drive it; expected a bearing that holds"):
         idler(box, outputs=[Output("two", 80.0)]).operating_point()
     with pytest.raises(CouplingError, match="box: expected its participation in rigid motions, for its weight"):
-        free.operating_point((0.0, -9.81, 0.0))
+        replace(free, gravity=(0.0, -9.81, 0.0)).operating_point()
 
 
 def spur(stiffness: npt.ArrayLike = RADIAL, **changes: Any) -> Machine:
@@ -99,7 +98,7 @@ def test_machines_without_an_operating_point_are_refused() -> None:
     with pytest.raises(
         CouplingError, match=r"nothing holds the axial motion of shaft '(in|out)', and the loads drive it"
     ):
-        spur().operating_point((0.0, 0.0, -9.81))
+        replace(spur(), gravity=(0.0, 0.0, -9.81)).operating_point()
     unloaded = spur(torque=0.0)
     (pair,) = unloaded.gear_pairs
     assert unloaded.at_operating_point().gear_pairs == (pair,)
@@ -308,16 +307,16 @@ def test_a_pedestal_sinks_by_its_own_weight_and_that_of_its_shaft(moving: bool) 
     plain = belt_drive((0.0, 0.0, 0.0))
     right = plain.bearings[1]
     on_pedestal = replace(right.bearing, pedestal=Pedestal(stiffness, np.zeros((2, 2)), mass))
-    machine = replace(plain, bearings=[plain.bearings[0], replace(right, bearing=on_pedestal)])
+    machine = replace(plain, bearings=[plain.bearings[0], replace(right, bearing=on_pedestal)], gravity=gravity)
     carried = 5.0 / 12.0 * math.pi / 4 * 0.03**2 * 0.2 * STEEL.density
     sunk = np.linalg.solve(stiffness, (mass + carried) * gravity[:2])
     if moving:
-        parts = machine.assemble(driving=Driving(gravity=tuple(gravity)))
+        parts = machine.assemble()
         (pedestal,) = (one for one in parts.system.components if isinstance(one, PedestalComponent))
         q = static_equilibrium(parts.system)
         found = pedestal.motion @ q[-2:]
     else:
-        found = machine.operating_point(tuple(gravity)).bearings[1].seat_motion[:2]
+        found = machine.operating_point().bearings[1].seat_motion[:2]
     np.testing.assert_allclose(found, sunk, rtol=1e-6)
 
 

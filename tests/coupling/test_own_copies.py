@@ -15,9 +15,9 @@ from gearwhine.coupling.gears.geometry.modifications import ProfileDeviation
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import TableStiffness
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, BaseMotion
+from gearwhine.coupling.machine.excitation import Driving
 from gearwhine.coupling.machine.gear_train import Output
 from gearwhine.coupling.machine.loads import Torque, TorqueHistory, TorqueSlope
-from gearwhine.coupling.machine.parts import Driving
 from gearwhine.housing import STEEL, Housing, Joint, LumpedMass, Mount, Seat, Sensor, Support
 from gearwhine.housing.model.bushings import Bushing
 from gearwhine.housing.model.patches import Patch

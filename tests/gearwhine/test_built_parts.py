@@ -64,10 +64,10 @@ def test_radial_matrices_are_rows_of_forces_over_columns_of_motions() -> None:
 
 
 def test_torques_over_time_and_ripple_act_in_the_sense_of_their_torque() -> None:
-    history = TorqueHistory.model_validate({"time": [0.0, 1.0], "torque": [3.0, 5.0]}).build("shaft", 0.1, -2.0)
+    history = TorqueHistory.model_validate({"time": [0.0, 1.0], "torque": [3.0, 5.0]}).build().on("shaft", 0.1, -2.0)
     np.testing.assert_array_equal(history.values, [-6.0, -10.0])
     ripple = TorqueRipple.model_validate({"amplitude": 2.0, "phase": "90 deg", "frequency": "50 Hz"})
-    against = ripple.build("shaft", 0.1, -1.0)
+    against = ripple.build().on("shaft", 0.1, -1.0)
     assert (against.amplitude, against.order) == (-2.0, None)
     assert against.phase == pytest.approx(0.5 * math.pi)
     assert against.frequency == pytest.approx(100.0 * math.pi)

@@ -349,7 +349,7 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
     assert load is None
     assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
     (pair,), _ = solve_pairs(case, None)
-    assert (pair.pair.misalignment, pair.pair.face_gap) == (None, ())
+    assert (pair.pair.misalignment, pair.pair.face_gap) == (0.0, ())
     with pytest.warns(UserWarning, match="flanks are taken as aligned, as the machine has no operating point: .*"):
         _ = describe_machine(case).assembled
     with pytest.raises(EquilibriumNotFoundError):
