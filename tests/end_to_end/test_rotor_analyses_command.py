@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from PIL import Image
+
+from gearwhine.output.manifest import opened_dataset
 
 pytestmark = pytest.mark.rendered
 
@@ -118,7 +119,7 @@ def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_pa
     outcome = gearwhine("rotors", shaft, "-o", "out", *settings)
     assert outcome.code == 0, outcome.err
     assert "Response to torques from 10 to 100 Hz" in outcome.out
-    with xr.open_dataset("out/results.nc") as data:
+    with opened_dataset("out/results.nc") as data:
         assert data.torsion_angle.dims == ("torsion_probe", "torsion_step")
         assert data.torsion_torque.attrs["units"] == "N m"
         assert data.torsion_frequency.values[0] == pytest.approx(np.linspace(10.0, 100.0, 10))

@@ -10,6 +10,7 @@ import xarray as xr
 from lopsided_case import FEW_WHIRLS, GEARS, SPEEDS, lopsided
 
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.motion import mesh_sentence
 
 
@@ -17,7 +18,7 @@ def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, A
     settings = [part for change in (FEW_WHIRLS, *changes) for part in ("--set", change)]
     assert run_command(["run", case, "-q", "--no-pictures", "-o", str(folder / "out"), *settings]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data:
+    with opened_dataset(folder / "out" / "results.nc") as data:
         return data.load(), summary
 
 

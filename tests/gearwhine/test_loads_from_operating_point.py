@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import gearwhine as gw
 from coupling.errors import EquilibriumNotFoundError
@@ -17,6 +16,7 @@ from gearwhine.analyses import machine as analyses
 from gearwhine.case import CaseError, dump_case, load_case, parse_case, swept_keys
 from gearwhine.cli import run_command
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.solve.machine import solve_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
@@ -171,7 +171,7 @@ def test_a_run_has_the_operating_point_that_its_motion_starts_from(
     assert f"the equilibrium finds {1e6 * pair['misalignment_rad']:.4g} µrad" in told.err
     assert "misalignment of 200 µrad taken, as the case gives it (found: " in told.out
     assert {"load-shaft-input.png", "load-misalignment.png", "load-face-pinion-wheel.png"} <= set(summary["files"])
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         assert data["misalignment"].values == pytest.approx([pair["misalignment_rad"]], rel=1e-12)
         assert data["misalignment_taken"].values == pytest.approx([2e-4])
         assert data["bearing_given_load"].sel(loaded_bearing="input left").values == pytest.approx([300, -900, 200])

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from reducer_case import reducer
 
 from coupling import CoupledMachine, PeriodicError, amplitude_spectrum
@@ -19,6 +18,7 @@ from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
 from gearwhine.solve.machine import build_machine
@@ -179,7 +179,7 @@ def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureF
     for pair in motion["gear_pairs"]:
         assert {line["excitation"] for line in pair["force_lines"]} <= set(names)
         assert 0.0 < pair["neglected_part"] < 0.2
-    with xr.open_dataset(tmp_path / "out" / "results.nc") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         assert data["excitation_mesh_force"].dims == ("excitation", "contact", "period_part")
         assert data["excitation_period"].values == pytest.approx([1 / 1050, 72 / 1050 / 19, 72 * 56 / 1050 / 19])
     text = " ".join(sentence for section in chapters_of(document) for sentence in section.sentences)
