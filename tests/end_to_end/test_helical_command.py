@@ -16,6 +16,8 @@ from gearwhine.output.manifest import opened_dataset
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import mean_bearing_forces, solve_transient
 
+pytestmark = pytest.mark.slow
+
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
 
 

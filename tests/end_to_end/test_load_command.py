@@ -12,6 +12,7 @@ from gearwhine.cli import run_command
 from gearwhine.output.manifest import opened_dataset
 
 
+@pytest.mark.slow
 def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     coarse = ("--set", "housing.box.mesh_size=45 mm")

@@ -35,6 +35,7 @@ def run_on_file(gearwhine, tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_an_interactive_report_has_the_shapes_of_the_folder(gearwhine, run_on_file: Path, tmp_path: Path) -> None:
     outcome = gearwhine("report", *CASE, "--interactive", "-o", "out", "--json")
     assert outcome.code == 0, outcome.err

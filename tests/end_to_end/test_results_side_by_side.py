@@ -55,6 +55,7 @@ def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callab
     assert "transient.revolutions was" in page
 
 
+@pytest.mark.slow
 def test_a_run_has_the_folder_itself_and_what_was_there_moves(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
     out = tmp_path / "out"
     first = gearwhine("gears", "spur-pair", "-q", "--json", "-o", "out").document

@@ -114,6 +114,7 @@ def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solve
     assert solved_rotor(shaft)["torsional_response"] is None
 
 
+@pytest.mark.slow
 def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_path: Path) -> None:
     settings = ("--set", f"rotor_analysis.torsional_response={{{TORQUE},{RANGE}}}")
     outcome = gearwhine("rotors", shaft, "-o", "out", *settings)

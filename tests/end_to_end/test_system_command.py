@@ -105,6 +105,7 @@ def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Pa
             assert together == pytest.approx(by_load[sensor, round(line["frequency_hz"])], rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_terminal_says_what_excites_beside_transmission_error(gearwhine: Any) -> None:
     told = gearwhine("system", "small-gearbox", *HELICAL, "-q").out
     assert "by transmission error alone" in told

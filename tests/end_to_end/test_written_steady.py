@@ -12,6 +12,8 @@ from lopsided_case import GEARS, PAIRS, SPEEDS, bearing_forces, force, lopsided
 from gearwhine.cli import run_command
 from gearwhine.output.manifest import opened_dataset
 
+pytestmark = pytest.mark.slow
+
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "rotor.input.unbalance=")
 SWEPT = "sweep.speed=['4000 rpm', '6000 rpm']"
 BACKLASH = "gear_pair.0.backlash='80 um'"

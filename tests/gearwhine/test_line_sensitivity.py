@@ -171,7 +171,8 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     return np.array([one.value for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
 
 
-@pytest.mark.parametrize("typed_damping", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("typed_damping", [True, False])
 def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved, typed_damping: bool) -> None:
     """A bearing's law that is stiffer in the equilibrium alone: by tangents, damping, mesh stiffness and errors.
 
@@ -283,6 +284,7 @@ def test_mesh_stiffness_by_another_stiffness(solved: Solved) -> None:
     np.testing.assert_allclose(found, np.repeat(expected[:, None], 5, axis=1), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_mesh_stiffness_by_the_gap(solved: Solved) -> None:
     """The mean mesh stiffness by a tilt and by a bow of the flanks, to a tenth of the larger, that by the tilt.
 

@@ -194,6 +194,7 @@ def test_a_run_takes_the_misalignment_found() -> None:
     assert not [one for one in result.document["warnings"] if one["name"] in ("misalignment", "bearing load")]
 
 
+@pytest.mark.slow
 def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> None:
     """Bearing loads and misalignment are those of `load` at each torque, and the motion stands on them."""
     file = tmp_path / "case.toml"

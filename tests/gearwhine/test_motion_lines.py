@@ -111,6 +111,7 @@ def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
         np.testing.assert_allclose(rate[:, 0] + 1j * rate[:, 1], of_run, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
     """Velocity of the radiating surface at two sensors on walls, against their spectra in the same record."""
     solved = quick_run(24.0).solved
@@ -138,6 +139,7 @@ def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
             assert abs(velocity - felt) < 0.08 * abs(felt), (name, line.name)
 
 
+@pytest.mark.slow
 def test_lines_beyond_the_wanted_number_and_frequency_are_named() -> None:
     """Two lines up to 2 kHz: the next ones and the mesh frequency are left out with their part of the whole."""
     result = quick_run(24.0)
@@ -195,6 +197,7 @@ def test_a_run_up_has_no_lines_but_microphones_over_time(monkeypatch: pytest.Mon
     assert result.document["sound"]["total_db"] is None
 
 
+@pytest.mark.slow
 def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
     """The base shakes the housing itself, which the bearings' forces do not know."""
     study = sounding_gearbox(TOP | BASE)
@@ -206,6 +209,7 @@ def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
         assert told["message"].startswith("the sound of the motion is left out: the base moves")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [RUN_UP, BASE])
 def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
     case = sounding_gearbox(TOP | changes).case
@@ -301,6 +305,7 @@ def test_refuses_a_box_without_a_floor_and_its_names(changes: dict[str, Any], me
 MESH = "1× pinion -> wheel"
 
 
+@pytest.mark.slow
 def test_titles_of_operating_shapes_have_arrows() -> None:
     solved = quick_run(24.0).solved
     assert solved.signature is not None
@@ -311,6 +316,7 @@ def test_titles_of_operating_shapes_have_arrows() -> None:
     assert not any("->" in title for title in titles)
 
 
+@pytest.mark.slow
 def test_operating_shapes_of_a_record_of_broken_turns_are_those_of_one_of_whole_turns() -> None:
     """A mesh line between two lines of the spectrum has its frequency, and all of its amplitude, in every mode."""
     broken_turns = sounding_gearbox(QUICK | {"transient.revolutions": 24.37, "transient.discard": 16.0})

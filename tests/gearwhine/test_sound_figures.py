@@ -15,6 +15,8 @@ from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_
 from gearwhine.solve.sound.solution import SolvedSound
 from housing.acoustics.sound_levels import a_weighting
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def solved() -> SolvedSound:

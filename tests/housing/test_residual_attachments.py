@@ -210,6 +210,7 @@ def test_any_number_of_modes_and_any_shift_below_give_the_same_compliance(
     compare_with_direct_solution(*dense(beam[1], clamped, port, shift=-(10.0**power)), cut=count)
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(count=st.integers(1, 60), part=st.floats(0.05, 0.95))
 def test_a_shift_between_kept_and_discarded_modes_does_as_well(

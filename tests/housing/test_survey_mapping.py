@@ -141,6 +141,7 @@ def test_alignment_by_landmarks(box: Mesh, geometry_of_survey: MeasuredGeometry)
         align_landmarks(given_geometry, {"1": (0.0, 0.0, 0.0), "2": (1.0, 0.0, 0.0)})
 
 
+@pytest.mark.slow
 def test_alignment_by_the_surface_says_what_a_symmetric_box_leaves_open(
     box: Mesh, geometry_of_survey: MeasuredGeometry
 ) -> None:

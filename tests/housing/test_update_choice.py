@@ -41,6 +41,7 @@ def cost_by_hand(strengths: Dominance, chosen: tuple[int, ...], gap: float, marg
     return total
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=40, deadline=None)
 def test_no_choice_costs_less_by_much(seed: int) -> None:

@@ -191,6 +191,7 @@ def test_a_race_ends_with_what_the_fine_mesh_calls_met_and_says_so() -> None:
     assert any(np.array_equal(raced.coordinates, point) for point in raced.seen)
 
 
+@pytest.mark.slow
 def test_how_the_work_is_shared_out_changes_nothing() -> None:
     """Tasks done in another order, each anew, give the same to the last bit."""
 
