@@ -24,6 +24,11 @@ def _figures_unrendered(request: pytest.FixtureRequest) -> None:
         request.getfixturevalue("unrendered")
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _modes_solved_once(modes_solved_once: None) -> None:
+    """Modes of a housing that another test of this process has solved are not solved again."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What a run of the command left."""

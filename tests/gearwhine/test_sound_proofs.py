@@ -92,6 +92,7 @@ def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pyt
         gw.load("steel-box", COARSE).sound()
 
 
+@pytest.mark.slow
 def test_a_vertex_that_is_lost_on_the_default_triangles_is_told_and_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """The fault that a user heard as 5 dB at a microphone: the correction for a curved pressure without its bound."""
     case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case

@@ -108,7 +108,7 @@ def test_another_frame_is_refused_with_advice(box: Mesh, geometry_of_survey: Mea
         map_survey(box, moved(geometry_of_survey))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 10_000), scale=st.sampled_from([1.0, 1e-3, 25.4]))
 def test_landmarks_give_back_the_motion_exactly(seed: int, scale: float) -> None:
     rng = np.random.default_rng(seed)
