@@ -69,6 +69,7 @@ def without_places(folder: Path, place: Path, *, case: bool) -> Path:
     return place
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["results.nc", "summary.json"])
 @pytest.mark.parametrize("damage", ["a flipped bit", "cut off"])
 def test_damaged_results_are_neither_exported_nor_reported(
