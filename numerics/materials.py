@@ -7,7 +7,7 @@ metals have 300 kg/m³ and more, osmium 22,600 kg/m³.
 
 from collections.abc import Iterator
 
-from numerics.findings import Finding, Number, Part
+from gearwhine.numerics.findings import Finding, Number, Part
 
 _SOFTEST, _STIFFEST = 0.5e9, 1.3e12  # Pa
 _LIGHTEST, _HEAVIEST = 300.0, 23e3  # kg/m³

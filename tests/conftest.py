@@ -18,8 +18,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import settings
 
-from meshes import ElementBlock, Mesh
-from meshes.elements import KINDS, ElementKind
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import KINDS, ElementKind
 
 # The same examples in every run, however slow the machine; `--hypothesis-profile=explore` looks for new ones.
 settings.register_profile("fixed", deadline=None, derandomize=True, max_examples=50)
@@ -243,8 +243,8 @@ def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) ->
 
     The key is that of the modes which a results folder keeps. What the solution says of its progress is said again.
     """
+    from gearwhine.housing.storage.netcdf import content_key
     from gearwhine.solve import housing_modes
-    from housing.storage.netcdf import content_key
 
     solve = housing_modes._solve_modes
 

@@ -10,7 +10,7 @@ import xarray as xr
 from xarray.backends import BackendArray, BackendEntrypoint
 from xarray.core import indexing
 
-from housing.storage.netcdf import StoredVariable, attributes_of, stored_variables
+from gearwhine.housing.storage.netcdf import StoredVariable, attributes_of, stored_variables
 
 
 class StoredResults(BackendEntrypoint):

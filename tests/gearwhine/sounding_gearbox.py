@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling import CoupledMachine
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run import RunSolution
 from gearwhine.case import Case
+from gearwhine.coupling import CoupledMachine
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.machine import solve_machine
 from gearwhine.sweep.solution import PointResult

@@ -7,10 +7,10 @@ import pytest
 
 from gearwhine.analyses.housing import compare
 from gearwhine.case import load_case
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
+from gearwhine.housing.measured.survey_data import SurveyData
+from gearwhine.housing.measured.survey_files import write_survey
 from gearwhine.solve.housing_modes import solve_housing
-from housing.measured import MeasuredGeometry, MeasuredModes
-from housing.measured.survey_data import SurveyData
-from housing.measured.survey_files import write_survey
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
+from gearwhine.housing import HousingError
 from gearwhine.solve.updating import in_parallel
-from housing import HousingError
 
 
 @pytest.mark.slow

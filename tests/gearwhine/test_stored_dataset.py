@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from gearwhine.housing.storage.netcdf import write_netcdf
 from gearwhine.output.stored_dataset import StoredResults
-from housing.storage.netcdf import write_netcdf
 
 COORDINATES: dict[str, Any] = {
     "speed": ((), 3000.0, {"units": "rpm"}),

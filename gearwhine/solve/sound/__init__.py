@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from gearwhine.case import Case
-from meshes import Mesh
+from gearwhine.meshes import Mesh
 
 
 def check_before_modes(case: Case) -> Callable[[Case, Mesh], None] | None:
