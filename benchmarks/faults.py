@@ -24,6 +24,7 @@ import time
 import tomllib
 from collections import Counter
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
@@ -85,18 +86,39 @@ def misfits(faults: list[Fault], tests: dict[str, list[str]]) -> list[str]:
     """Why the list does not fit the code, a sentence each: lost files and tests, pieces that moved, broken syntax."""
     wrong = [f"area {area}: no test {name}" for area, names in tests.items() for name in names if not exists(name)]
     texts: dict[str, str] = {}
+    starts: dict[str, list[int]] = {}
     for fault in faults:
         if not exists(fault.file):
             wrong.append(f"fault {fault.number}: no file {fault.file}")
             continue
-        text = texts.setdefault(fault.file, (ROOT / fault.file).read_text(encoding="utf-8"))
+        if fault.file not in texts:
+            texts[fault.file] = text = (ROOT / fault.file).read_text(encoding="utf-8")
+            starts[fault.file] = statement_starts(text) if fault.file.endswith(".py") else []
+        text = texts[fault.file]
         try:
-            changed = fault.changed(text)
+            fault.changed(text)
             if fault.file.endswith(".py"):
-                ast.parse(changed, fault.file)
+                ast.parse(changed_statements(fault, text, starts[fault.file]), fault.file)
         except (SyntaxError, ValueError) as error:
             wrong.append(str(error) if isinstance(error, ValueError) else f"fault {fault.number}: {error}")
     return wrong
+
+
+def statement_starts(text: str) -> list[int]:
+    """Offsets in the text of a module at which the lines of its top-level statements begin, and of its end."""
+    lines = [0, *accumulate(map(len, text.splitlines(keepends=True)))]
+    firsts = [
+        min(line.lineno for line in (node, *getattr(node, "decorator_list", ()))) for node in ast.parse(text).body
+    ]
+    return [0, *(lines[first - 1] for first in firsts), len(text)]
+
+
+def changed_statements(fault: Fault, text: str, starts: list[int]) -> str:
+    """Those top-level statements of a module that a fault changes, with the fault: the others are as they were."""
+    at = text.index(fault.before)
+    begin = max(start for start in starts if start <= at)
+    end = min((start for start in starts if start >= at + len(fault.before)), default=len(text))
+    return text[begin:at] + fault.after + text[at + len(fault.before) : end]
 
 
 def exists(name: str) -> bool:

@@ -3,9 +3,10 @@
 import gc
 import logging
 from base64 import b64decode
-from collections import defaultdict
+from collections import OrderedDict, defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from functools import cache
 from itertools import combinations_with_replacement
 from math import floor, log10
@@ -178,6 +179,8 @@ def _line(row: Row) -> str:
     return f"| {row.quantity} | {value} | {ours} | {row.unit} | {difference} | {tolerance} |"
 
 
+_KEPT_HOUSINGS = 8  # the last ones: their shapes take memory
+
 # A single white point, in place of a rendered figure.
 _POINT = b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg==")
 
@@ -226,6 +229,47 @@ def swept_here() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(workers, "_own_processes", thread)
+        yield
+
+
+@pytest.fixture(scope="session")
+def _solved_modes() -> OrderedDict[str, tuple[Any, list[str]]]:
+    return OrderedDict()
+
+
+@pytest.fixture(scope="module")
+def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) -> Iterator[None]:
+    """Solve the modes of a housing once for the cases of a process that differ in the rest.
+
+    The key is that of the modes which a results folder keeps. What the solution says of its progress is said again.
+    """
+    from gearwhine.housing.storage.netcdf import content_key
+    from gearwhine.solve import housing_modes
+
+    solve = housing_modes._solve_modes
+
+    def solved(case: Any, described: Any, loaded: Any, progress: Any) -> Any:
+        inputs = housing_modes.mode_cache_inputs(case, described.mesh)
+        key = content_key({"inputs": inputs, "nodes": described.mesh.points.tobytes().hex()})
+        if key not in _solved_modes:
+            said: list[str] = []
+
+            def kept(text: str) -> None:
+                said.append(text)
+                progress(text)
+
+            _solved_modes[key] = solve(case, described, loaded, kept), said
+            if len(_solved_modes) > _KEPT_HOUSINGS:
+                _solved_modes.popitem(last=False)
+        else:
+            _solved_modes.move_to_end(key)
+            for text in _solved_modes[key][1]:
+                progress(text)
+        modes, mass, damping, checks, seconds = _solved_modes[key][0]
+        return modes, mass, damping, deepcopy(checks), dict(seconds)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(housing_modes, "_solve_modes", solved)
         yield
 
 

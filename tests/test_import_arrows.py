@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -18,20 +19,29 @@ ALLOWED = {
 }
 
 
+@cache
+def imports_in(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Import statements anywhere in a file, also late or for types alone."""
+    found: list[ast.Import | ast.ImportFrom] = []
+    blocks: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
+    while blocks:
+        # Only statements hold statements: expressions, most of a tree, are not looked at.
+        for node in ast.iter_child_nodes(blocks.pop()):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                found.append(node)
+            elif not isinstance(node, ast.expr):
+                blocks.append(node)
+    return tuple(found)
+
+
 def imported_rooms(path: Path) -> set[str]:
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in imports_in(path):
         if isinstance(node, ast.Import):
-            names |= {room_of(alias.name) for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            names |= {room_of(f"{node.module}.{alias.name}") for alias in node.names}
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif node.level == 0 and node.module:
+            names.add(node.module.split(".")[0])
     return names & set(ALLOWED)
-
-
-def room_of(module: str) -> str:
-    """Return the room of a module: gearwhine.housing.modes is of housing, gearwhine.case of the front door."""
-    parts = module.split(".")
-    return parts[1] if parts[0] == "gearwhine" and parts[1:2] and parts[1] in ALLOWED else parts[0]
 
 
 @pytest.mark.parametrize("room", ALLOWED)
@@ -87,10 +97,10 @@ def imported_modules(path: Path, known: set[str]) -> set[str]:
     own = module_of(path)
     package = own if path.name == "__init__.py" else own.rpartition(".")[0]
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in imports_in(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = package.rsplit(".", node.level - 1)[0] if node.level > 1 else package
             module = node.module or "" if node.level == 0 else ".".join(filter(None, (base, node.module)))
             inner = {f"{module}.{alias.name}" for alias in node.names}

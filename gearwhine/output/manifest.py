@@ -122,8 +122,10 @@ def opened_dataset(path: Path) -> Iterator["xr.Dataset"]:
     """
     import xarray as xr
 
+    from gearwhine.output.stored_dataset import StoredResults
+
     try:
-        data = xr.open_dataset(path, engine="h5netcdf")
+        data = xr.open_dataset(path, engine=StoredResults)
     except Exception as error:  # readers raise exceptions of many kinds on a damaged file
         raise DamagedResultsError(f"{path} is no NetCDF4 file, or a damaged one: {error}") from error
     with data:

@@ -135,10 +135,11 @@ class SurfaceVelocity:
         first, *others = np.moveaxis(self.skin.corners[near], 1, 0)
         # p + t n = a + u (b - a) + v (c - a) for every point p and skin triangle a b c.
         frame = np.stack([others[0] - first, others[1] - first, np.broadcast_to(-normal, first.shape)], axis=2)
-        gaps = (shares @ corners)[:, None] - first
-        u, v, t = np.moveaxis(np.einsum("kij,pkj->pki", np.linalg.inv(frame), gaps), 2, 0)
+        # u, v and t of a point are means of those of the corners by its shares.
+        at_corners = np.linalg.inv(frame) @ (corners.T - first[:, :, None])
+        u, v, t = np.moveaxis(at_corners @ shares.T, 1, 0)
         met = (u >= -_EDGEWISE) & (v >= -_EDGEWISE) & (u + v <= 1.0 + _EDGEWISE) & (np.abs(t) <= self.edge)
-        return np.asarray(~met.any(axis=1))
+        return np.asarray(~met.any(axis=0))
 
     @cached_property
     def distances(self) -> FloatArray:

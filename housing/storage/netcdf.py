@@ -158,7 +158,7 @@ def write_netcdf(
             if name in variables and name not in sizes:
                 near = sorted(other for other, among in beside.items() if among <= set(dimensions[name]))
                 variable_attributes |= {"coordinates": " ".join(near)} if near else {}
-            stored = f"_nc4_non_coord_{name}" if name in scales else name
+            stored = _BESIDE + name if name in scales else name
             if fill and array.dtype.kind == "f":
                 variable_attributes["_FillValue"] = missing = array.dtype.type(np.nan)
                 dataset = file.create_dataset(
@@ -237,21 +237,103 @@ def read_netcdf(path: Path, names: Collection[str] | None = None) -> tuple[dict[
 
     Raises
     ------
-    OSError, ValueError, KeyError
+    OSError, RuntimeError, ValueError, KeyError
         Where it is no such file, or a damaged one.
     """
-    import h5netcdf
+    import h5py
 
-    with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
-        read = [str(name) for name in file.variables if names is None or name in names]
-        return {name: _labelled(file.variables[name]) for name in read}, dict(file.attrs)
+    with h5py.File(path, "r") as file:
+        stored = stored_variables(file)
+        read = {name: one for name, one in stored.items() if names is None or name in names}
+        return {name: _labelled(one) for name, one in read.items()}, attributes_of(file)
 
 
-def _labelled(variable: Any) -> LabelledArray:
-    labels = {str(name): str(text) for name, text in variable.attrs.items()}
-    dimensions = tuple(map(str, variable.dimensions))
-    values = np.asarray(variable[...])
-    return LabelledArray(dimensions, values, labels.pop("units", ""), labels.pop("long_name", ""), labels)
+@dataclass(frozen=True)
+class StoredVariable:
+    """A variable of an open file: its dimensions, its attributes, and where its values stand.
+
+    Attributes
+    ----------
+    dimensions : tuple of str
+    attributes : mapping
+        Without those by which the format itself binds dimensions to arrays.
+    dataset : h5py.Dataset
+    """
+
+    dimensions: tuple[str, ...]
+    attributes: dict[str, Any]
+    dataset: Any
+
+    @property
+    def values(self) -> Any:
+        """What reads the values piece by piece, text decoded."""
+        import h5py
+
+        return self.dataset.asstr() if h5py.check_string_dtype(self.dataset.dtype) else self.dataset
+
+
+_BESIDE = "_nc4_non_coord_"  # before the name of a variable that is named for a dimension and not along it
+_OF_THE_FORMAT = frozenset(
+    ["CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_NCProperties", "_Netcdf4Coordinates", "_Netcdf4Dimid"]
+)
+
+
+def stored_variables(file: Any) -> dict[str, StoredVariable]:
+    """Return the variables of an open file by name, each object looked up once.
+
+    General readers ask the file for an object whenever they need it, which for a file of a hundred arrays takes most
+    of the time.
+
+    Parameters
+    ----------
+    file : h5py.File
+
+    Raises
+    ------
+    OSError, RuntimeError, ValueError, KeyError
+        Where the file is damaged, or has an axis without a dimension.
+    """
+    found: dict[str, StoredVariable] = {}
+    for stored in file:
+        dataset = file[stored]
+        if not hasattr(dataset, "shape"):  # a group is no variable
+            continue
+        attributes = dataset.attrs
+        if bytes(attributes.get("NAME", b"")).startswith(_NO_VARIABLE):
+            continue
+        dimensions = _dimensions(file, stored, dataset)
+        found[stored.removeprefix(_BESIDE)] = StoredVariable(dimensions, attributes_of(dataset), dataset)
+    return found
+
+
+def _dimensions(file: Any, name: str, dataset: Any) -> tuple[str, ...]:
+    import h5py
+
+    if not dataset.shape:
+        return ()
+    if dataset.attrs.get("CLASS") == b"DIMENSION_SCALE" and len(dataset.shape) == 1:
+        return (name,)
+    scales = dataset.attrs["DIMENSION_LIST"]
+    if len(scales) != len(dataset.shape) or not all(len(one) for one in scales):
+        raise ValueError(f"variable {name!r} has an axis without a dimension")
+    return tuple(h5py.h5r.get_name(one[-1], file.id).decode().rpartition("/")[2] for one in scales)
+
+
+def attributes_of(stored: Any) -> dict[str, Any]:
+    """Return the attributes of an open file or of an array in it, a list of one number as that number.
+
+    Parameters
+    ----------
+    stored : h5py.File or h5py.Dataset
+    """
+    read = {str(name): stored.attrs[name] for name in stored.attrs if name not in _OF_THE_FORMAT}
+    return {name: one[0] if isinstance(one, np.ndarray) and one.size == 1 else one for name, one in read.items()}
+
+
+def _labelled(variable: StoredVariable) -> LabelledArray:
+    labels = {name: str(text) for name, text in variable.attributes.items()}
+    values = np.asarray(variable.values[...])
+    return LabelledArray(variable.dimensions, values, labels.pop("units", ""), labels.pop("long_name", ""), labels)
 
 
 def _array(values: Any) -> npt.NDArray[Any]:

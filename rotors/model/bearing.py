@@ -176,10 +176,19 @@ class Bearing:
         require(inside, f"speed of bearing {self.name!r}", speed, f"a speed in its table, {low:g} to {high:g} rad/s")
         turning = min(max(turning, low), high)
         stiffness, damping = (
-            np.asarray(PchipInterpolator(self.speeds, table)(turning)) if table.ndim == 3 else table
-            for table in (self.stiffness, self.damping)
+            table if curve is None else np.asarray(curve(turning))
+            for table, curve in zip((self.stiffness, self.damping), self._curves, strict=True)
         )
         return replace(self, stiffness=stiffness, damping=damping, speeds=None)
+
+    @cached_property
+    def _curves(self) -> tuple[PchipInterpolator | None, ...]:
+        """Stiffness and damping over speed, None where one is constant."""
+        assert self.speeds is not None
+        return tuple(
+            PchipInterpolator(self.speeds, table) if table.ndim == 3 else None
+            for table in (self.stiffness, self.damping)
+        )
 
     @property
     def radial_stiffness(self) -> FloatArray:

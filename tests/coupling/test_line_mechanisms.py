@@ -14,7 +14,8 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms, LineParts
 
 ComplexArray = npt.NDArray[np.complex128]
 
-SAMPLES = 720
+SAMPLES = {1: 240, 36: 720}
+"""By the number of mesh periods."""
 SLOW = 0.01
 """Part of a speed at which inertia is without effect: the motion is a row of equilibria, the mean force on all."""
 
@@ -26,14 +27,15 @@ def slowly(machine: CoupledMachine) -> CoupledMachine:
 def equilibria(machine: CoupledMachine, cycles: int, periods: int = 1) -> ComplexArray:
     """Line of all coordinates of teeth that turn slowly, a number of cycles in some mesh periods, shape (n,)."""
     system = machine.system
-    times = periods * (np.arange(SAMPLES) + 0.5) / SAMPLES / abs(system.contacts[0].mesh_frequency)
+    samples = SAMPLES[periods]
+    times = periods * (np.arange(samples) + 0.5) / samples / abs(system.contacts[0].mesh_frequency)
     motion = []
     for time in times.tolist():
         pushed = [(one.amplitude * np.exp(1j * one.frequency * time)).real for one in system.harmonic_loads]
         still = replace(system, load=system.load + sum(pushed), harmonic_loads=())
         motion.append(static_equilibrium(still, time))
-    turned = np.exp(-2j * np.pi * cycles * (np.arange(SAMPLES) + 0.5) / SAMPLES)
-    return np.asarray(2.0 / SAMPLES * turned @ np.array(motion))
+    turned = np.exp(-2j * np.pi * cycles * (np.arange(samples) + 0.5) / samples)
+    return np.asarray(2.0 / samples * turned @ np.array(motion))
 
 
 def predicted(machine: CoupledMachine, order: float) -> dict[str, ComplexArray]:
@@ -100,9 +102,10 @@ def with_waves(scale: float, sense: int) -> CoupledMachine:
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("order", [13 / 12, 2 / 3])
 def test_pitch_errors_are_what_teeth_that_differ_have_beyond_teeth_that_are_alike(sense: int, order: float) -> None:
-    every, alike = (equilibria(with_waves(scale, sense), round(order * HUNTING), HUNTING) for scale in (1.0, 0.0))
+    """Teeth that are alike have no line between the mesh harmonics."""
+    every = equilibria(with_waves(1.0, sense), round(order * HUNTING), HUNTING)
     motions = predicted(with_waves(1.0, sense), order)
-    assert off(motions["pitch_errors"], every - alike) < 0.03
+    assert off(motions["pitch_errors"], every) < 0.03
 
 
 @pytest.mark.parametrize("sense", [1, -1])

@@ -42,6 +42,7 @@ def deep(speed: float) -> CoupledSystem:
     return one_mass(speed, DEEP, 0.05)
 
 
+@pytest.mark.slow
 def test_the_branch_turns_at_two_folds() -> None:
     """Contact loss bends the resonance to lower speeds: three motions between the folds, the middle one unstable."""
     up = response_curve(deep, 0.6, 1.2, points=50)

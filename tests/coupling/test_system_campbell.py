@@ -62,7 +62,7 @@ def machine(bearings: list[Bearing], speed: float) -> CoupledMachine:
     return assemble_machine([part], None, speeds={"shaft": speed}, bearings=mounted)
 
 
-@pytest.mark.parametrize("bearings", [ROUND, TABLED])
+@pytest.mark.parametrize("bearings", [ROUND, pytest.param(TABLED, marks=pytest.mark.slow)])
 def test_critical_speeds_of_the_exact_equations(bearings: list[Bearing]) -> None:
     """Crossings of 1x and 2x, each within what the modal basis leaves out of the rotor room's own."""
     lines = [ExcitationLine(f"{n}x", "shaft", float(n)) for n in (1, 2)]

@@ -24,6 +24,11 @@ def _figures_unrendered(request: pytest.FixtureRequest) -> None:
         request.getfixturevalue("unrendered")
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _modes_solved_once(modes_solved_once: None) -> None:
+    """Modes of a housing that another test of this process has solved are not solved again."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What a run of the command left."""
@@ -55,12 +60,16 @@ def gearwhine(capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: py
 
 
 @pytest.fixture
-def solved_rotor(gearwhine: Command) -> Callable[..., dict[str, Any]]:
+def solved_rotor(gearwhine: Command, _answers: dict[tuple[str, ...], Outcome]) -> Callable[..., dict[str, Any]]:
     """``solved_rotor(case, *settings)``: the one rotor of a case in the document of the command ``rotors``."""
 
     def solve(case: str, *settings: str) -> dict[str, Any]:
         changes = [part for setting in settings for part in ("--set", setting)]
-        outcome = gearwhine("rotors", case, "--json", "-q", *changes)
+        file = Path(case)
+        key = ("rotors of", file.read_text(encoding="utf-8") if file.is_file() else case, *settings)
+        if key not in _answers:
+            _answers[key] = gearwhine("rotors", case, "--json", "-q", *changes)
+        outcome = _answers[key]
         assert outcome.code == 0, outcome.err
         (rotor,) = outcome.document["rotors"]
         return rotor

@@ -8,10 +8,10 @@ from unittest import mock
 
 import numpy as np
 import pytest
-import xarray as xr
 from PIL import Image
 
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import opened_dataset
 
 pytestmark = [pytest.mark.rendered, pytest.mark.slow]
 
@@ -85,7 +85,7 @@ def test_every_mode_that_the_lines_name_is_drawn(run_folder: Path, run_summary: 
 
 
 def test_results_file_is_labelled(run_folder: Path, run_summary: dict) -> None:
-    with xr.open_dataset(run_folder / "results.nc") as data:
+    with opened_dataset(run_folder / "results.nc") as data:
         assert data.sensor_acceleration.attrs["units"] == "m/s2"
         assert data.sensor_acceleration.dims == ("sensor", "time")
         assert data.sensor_spectrum.dims == ("sensor", "frequency")

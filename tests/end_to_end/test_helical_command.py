@@ -6,14 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.solve.transient import mean_bearing_forces, solve_transient
+
+pytestmark = pytest.mark.slow
 
 SHORTER = ("transient.revolutions=3", "transient.discard=1")
 
@@ -37,7 +39,7 @@ def test_helical_gears_run_and_balance_their_energy(results: Path) -> None:
 
 
 def test_the_results_hold_the_axial_force_and_the_moments_of_bearings(results: Path) -> None:
-    with xr.open_dataset(results / "results.nc") as data:
+    with opened_dataset(results / "results.nc") as data:
         thrust = data["bearing_axial_force"].sel(bearing="input-left").mean().item()
         assert data["bearing_moment"].dims == ("bearing", "time", "moment_axis")
         assert data["bearing_force"].sel(axis="x").dims == ("bearing", "time")
@@ -55,7 +57,7 @@ def test_the_spectra_hold_the_axial_force_and_the_moments_of_bearings(results: P
     """
     case = load_case("helical-pair", SHORTER).case
     (mesh,) = mesh_frequencies(case)
-    with xr.open_dataset(results / "results.nc") as data:
+    with opened_dataset(results / "results.nc") as data:
         times = data["time"].values
         hann = np.sin(np.pi * np.arange(times.size) / times.size) ** 2
         turns = hann / hann.sum() * np.exp(-2j * np.pi * mesh * times)
@@ -97,7 +99,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
     case = load_case("helical-pair", (*SHORTER, *straight)).case
     machine = coupled(case)
     spur, *_ = solve_transient(case, machine, mesh_frequencies(case)).histories.mesh_force.values()
-    with xr.open_dataset(results / "results.nc") as data:
+    with opened_dataset(results / "results.nc") as data:
         helical = data["mesh_force"].isel(contact=0).values
     swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
     assert swings[0] < 0.7 * swings[1]

@@ -98,6 +98,7 @@ def test_a_housing_that_can_still_slide_is_told(gearwhine) -> None:
     assert "look" in outcome.out
 
 
+@pytest.mark.slow
 def test_the_coupled_system_uses_the_attachments(answer) -> None:
     document = answer("system", "small-gearbox", "--json", "-q", *COARSE).document
     assert document["static_error"]["with_attachments"] <= 1e-10
@@ -138,6 +139,7 @@ def test_a_bearing_off_its_seat_loads_the_seats_rotation(gearwhine, gearbox_mode
         assert after[name] == pytest.approx(before[name], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_detail_on_the_screen(gearwhine) -> None:
     outcome = gearwhine("modes", "small-gearbox", "-q", "--detail", "-o", "out", *COARSE)
     for text in ("rigid-body strain", "Effective modal mass", "higher modes", "foot 1", "carry the receptance"):

@@ -9,8 +9,10 @@ import pytest
 import xarray as xr
 
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import opened_dataset
 
 
+@pytest.mark.slow
 def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     coarse = ("--set", "housing.box.mesh_size=45 mm")
@@ -32,7 +34,7 @@ def test_load_of_a_gearbox_on_its_housing(tmp_path: Path, capsys: pytest.Capture
     assert [warning["name"] for warning in document["warnings"]] == ["discretisation"]
     names = {path.name for path in out.iterdir()}
     assert {"results.nc", "summary.json", "case.toml", "modes.nc", "load-shaft-input.png", "load-housing.png"} <= names
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         found = data["seat_displacement"].sel(loaded_bearing="input-front").values
         assert found == pytest.approx(moved["input-front"])
     # The report has the chapter with its pictures.
@@ -55,20 +57,20 @@ def test_options_of_one_folder_keep_each_others_results(tmp_path: Path, capsys: 
         return document
 
     first = load("--sensitivity")
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         influences = data["misalignment_change"].load()
     second = load("--over-torque")
     assert second["sensitivity"] == first["sensitivity"]
     assert second["kept"] == ["sensitivity"]
     assert "load-over-torque.png" in second["files"]
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         xr.testing.assert_identical(data["misalignment_change"].load(), influences)
         assert data["misalignment_over_torque"].dims == ("load_torque", "loaded_pair")
     third = load()
     assert third["kept"] == ["over_torque", "sensitivity"]
     assert (third["over_torque"], third["sensitivity"]) == (second["over_torque"], first["sensitivity"])
     assert set(third["files"]) == set(second["files"])
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         xr.testing.assert_identical(data["misalignment_change"].load(), influences)
         assert data["misalignment_over_torque"].notnull().all()
     assert run_command(["report", "spur-pair", "-q", "-o", str(out)]) == 0

@@ -49,6 +49,7 @@ def told_of_the_mesh(document: dict) -> str:
     return warning["message"]
 
 
+@pytest.mark.slow
 def test_the_second_run_reads_and_says_so(gearwhine, out: Path) -> None:
     first = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     before = (out / "modes.nc").read_bytes()
@@ -113,6 +114,7 @@ def test_another_sensor_or_damping_is_put_on_the_kept_modes(gearwhine, out: Path
     assert found.sensors[1] == kept.sensors[1]
 
 
+@pytest.mark.slow
 def test_fresh_solves_again(gearwhine, out: Path) -> None:
     first = modes(gearwhine)
     fresh = modes(gearwhine, "--fresh")
@@ -174,6 +176,7 @@ def test_every_command_that_needs_modes_reads_them(gearwhine, tmp_path: Path) ->
     assert len(list((tmp_path / "out" / "render").glob("*.glb"))) == 3  # beside those drawn before
 
 
+@pytest.mark.slow
 def test_a_run_reads_modes_and_clears_the_pictures_of_the_last_one(
     gearwhine, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -246,6 +249,7 @@ sys.exit(run_command(["modes", sys.argv[1], "-q", "-o", sys.argv[2]]))
 """
 
 
+@pytest.mark.slow
 def test_a_folder_that_takes_no_files_is_an_error() -> None:
     """Told before the work, to a user without rights on the folder; root gives up passing over modes."""
     root = Path(__file__).parent.parent.parent

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.run import transient_document
 from gearwhine.solve.transient import solve_transient
 
@@ -78,7 +78,7 @@ def test_friction_over_time(gearwhine: Any, tmp_path: Path) -> None:
     seconds = 2 * 60.0 / 5500.0
     assert friction["mean_power_w"] * seconds == pytest.approx(document["energy_j"]["friction"], rel=5e-3)
     assert "friction.png" in document["files"]
-    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         force, power = data["friction_force"].values[0], data["friction_power"].values[0]
         pressed = data["mesh_force"].values[0]
         assert data["friction_power"].attrs["units"] == "W"
@@ -102,7 +102,7 @@ def test_a_run_up_shows_its_orders(gearwhine: Any, tmp_path: Path) -> None:
     assert mesh["frequency_hz"] == pytest.approx(28.0 * mesh["at_rpm"] / 60.0)
     files = set(document["files"])
     assert {"run-up-map-pinion-wheel.png", "run-up-orders-pinion-wheel.png"} <= files
-    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         times, force = data["time"].values, data["mesh_force"].values[0].astype(np.float64)
         signal = list(data["run_signal"].values).index(mesh["signal"])
         speeds, orders = data["order_speed"].values, data["order"].values

@@ -99,6 +99,7 @@ def test_no_space_left_names_the_place(tmp_path: Path) -> None:
     assert caught.value.filename == str(tmp_path / "full")
 
 
+@pytest.mark.slow
 def test_a_terminal_of_ascii_shows_what_it_can(tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "gearwhine", "check", "spur-pair"]

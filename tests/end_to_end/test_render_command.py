@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from gearwhine.mode_pictures import moving_shapes
-from gearwhine.output.manifest import MANIFEST
+from gearwhine.output.manifest import MANIFEST, opened_dataset
 
 pytestmark = pytest.mark.rendered
 
@@ -21,7 +21,7 @@ def run_on_file(gearwhine, tmp_path: Path) -> Path:
     outcome = gearwhine("modes", *CASE, "-o", "out", "--json")
     assert outcome.code == 0, outcome.err
     path = tmp_path / "out" / "results.nc"
-    with xr.open_dataset(path, engine="h5netcdf") as dataset:
+    with opened_dataset(path) as dataset:
         content = dataset.load()
     spectrum = np.zeros((len(content["housing_mode"]), 21, 2))
     spectrum[1, 10, 1] = 1.0
@@ -35,6 +35,7 @@ def run_on_file(gearwhine, tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_an_interactive_report_has_the_shapes_of_the_folder(gearwhine, run_on_file: Path, tmp_path: Path) -> None:
     outcome = gearwhine("report", *CASE, "--interactive", "-o", "out", "--json")
     assert outcome.code == 0, outcome.err
@@ -52,7 +53,7 @@ def test_an_interactive_report_has_the_shapes_of_the_folder(gearwhine, run_on_fi
     largest = np.linalg.norm(shape, axis=1).max() / (2.0 * np.pi * 500.0) ** 2
     assert float(told[2]) == pytest.approx(1e6 * largest, rel=1e-2)
     # Modes of another solution may have other signs: no line is made of them.
-    with xr.open_dataset(run_on_file, engine="h5netcdf") as dataset:
+    with opened_dataset(run_on_file) as dataset:
         content = dataset.load()
     content["survey_shape"][1] *= -1.0
     run_on_file.unlink()
@@ -82,7 +83,7 @@ def test_a_line_is_drawn_in_its_true_size(gearwhine, run_on_file: Path, tmp_path
     beyond = gearwhine("render", *CASE, "-o", "out", "--line", "1100")
     assert beyond.code == 2
     assert "a line from 50 to 1000 Hz, which stand 50 Hz apart" in beyond.err
-    with xr.open_dataset(run_on_file, engine="h5netcdf") as dataset:
+    with opened_dataset(run_on_file) as dataset:
         content = dataset.load()
     content["survey_shape"][1] *= -1.0
     run_on_file.unlink()

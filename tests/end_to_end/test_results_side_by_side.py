@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 import xarray as xr
 
+from gearwhine.output.manifest import opened_dataset
+
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
 QUICK = (*FEW, "rotor.input.unbalance=", "gear_pair.0.backlash='80 um'", "sweep.speed=['5400 rpm', '5600 rpm']")
 FEW_WHIRLS = "rotor_analysis={ modes = 2, speed = ['3000 rpm'] }"
@@ -38,7 +40,7 @@ def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callab
         assert kept == outcome.document
         assert contents(out, command) == before
         before = contents(out, "")
-    with xr.open_dataset(out / "results.nc") as run, xr.open_dataset(out / "rotors" / "results.nc") as rotors:
+    with opened_dataset(out / "results.nc") as run, opened_dataset(out / "rotors" / "results.nc") as rotors:
         assert "mesh_force" in run
         assert "mesh_force" not in rotors
 
@@ -53,6 +55,7 @@ def test_results_of_a_run_outlive_those_of_every_other_command(gearwhine: Callab
     assert "transient.revolutions was" in page
 
 
+@pytest.mark.slow
 def test_a_run_has_the_folder_itself_and_what_was_there_moves(gearwhine: Callable[..., Any], tmp_path: Path) -> None:
     out = tmp_path / "out"
     first = gearwhine("gears", "spur-pair", "-q", "--json", "-o", "out").document
@@ -105,7 +108,7 @@ def test_results_over_speed_outlive_the_command_without_the_option(
     shared = ("-q", "--json", "-o", "out", *(part for change in settings for part in ("--set", change)))
     first = gearwhine(command, "spur-pair", *option, *shared)
     assert first.code == 0, first.err
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         before = data[array].load()
     drawn = (out / picture).read_bytes()
     second = gearwhine(command, "spur-pair", *shared)
@@ -116,7 +119,7 @@ def test_results_over_speed_outlive_the_command_without_the_option(
     assert json.loads((out / "summary.json").read_text(encoding="utf-8")) == document
     assert picture in document["files"]
     assert (out / picture).read_bytes() == drawn
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         xr.testing.assert_identical(data[array].load(), before)
     # Those of another case go.
     other = gearwhine(command, "spur-pair", *shared, "--set", "operation.torque=50 N*m").document

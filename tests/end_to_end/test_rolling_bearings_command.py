@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 
 from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
 from gearwhine.from_case.rotors import build_bearings, rolling_state
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.rotors import rotors_document
 from gearwhine.rotors.rolling_bearings import (
     FourPointRow,
@@ -261,7 +261,7 @@ def test_a_rated_life_stands_in_document_file_terminal_and_report(
     assert left["estimated"]
     passing = left["characteristic_frequencies_hz"]
     assert passing["inner raceway"] + passing["outer raceway"] == pytest.approx(left["elements"] * 50.0)
-    with xr.open_dataset(tmp_path / "results.nc") as data:
+    with opened_dataset(tmp_path / "results.nc") as data:
         life = data["rolling_bearing_life"]
         assert life.attrs["units"] == "h"
         assert "ISO 281" in life.attrs["long_name"]

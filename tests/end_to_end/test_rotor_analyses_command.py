@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from PIL import Image
+
+from gearwhine.output.manifest import opened_dataset
 
 pytestmark = pytest.mark.rendered
 
@@ -113,12 +114,13 @@ def test_torsion_is_looked_at_about_its_modes_unless_frequencies_are_given(solve
     assert solved_rotor(shaft)["torsional_response"] is None
 
 
+@pytest.mark.slow
 def test_torsional_response_is_drawn_and_kept(gearwhine: Any, shaft: str, tmp_path: Path) -> None:
     settings = ("--set", f"rotor_analysis.torsional_response={{{TORQUE},{RANGE}}}")
     outcome = gearwhine("rotors", shaft, "-o", "out", *settings)
     assert outcome.code == 0, outcome.err
     assert "Response to torques from 10 to 100 Hz" in outcome.out
-    with xr.open_dataset("out/results.nc") as data:
+    with opened_dataset("out/results.nc") as data:
         assert data.torsion_angle.dims == ("torsion_probe", "torsion_step")
         assert data.torsion_torque.attrs["units"] == "N m"
         assert data.torsion_frequency.values[0] == pytest.approx(np.linspace(10.0, 100.0, 10))

@@ -42,6 +42,7 @@ def test_gears_seats_and_odd_names(gearwhine) -> None:
     assert pictures == {f"rotor-{stem}-{kind}.png" for stem in ("Welle-1", "output") for kind in KINDS}
 
 
+@pytest.mark.slow
 def test_the_critical_speed_map_is_drawn_where_it_is_asked_for(gearwhine) -> None:
     few = ("rotor_analysis.modes=4", "sweep=", "rotor.0.unbalance=")
     settings = [part for change in few for part in ("--set", change)]

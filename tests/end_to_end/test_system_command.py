@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
+
+from gearwhine.output.manifest import opened_dataset
 
 # Coarser than the case's own mesh: here the housing only has to be one.
 COARSE = ("--set", "housing.box.mesh_size='50 mm'", "--set", "housing.frequency_limit='2 kHz'")
@@ -44,7 +45,7 @@ def test_over_speed_with_files(gearwhine: Any, tmp_path: Path) -> None:
     for one in diagram["crossings"]:
         assert one["frequency_hz"] == pytest.approx(one["order"] * abs(one["speed_rpm"]) / 60.0, rel=1e-6)
         assert 1000.0 <= one["speed_rpm"] <= 5000.0
-    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         assert data["system_campbell_frequency"].shape == (5, len(diagram["branches"]))
         assert data["system_campbell_frequency"].attrs["units"] == "Hz"
         assert data["system_strain_share"].sum("machine_part").values[1] == pytest.approx(1.0)
@@ -91,7 +92,7 @@ def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Pa
                 acceleration[name][sensor] for name in ("by_transmission_error", "by_load_shuttling", "together")
             )
             assert abs(error - shuttling) <= both <= error + shuttling
-    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         found = data["system_line_by_load_shuttling"].sel(system_line_sensor="top").isel(system_line=0)
         assert found.attrs["units"] == "m s-2"
         at_top = lines[0]["sensor_acceleration_m_per_s2"]
@@ -104,6 +105,7 @@ def test_lines_of_sensors_by_error_and_by_shuttling(gearwhine: Any, tmp_path: Pa
             assert together == pytest.approx(by_load[sensor, round(line["frequency_hz"])], rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_terminal_says_what_excites_beside_transmission_error(gearwhine: Any) -> None:
     told = gearwhine("system", "small-gearbox", *HELICAL, "-q").out
     assert "by transmission error alone" in told

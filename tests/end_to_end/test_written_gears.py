@@ -11,6 +11,8 @@ from lopsided_case import GEARS, MODULE, PAIRS, PRESSURE_ANGLE, SPEEDS, TORQUES,
 
 from gearwhine.cli import run_command
 
+pytestmark = pytest.mark.slow
+
 RELIEF = 6e-6
 """Amount at the tip of gear a [m]."""
 PITCH_ERROR = 4e-6

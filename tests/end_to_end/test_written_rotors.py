@@ -14,6 +14,8 @@ from gearwhine.case import parse_case
 from gearwhine.cli import run_command
 from gearwhine.solve.rotors import _largest_over_cycle, solve_rotors
 
+pytestmark = pytest.mark.slow
+
 ANALYSIS = """
 [rotor_analysis]
 modes = 6

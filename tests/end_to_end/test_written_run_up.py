@@ -10,18 +10,20 @@ import xarray as xr
 from lopsided_case import FEW_WHIRLS, GEARS, SPEEDS, lopsided
 
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.motion import mesh_sentence
+
+pytestmark = pytest.mark.slow
 
 
 def run(folder: Path, case: str, *changes: str) -> tuple[xr.Dataset, dict[str, Any]]:
     settings = [part for change in (FEW_WHIRLS, *changes) for part in ("--set", change)]
     assert run_command(["run", case, "-q", "--no-pictures", "-o", str(folder / "out"), *settings]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data:
+    with opened_dataset(folder / "out" / "results.nc") as data:
         return data.load(), summary
 
 
-@pytest.mark.slow
 def test_a_run_up_s_spectra_and_orders(tmp_path: Path) -> None:
     case = tmp_path / "lopsided.toml"
     case.write_text(lopsided(housing=False), encoding="utf-8")
@@ -111,7 +113,6 @@ def test_friction_takes_power(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.slow
 def test_back_flanks_are_told_with_their_own_pair(tmp_path: Path) -> None:
     """All but unloaded and dropped into mesh, teeth rattle; each pair's back flanks have a force of their own."""
     case = tmp_path / "lopsided.toml"

@@ -10,6 +10,9 @@ import xarray as xr
 from lopsided_case import GEARS, PAIRS, SPEEDS, bearing_forces, force, lopsided
 
 from gearwhine.cli import run_command
+from gearwhine.output.manifest import opened_dataset
+
+pytestmark = pytest.mark.slow
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "rotor.input.unbalance=")
 SWEPT = "sweep.speed=['4000 rpm', '6000 rpm']"
@@ -20,7 +23,7 @@ MESH_FORCE = 71.77 / (0.5 * 28 * 3.175e-3 * np.cos(np.radians(20.0)))
 def solved(folder: Path, case: str, *options: str) -> tuple[xr.Dataset, dict[str, Any]]:
     assert run_command(["steady", case, "-q", "-o", str(folder / "out"), *options]) == 0
     summary = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
-    with xr.open_dataset(folder / "out" / "results.nc") as data:
+    with opened_dataset(folder / "out" / "results.nc") as data:
         return data.load(), summary
 
 

@@ -62,6 +62,7 @@ def test_modes_of_shafts_in_a_housing_are_those_of_its_matrices(example: Any) ->
     assert f"<td>{modes.frequencies_hz[2]:.1f}</td>" in modes_html(modes)
 
 
+@pytest.mark.slow
 def test_sound_of_a_housing_is_what_crosses_a_half_sphere(example: Any) -> None:
     """Near pressures over a half sphere on the floor, p²/ρc where waves run outwards; nine places come near it."""
     found = example("sound_of_a_housing")

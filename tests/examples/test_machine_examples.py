@@ -51,6 +51,7 @@ def test_operating_point_follows_from_levers_and_springs(example: Any) -> None:
     assert found["pair"]["misalignment_by_cause_rad"]["bearings"] == pytest.approx(-2.0 * tilt, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_read_results_finds_the_mean_force_and_mesh_harmonics(example: Any) -> None:
     found = example("read_results")
     loudest = found["loudest"]

@@ -158,6 +158,7 @@ def test_programs_of_all_pages_are_run() -> None:
             assert name in here or name.split("/")[1] in ("tutorials", "how-to"), name
 
 
+@pytest.mark.slow
 def test_the_page_on_the_report_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     (block,) = blocks("docs/report.md")
@@ -167,6 +168,7 @@ def test_the_page_on_the_report_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     assert "<h2 id=" in names["page"].read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_page_on_sound_runs() -> None:
     """Efficiencies of a box whose modes have wavelengths in air about as long as itself."""
     (block,) = blocks("docs/sound.md")

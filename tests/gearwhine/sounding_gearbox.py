@@ -11,7 +11,9 @@ import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run import RunSolution
 from gearwhine.case import Case
+from gearwhine.coupling import CoupledMachine
 from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.solve.machine import solve_machine
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
@@ -52,6 +54,13 @@ def swept_point(case: Case, text: str, outcome: PointResult | None = None, *, mo
     """A point of a sweep with the value of its key, whose motion has no lines by default."""
     point = SimpleNamespace(case=case, texts=(text,), modes_key=modes_key)
     return SimpleNamespace(outcome=outcome or PointResult({}, np.zeros(0)), point=point)
+
+
+@cache
+def sounding_machine() -> CoupledMachine:
+    """Assemble its machine, as the quick run has it."""
+    case = sounding_gearbox(QUICK).case
+    return solve_machine(case, housing=sounding_housing())[2]
 
 
 @cache

@@ -99,7 +99,7 @@ def test_sensors_show_the_motion_in_space() -> None:
     assert abs(np.mean(solved.histories.sensor_acceleration["right wall"])) < 6.0
 
 
-@pytest.mark.parametrize("hertz", [5500.0 / 240.0, 23.7])
+@pytest.mark.parametrize("hertz", [5500.0 / 240.0, pytest.param(23.7, marks=pytest.mark.slow)])
 def test_sensors_of_a_steady_motion_show_it_in_space(hertz: float) -> None:
     """Far below all modes everything moves with the base, in one motion of four turns and in superposed ones."""
     base = {"harmonic": [{"frequency": f"{hertz!r} Hz", "y": "5 m/s^2", "phase": "20 deg"}]}

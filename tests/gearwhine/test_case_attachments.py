@@ -154,7 +154,7 @@ ANYTHING = st.one_of(
 
 
 @given(st.data())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_anything_anywhere_makes_a_case_or_a_case_error(data: st.DataObject) -> None:
     document = copy.deepcopy(BOX)
     for _ in range(data.draw(st.integers(1, 3))):

@@ -98,6 +98,7 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
     assert parse_case(tomllib.loads(dump_case(case)), source="resolved.toml") == case
 
 
+@pytest.mark.slow
 def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
     geometry = pair_geometry(HELICAL, HELICAL.gear_pair[0])
     document = check_document(HELICAL)

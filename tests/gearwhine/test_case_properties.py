@@ -58,13 +58,13 @@ TABLES = st.recursive(
 
 @pytest.mark.slow
 @given(st.dictionaries(st.sampled_from(KEYS), TABLES, max_size=5))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=75, deadline=None)
 def test_any_dictionary_is_a_case_or_a_case_error(document: dict[str, Any]) -> None:
     check_survives(document)
 
 
 @given(st.data())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_a_sound_case_with_anything_anywhere_is_a_case_or_a_case_error(data: st.DataObject) -> None:
     document = copy.deepcopy(document_of("small-gearbox"))
     for _ in range(data.draw(st.integers(1, 3))):

@@ -246,6 +246,7 @@ def test_the_mesh_of_a_free_run_is_that_of_its_mean_load() -> None:
     assert [load.values[-1] for load in machine.timed_loads] == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_free_run_at_its_speed_has_the_lines_of_the_steady_motion() -> None:
     """Bearing forces at the mesh frequency, mostly of load shuttling: time integration against shooting.
 

@@ -25,8 +25,9 @@ def sensors(x: str) -> dict[str, Any]:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A result with the sensor at x = 20 mm, then one with the sensor at x = 35 mm, in one folder."""
     place = tmp_path_factory.mktemp("two") / "out"
-    small_gearbox().changed(sensors("20 mm")).system().write(place, pictures=False)
-    small_gearbox().changed(sensors("35 mm") | {"transient": ""}).run().write(place, pictures=False)
+    coarse = small_gearbox().changed({"housing.box.mesh_size": "45 mm"})
+    coarse.changed(sensors("20 mm")).system().write(place, pictures=False)
+    coarse.changed(sensors("35 mm") | {"transient": ""}).run().write(place, pictures=False)
     return place
 
 
@@ -68,6 +69,7 @@ def without_places(folder: Path, place: Path, *, case: bool) -> Path:
     return place
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["results.nc", "summary.json"])
 @pytest.mark.parametrize("damage", ["a flipped bit", "cut off"])
 def test_damaged_results_are_neither_exported_nor_reported(

@@ -11,6 +11,8 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.analyses.case import export_results, export_sections
 
+pytestmark = pytest.mark.slow
+
 LIMIT = 3000.0
 # The third harmonic of 1400 Hz meets a mode beyond the limit of 3 kHz.
 FAST = {"operation.speed": "3000 rpm", "transient.revolutions": 14, "transient.discard": 4}

@@ -61,6 +61,7 @@ def test_command_has_one_thread_of_blas_unless_told_otherwise(given: dict[str, s
     assert done.stdout.split() == ["False", str(expected)]
 
 
+@pytest.mark.slow
 def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = study.modes()
     changes = [part for key, value in (COARSE | SHORT).items() for part in ("--set", f"{key}={value}")]
@@ -303,6 +304,7 @@ def test_the_examples_of_docstrings_hold() -> None:
     assert doctest.testmod(module).failed == 0
 
 
+@pytest.mark.slow
 def test_a_simulation_leaves_the_results_of_a_run_in_the_folder(tmp_path: Path) -> None:
     study = gw.load("spur-pair", SHORT)
     study.run().write(tmp_path, pictures=False)

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case, parse_case
@@ -31,6 +30,7 @@ from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.dataset import arrays_of, labelled
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques, with_coarser_slices
@@ -286,7 +286,7 @@ def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
     pair = analysed(*PITCHED)
     path = tmp_path / "results.nc"
     labelled(case_of(*PITCHED), (GEARS, (pair,))).write(path)
-    with xr.open_dataset(path) as data:
+    with opened_dataset(path) as data:
         curves = data.isel(gear_pair=0)
         assert all("units" in data[name].attrs for name in data.data_vars)
         shares = curves.load_share.sum("tooth_pair")

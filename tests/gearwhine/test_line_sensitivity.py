@@ -175,7 +175,8 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     return np.array([one.value for one in chosen(model.lines(2.0 * np.pi * 8e3, 9))])
 
 
-@pytest.mark.parametrize("typed_damping", [True, pytest.param(False, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("typed_damping", [True, False])
 def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved, typed_damping: bool) -> None:
     """A bearing's law that is stiffer in the equilibrium alone: by tangents, damping, mesh stiffness and errors.
 
@@ -221,6 +222,7 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved,
     assert np.abs(own).max() > 1e-3
 
 
+@pytest.mark.slow
 def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
     """The gap of flanks whose whole face carries: transmission error and shuttling, to 1e-4.
 
@@ -256,6 +258,7 @@ def test_flanks_by_assembly(case: Case, solved: Solved) -> None:
     assert np.abs(expected).max() > 0.0
 
 
+@pytest.mark.slow
 def test_mesh_stiffness_by_another_stiffness(solved: Solved) -> None:
     """The part of the gap through k, with k of the mesh changed and its damping as the root of k."""
     model = solved[2].model
@@ -287,6 +290,7 @@ def test_mesh_stiffness_by_another_stiffness(solved: Solved) -> None:
     np.testing.assert_allclose(found, np.repeat(expected[:, None], 5, axis=1), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_mesh_stiffness_by_the_gap(solved: Solved) -> None:
     """The mean mesh stiffness by a tilt and by a bow of the flanks, to a tenth of the larger, that by the tilt.
 
@@ -315,6 +319,7 @@ def test_mesh_stiffness_by_the_gap(solved: Solved) -> None:
     np.testing.assert_allclose(found, expected, atol=0.1 * abs(expected[0]))
 
 
+@pytest.mark.slow
 def test_bearings_by_assembly(case: Case, solved: Solved) -> None:
     """Tangent stiffness and position of a bearing at the same equilibrium, by another machine on the same modes."""
     found = solved[2]
@@ -400,6 +405,7 @@ def test_the_damping_follows_the_modes() -> None:
     np.testing.assert_allclose(rates.damping[0], expected, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
     """Linear fields u = A x and (1 + 2i) B x have Re G = ω² ρ u · λ - σ(A) : ε(B); in the imaginary u it turns over."""
     mesh = solved[0].mesh

@@ -177,6 +177,7 @@ def test_the_terminal_is_compact(helical: Result[SolvedLoad], capsys: pytest.Cap
     assert told.err.startswith("warning: gear pair 'pinion' -> 'wheel': the case gives a misalignment")
 
 
+@pytest.mark.slow
 def test_tables_of_long_names_fit_a_hundred_columns() -> None:
     """With every column there is: rolling bearings, all torques, all influences; no cell is cut or broken."""
     force = {"x": "-294 N", "y": "-807 N", "z": "0 N"}

@@ -10,6 +10,8 @@ import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.solve.operating_point import SolvedLoad
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def loaded() -> Result[SolvedLoad]:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import about_operating_point
 
 import gearwhine as gw
@@ -18,6 +17,7 @@ from gearwhine.cli import run_command
 from gearwhine.coupling.errors import EquilibriumNotFoundError
 from gearwhine.coupling.gears import loaded_transmission_error
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibrium
 from gearwhine.solve.machine import described_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
@@ -172,7 +172,7 @@ def test_a_run_has_the_operating_point_that_its_motion_starts_from(
     assert f"the equilibrium finds {1e6 * pair['misalignment_rad']:.4g} µrad" in told.err
     assert "misalignment of 200 µrad taken, as the case gives it (found: " in told.out
     assert {"load-shaft-input.png", "load-misalignment.png", "load-face-pinion-wheel.png"} <= set(summary["files"])
-    with xr.open_dataset(out / "results.nc") as data:
+    with opened_dataset(out / "results.nc") as data:
         assert data["misalignment"].values == pytest.approx([pair["misalignment_rad"]], rel=1e-12)
         assert data["misalignment_taken"].values == pytest.approx([2e-4])
         assert data["bearing_given_load"].sel(loaded_bearing="input left").values == pytest.approx([300, -900, 200])
@@ -195,6 +195,7 @@ def test_a_run_takes_the_misalignment_found() -> None:
     assert not [one for one in result.document["warnings"] if one["name"] in ("misalignment", "bearing load")]
 
 
+@pytest.mark.slow
 def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> None:
     """Bearing loads and misalignment are those of `load` at each torque, and the motion stands on them."""
     file = tmp_path / "case.toml"

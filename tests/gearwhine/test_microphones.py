@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
-from sounding_gearbox import quick_run
+from sounding_gearbox import sounding_machine
 
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.signals.transfer_paths import housing_paths
@@ -13,12 +13,6 @@ from gearwhine.solve.sound.microphones import FADE, fading_weights, microphone_h
 FloatArray = npt.NDArray[np.float64]
 
 _INTERVAL, _COUNT, _TONE = 1e-4, 8000, 517.3
-
-
-def machine() -> CoupledMachine:
-    transient = quick_run(24.0).solved.transient
-    assert transient is not None
-    return transient.machine
 
 
 def transfer(machine: CoupledMachine) -> ModalRadiation:
@@ -45,14 +39,14 @@ def forces_of(machine: CoupledMachine, signal: FloatArray) -> dict[str, FloatArr
 
 
 def pressure(signal: FloatArray, *, repeats: bool = False) -> FloatArray:
-    one = machine()
+    one = sounding_machine()
     times = _INTERVAL * np.arange(len(signal))
     return microphone_histories(one, transfer(one), times, forces_of(one, signal), repeats=repeats).pressure
 
 
 def expected() -> npt.NDArray[np.complex128]:
     """Steady complex amplitude at the microphones of a tone of 1 N, from its one line and the way through the air."""
-    one = machine()
+    one = sounding_machine()
     forces = {name: force.astype(complex) for name, force in forces_of(one, np.ones(1)).items()}
     omega = 2.0 * np.pi * np.array([_TONE])
     rates = housing_paths(one, omega, forces).acceleration.sum(axis=1) / (1j * omega[:, None])
@@ -106,7 +100,7 @@ def test_whole_periods_do_not_fade() -> None:
     """A record of whole periods begins as it ends."""
     whole = round(200.0 / (_TONE * _INTERVAL))
     interval = 200.0 / _TONE / whole
-    one = machine()
+    one = sounding_machine()
     times = interval * np.arange(whole)
     signal = np.cos(2.0 * np.pi * _TONE * times)
     heard = microphone_histories(one, transfer(one), times, forces_of(one, signal), repeats=True).pressure

@@ -31,6 +31,7 @@ def rig() -> str:
     return key(load_case(CASE).case)
 
 
+@pytest.mark.slow
 def test_both_eigensolvers_of_a_case_give_the_same_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
 

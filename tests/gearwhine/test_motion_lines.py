@@ -111,6 +111,7 @@ def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
         np.testing.assert_allclose(rate[:, 0] + 1j * rate[:, 1], of_run, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
     """Velocity of the radiating surface at two sensors on walls, against their spectra in the same record."""
     solved = quick_run(24.0).solved
@@ -120,16 +121,17 @@ def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
     lines = [line for line in solved.sound.lines if line.level_db > solved.sound.total_db - 35.0]
     assert len(lines) >= 3
     for name, place in (("top", [0.02, 0.16, 0.03]), ("right wall", [0.11, 0.09, -0.02])):
+        surface = lines[0].sound.fields[0].surface
+        corners = surface.points[surface.triangles] - np.array(place)
+        # Weights of the corners of the triangle that holds the sensor: the plane through it is the wall's.
+        weights = np.array(
+            [np.linalg.lstsq(np.vstack([one.T, np.ones(3)]), [0, 0, 0, 1], rcond=None)[0] for one in corners]
+        )
+        off = np.linalg.norm(np.einsum("ij,ijk->ik", weights, corners), axis=1)
+        (number,) = np.flatnonzero((off < 1e-4) & (weights > -1e-6).all(axis=1))[:1]
         for line in lines:
             (field,) = line.sound.fields
-            surface = field.surface
-            corners = surface.points[surface.triangles] - np.array(place)
-            # Weights of the corners of the triangle that holds the sensor: the plane through it is the wall's.
-            weights = np.array(
-                [np.linalg.lstsq(np.vstack([one.T, np.ones(3)]), [0, 0, 0, 1], rcond=None)[0] for one in corners]
-            )
-            off = np.linalg.norm(np.einsum("ij,ijk->ik", weights, corners), axis=1)
-            (number,) = np.flatnonzero((off < 1e-4) & (weights > -1e-6).all(axis=1))[:1]
+            assert field.surface is surface
             velocity = weights[number] @ field.velocity.reshape(-1, 3, field.velocity.shape[1])[number].sum(axis=1)
             spectrum = spectra[name]
             at = int(np.argmin(np.abs(spectrum.frequencies - line.frequency_hz)))
@@ -137,6 +139,7 @@ def test_the_surface_moves_as_a_sensor_on_it_feels() -> None:
             assert abs(velocity - felt) < 0.08 * abs(felt), (name, line.name)
 
 
+@pytest.mark.slow
 def test_lines_beyond_the_wanted_number_and_frequency_are_named() -> None:
     """Two lines up to 2 kHz: the next ones and the mesh frequency are left out with their part of the whole."""
     result = quick_run(24.0)
@@ -194,6 +197,7 @@ def test_a_run_up_has_no_lines_but_microphones_over_time(monkeypatch: pytest.Mon
     assert result.document["sound"]["total_db"] is None
 
 
+@pytest.mark.slow
 def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
     """The base shakes the housing itself, which the bearings' forces do not know."""
     study = sounding_gearbox(TOP | BASE)
@@ -205,6 +209,7 @@ def test_on_a_moving_base_neither_lines_nor_microphones_are_heard() -> None:
         assert told["message"].startswith("the sound of the motion is left out: the base moves")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [RUN_UP, BASE])
 def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> None:
     case = sounding_gearbox(TOP | changes).case
@@ -300,6 +305,7 @@ def test_refuses_a_box_without_a_floor_and_its_names(changes: dict[str, Any], me
 MESH = "1× pinion -> wheel"
 
 
+@pytest.mark.slow
 def test_titles_of_operating_shapes_have_arrows() -> None:
     solved = quick_run(24.0).solved
     assert solved.signature is not None
@@ -310,9 +316,11 @@ def test_titles_of_operating_shapes_have_arrows() -> None:
     assert not any("->" in title for title in titles)
 
 
+@pytest.mark.slow
 def test_operating_shapes_of_a_record_of_broken_turns_are_those_of_one_of_whole_turns() -> None:
     """A mesh line between two lines of the spectrum has its frequency, and all of its amplitude, in every mode."""
-    signatures = [quick_run(turns).solved.signature for turns in (24.0, 24.37)]
+    broken_turns = sounding_gearbox(QUICK | {"transient.revolutions": 24.37, "transient.discard": 16.0})
+    signatures = [one.solved.signature for one in (quick_run(24.0), broken_turns.simulate())]
     whole, broken = ([line for line in highest_lines(one, 3000.0, 6) if line.name == MESH] for one in signatures if one)
     assert broken[0].hertz == pytest.approx(whole[0].hertz, abs=0.05)
     sizes, others = (np.abs(lines[0].shape.modal) for lines in (whole, broken))

@@ -66,6 +66,7 @@ def test_slopes_of_all_numbers_together_are_those_of_solved_designs(designs: Par
         assert np.abs(way @ slopes[:, :12] - expected).max() < 1e-6 * np.abs(slopes).max()
 
 
+@pytest.mark.slow
 def test_a_light_design_is_the_same_without_its_shapes(designs: ParametricHousing) -> None:
     start = designs.solve(designs.start)
     light = start.light()

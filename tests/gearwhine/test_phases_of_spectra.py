@@ -45,6 +45,7 @@ def test_a_line_is_the_cosine_on_the_axis_of_its_history() -> None:
         assert abs(line(data, harmonic) - tone) < 1e-4 * abs(tone)
 
 
+@pytest.mark.slow
 def test_run_and_steady_motion_have_one_phase() -> None:
     """Both follow the same teeth from t = 0 on: the steady motion over its period has the lines of the run."""
     steady = study().steady().dataset

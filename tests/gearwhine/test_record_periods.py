@@ -24,10 +24,14 @@ def over_time(revolutions: float) -> str:
     return f"operation.over_time={{time=['0 s','{revolutions / SHAFT:.9g} s'], torque=['0 N*m','5 N*m']}}"
 
 
+# Of the machine its excitations count here: teeth of one stiffness and shafts of few modes have them all.
+PLAIN = ("gear_pair.0.stiffness={model='constant', value='2e8 N/m'}", "rotor.*.modes=2")
+
+
 def sampled(*settings: str, recorded: float = 7, largest: int = 1 << 27) -> Sampling:
     """Sampling of the spur pair's record of some revolutions after seven."""
     turns = (f"transient.revolutions={7 + recorded}", "transient.discard=7")
-    case = load_case("spur-pair", (*turns, *settings)).case
+    case = load_case("spur-pair", (*turns, *PLAIN, *settings)).case
     machine = about_operating_point(case).coupled
     return sampling(case, machine.system, None, 1e3, 40, 200, largest=largest)
 

@@ -20,9 +20,10 @@ from gearwhine.results import chapters_of
 from gearwhine.results.first_page import first_page
 
 PROGRAM = find_chromium()
-pytestmark = pytest.mark.skipif(
-    PROGRAM is None, reason="no Chromium here; on Debian or Ubuntu: sudo apt-get install chromium"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(PROGRAM is None, reason="no Chromium here; on Debian or Ubuntu: sudo apt-get install chromium"),
+]
 MODES = [
     {"number": 1, "frequency_hz": 900.0, "damping_ratio": 0.01, "strength": 2e-3},
     {"number": 2, "frequency_hz": 1007.3, "damping_ratio": 0.02, "strength": 1.5e-2},
@@ -158,7 +159,6 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
         yield opened
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("form", ["static", "interactive"])
 @pytest.mark.parametrize(("width", "dark"), [(400, True), (1280, False), (3840, True)])
 def test_a_page_fits_each_width_in_both_colours(
@@ -182,13 +182,11 @@ def test_a_page_fits_each_width_in_both_colours(
     assert browser.requests() == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("form", ["static", "interactive"])
 def test_a_page_does_what_every_page_does(browser: Browser, pages: dict[str, Path], form: str) -> None:
     look_at(browser, pages[form], interactive=form == "interactive")
 
 
-@pytest.mark.slow
 def test_the_policy_of_the_page_stops_a_script_and_a_request(browser: Browser, pages: dict[str, Path]) -> None:
     # What the assertions above rely on: both are noticed.
     page = pages["static"].read_text(encoding="utf-8")
@@ -273,7 +271,6 @@ UNPACKED = """
 """
 
 
-@pytest.mark.slow
 def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser, pages: dict[str, Path]) -> None:
     """What opens with the page is its own script alone, which is small; the rest is packed and inert."""
     browser.resize(1280, 500)
@@ -294,7 +291,6 @@ def test_a_library_runs_when_something_needs_it_and_not_before(browser: Browser,
     assert browser.requests() == []
 
 
-@pytest.mark.slow
 def test_shapes_move_pause_and_are_chosen_and_each_is_unpacked_once(browser: Browser, pages: dict[str, Path]) -> None:
     """All of it on one page: to compile the shaders of a viewer takes longer than the rest."""
     told = "document.querySelector('.told').textContent"

@@ -106,6 +106,7 @@ def test_a_long_run_has_every_order_at_its_amplitude(teeth: tuple[int, int], wit
     assert run_signature_warnings(case, run) == []
 
 
+@pytest.mark.slow
 def test_a_run_in_the_other_sense_has_its_speeds_below_zero() -> None:
     """As those of the run itself are; frequencies are none the less positive, and lines stand where they did."""
     case, solved = run_up((26, 30), 0.06, "operation.speed=-5500 rpm")
@@ -191,6 +192,7 @@ def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
         assert ("up to 2000 Hz, where the model is complete" in notes) is ends
 
 
+@pytest.mark.slow
 def test_an_order_beyond_the_limit_all_along_has_no_row() -> None:
     case, solved = run_up((27, 29), 0.06)
     run = replace(with_sensor(solved), trusted_limit=500.0)

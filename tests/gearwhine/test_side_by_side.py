@@ -8,6 +8,7 @@ from gearwhine.housing import HousingError
 from gearwhine.solve.updating import in_parallel
 
 
+@pytest.mark.slow
 def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:
     factor = 3
 
@@ -26,6 +27,7 @@ def test_one_worker_is_this_process() -> None:
         assert list(each(lambda number: (number, os.getpid()), [1, 2])) == [(1, os.getpid()), (2, os.getpid())]
 
 
+@pytest.mark.slow
 def test_what_goes_wrong_in_a_process_is_raised_here() -> None:
     def work(number: int) -> int:
         if number == 2:

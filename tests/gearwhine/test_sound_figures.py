@@ -15,6 +15,8 @@ from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
 from gearwhine.solve.sound.solution import SolvedSound
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def solved() -> SolvedSound:

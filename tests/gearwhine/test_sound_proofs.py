@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from sounding_box import COARSE
-from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing, swept_point
+from sounding_gearbox import TOP, sounding_gearbox, sounding_housing, sounding_machine, swept_point
 
 import gearwhine as gw
 from gearwhine.case import Case, swept_keys
@@ -92,6 +92,7 @@ def test_every_mode_that_radiates_is_held_against_known_sources(monkeypatch: pyt
         gw.load("steel-box", COARSE).sound()
 
 
+@pytest.mark.slow
 def test_a_vertex_that_is_lost_on_the_default_triangles_is_told_and_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """The fault that a user heard as 5 dB at a microphone: the correction for a curved pressure without its bound."""
     case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case
@@ -139,9 +140,7 @@ def test_the_worst_of_the_microphones_is_told() -> None:
 def test_every_line_that_counts_is_held_against_its_powers(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two lines below the first mode, of which the other has a part in ten thousand of the power."""
     case = sounding_gearbox(TOP | {"acoustics.highest_frequency": "900 Hz"}).case
-    transient = quick_run(24.0).solved.transient
-    assert transient is not None
-    machine = transient.machine
+    machine = sounding_machine()
     forces = {one.name: np.zeros((2, one.directions.shape[1]), dtype=complex) for one in machine.system.linear}
     forces["input-back"][:, 1] = [100.0, 1.0]
     motion = MotionLines(np.array([800.0, 810.0]), forces, 0.1)

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 
 import gearwhine as gw
@@ -17,6 +16,7 @@ from gearwhine.cli import run_command
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.periodic.steady_state import solve_steady
 from gearwhine.figures.machine.steady_state import draw_response_curve
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.steady_state import curve_sentences
 from gearwhine.solve.transient import solve_transient
 
@@ -65,7 +65,7 @@ def test_the_command_follows_the_motion_over_speed(tmp_path: Path, capsys: pytes
     orders = [line["frequency_hz"] / (28 * 5500.0 / 60.0) for line in motion["gear_pairs"][0]["force_lines"]]
     assert orders == pytest.approx(np.round(orders), abs=1e-9)
     assert {"steady-motion.png", "steady-curve.png", "results.nc"} <= {path.name for path in tmp_path.iterdir()}
-    with xr.open_dataset(tmp_path / "results.nc") as data:
+    with opened_dataset(tmp_path / "results.nc") as data:
         np.testing.assert_allclose(data["branch_speed"], speeds)
         assert data["branch_speed"].attrs["ending"] == "end"
         assert data["branch_peak_force"].attrs["units"] == "N"

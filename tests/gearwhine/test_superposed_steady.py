@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from coupled_cases import coupled
 from reducer_case import reducer
 
@@ -20,6 +19,7 @@ from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion, solve_steady
 from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
 from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.output.manifest import opened_dataset
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document
 
@@ -178,7 +178,7 @@ def test_the_command_says_which_was_done(tmp_path: Path, capsys: pytest.CaptureF
     for pair in motion["gear_pairs"]:
         assert {line["excitation"] for line in pair["force_lines"]} <= set(names)
         assert 0.0 < pair["neglected_part"] < 0.2
-    with xr.open_dataset(tmp_path / "out" / "results.nc") as data:
+    with opened_dataset(tmp_path / "out" / "results.nc") as data:
         assert data["excitation_mesh_force"].dims == ("excitation", "contact", "period_part")
         assert data["excitation_period"].values == pytest.approx([1 / 1050, 72 / 1050 / 19, 72 * 56 / 1050 / 19])
     text = " ".join(sentence for section in chapters_of(document) for sentence in section.sentences)

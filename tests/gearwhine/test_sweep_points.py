@@ -95,6 +95,7 @@ def solved() -> tuple:
     return point, housing, result
 
 
+@pytest.mark.slow
 def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
     point, housing, result = solved
     machine = coupled(point.case, housing)

@@ -32,6 +32,7 @@ def measured() -> list[float]:
     return (HIGHER * state.frequencies[strongest] / (2.0 * np.pi)).tolist()
 
 
+@pytest.mark.slow
 def test_a_second_update_ends_where_the_first_did(measured: list[float]) -> None:
     """The fit of f is that of a line: with ln ω = ½ ln f and s = ln(1 + spread), z = ln f / s is the mean of data and
     prior, weighted by n (s / 2 σ)² and 1. It stays where it is when the fitted case is updated again.
@@ -52,6 +53,7 @@ def test_a_second_update_ends_where_the_first_did(measured: list[float]) -> None
         assert number.start == 1.0
 
 
+@pytest.mark.slow
 def test_a_factor_at_the_end_of_its_range_makes_a_valid_case(measured: list[float]) -> None:
     """The end 1.0312765 is written as 1.0313, beyond it: the range of the updated case contains the case's own 1."""
     case = clamped_box(measured, range=[0.7, 1.0312765], spread=0.5)

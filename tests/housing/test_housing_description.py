@@ -24,7 +24,7 @@ BOX = BoxGeometry(
 @pytest.fixture(scope="module")
 def box() -> Housing:
     sensors = [Sensor("top", (0.0, 0.15, 0.0))]
-    return Housing.from_box(BOX, 0.04, STEEL, fixtures=[FOOT], sensors=sensors, damping_ratio=0.02)
+    return Housing.from_box(BOX, 0.06, STEEL, fixtures=[FOOT], sensors=sensors, damping_ratio=0.02)
 
 
 def test_a_clamped_housing_cannot_come_out_free(box: Housing) -> None:

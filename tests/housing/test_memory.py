@@ -79,6 +79,7 @@ except MemoryError as error:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the process's size where Linux has it")
 def test_a_factor_beyond_the_limit_is_refused_where_the_library_would_abort() -> None:
     """The process lives, and says the sentence; with room enough it factors."""

@@ -202,7 +202,7 @@ def test_all_the_modes_lack_nothing(beam: tuple[Mesh, Matrices], clamped: IntArr
     assert attached.proof.error < 1e-10
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(count=st.integers(0, 60), power=st.floats(-4.0, 1.5))
 def test_any_number_of_modes_and_any_shift_below_give_the_same_compliance(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, count: int, power: float
@@ -210,7 +210,8 @@ def test_any_number_of_modes_and_any_shift_below_give_the_same_compliance(
     compare_with_direct_solution(*dense(beam[1], clamped, port, shift=-(10.0**power)), cut=count)
 
 
-@settings(max_examples=15, deadline=None)
+@pytest.mark.slow
+@settings(max_examples=10, deadline=None)
 @given(count=st.integers(1, 60), part=st.floats(0.05, 0.95))
 def test_a_shift_between_kept_and_discarded_modes_does_as_well(
     beam: tuple[Mesh, Matrices], clamped: IntArray, port: sparse.csr_array, count: int, part: float

@@ -41,8 +41,9 @@ def cost_by_hand(strengths: Dominance, chosen: tuple[int, ...], gap: float, marg
     return total
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_no_choice_costs_less_by_much(seed: int) -> None:
     """Of all choices of 3 among 8, tried one by one. Turns may end beside the least, but never far above it."""
     generator = np.random.default_rng(seed)
@@ -62,7 +63,7 @@ def test_no_choice_costs_less_by_much(seed: int) -> None:
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.3), st.floats(0.0, 0.3))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_what_a_choice_lacks_is_the_sum_of_its_definition(seed: int, gap: float, margin: float) -> None:
     generator = np.random.default_rng(seed)
     strengths = dominance(np.linspace(100.0, 800.0, 9), generator.normal(scale=0.2, size=(3, 9)))

@@ -69,7 +69,7 @@ def target_at(frequencies: Sequence[float], noise: float = 0.01, **more: object)
 
 
 @given(st.floats(1e-3, 1e3), st.floats(1.01, 10.0), st.floats(1.01, 10.0), st.floats(0.05, 2.0), st.floats(0.0, 1.0))
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=25)
 def test_coordinates_go_back_and_forth(nominal: float, down: float, up: float, spread: float, part: float) -> None:
     parameter = Parameter("p", nominal / down, nominal * up, nominal, spread * nominal)
     value = parameter.low + part * (parameter.high - parameter.low)
@@ -245,6 +245,7 @@ def test_two_springs_in_parallel_are_told_by_their_sum_only() -> None:
     assert after.n_learned == 1
 
 
+@pytest.mark.slow
 def test_a_mode_that_nothing_else_tells_of_is_predicted_no_better_than_before() -> None:
     """Each oscillator has a parameter of its own: held back, it stays where the prior has it, with its uncertainty."""
     target = target_at(OWN * np.array([1.2, 0.9, 1.1]), noise=0.01)

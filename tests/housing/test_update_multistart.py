@@ -191,6 +191,7 @@ def test_a_race_ends_with_what_the_fine_mesh_calls_met_and_says_so() -> None:
     assert any(np.array_equal(raced.coordinates, point) for point in raced.seen)
 
 
+@pytest.mark.slow
 def test_how_the_work_is_shared_out_changes_nothing() -> None:
     """Tasks done in another order, each anew, give the same to the last bit."""
 
@@ -205,6 +206,7 @@ def test_how_the_work_is_shared_out_changes_nothing() -> None:
     assert [step.found for step in one.steps] != [step.found for step in run_race(target, 3, seed=2).steps]
 
 
+@pytest.mark.slow
 def test_no_design_of_the_fine_mesh_is_solved_twice() -> None:
     """A heat begins with the designs that the last one ended with, and the race hands out the best."""
     solved: list[tuple[float, ...]] = []
@@ -226,6 +228,7 @@ def test_no_design_of_the_fine_mesh_is_solved_twice() -> None:
     assert raced.misfit.errors == pytest.approx(np.log(raced.design.state.frequencies / target.frequencies))
 
 
+@pytest.mark.slow
 def test_a_race_outlives_starts_that_are_no_housing() -> None:
     def fragile(coordinates: FloatArray, near: Design | None) -> Oscillators:
         if coordinates[0] < -0.2:

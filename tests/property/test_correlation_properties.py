@@ -30,7 +30,7 @@ def _shapes(random: np.random.Generator, *size: int) -> np.ndarray:
     return random.normal(size=size) + 1j * random.normal(size=size)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(SEEDS, SIZES)
 def test_mac(seed: int, size: tuple[int, int, int]) -> None:
     random = np.random.default_rng(seed)
@@ -51,7 +51,7 @@ def test_mac(seed: int, size: tuple[int, int, int]) -> None:
     assert auto_mac(a).diagonal() == pytest.approx(np.ones(n))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(SEEDS, SIZES)
 def test_orthogonal_frames_keep_it(seed: int, size: tuple[int, int, int]) -> None:
     """Turning every point's axes alike turns no angle between shapes."""
@@ -63,7 +63,7 @@ def test_orthogonal_frames_keep_it(seed: int, size: tuple[int, int, int]) -> Non
     assert principal_angles(a @ turn, b @ turn) == pytest.approx(principal_angles(a, b), abs=1e-7)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(SEEDS, SIZES)
 def test_spans_do_not_change_when_mixed(seed: int, size: tuple[int, int, int]) -> None:
     random = np.random.default_rng(seed)
@@ -76,7 +76,7 @@ def test_spans_do_not_change_when_mixed(seed: int, size: tuple[int, int, int]) -
     assert (part <= 1.0).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(SEEDS, SIZES)
 def test_criteria_are_blind_to_the_scale_of_the_measured(seed: int, size: tuple[int, int, int]) -> None:
     random = np.random.default_rng(seed)
@@ -111,7 +111,7 @@ def test_the_pole_weighted_form(seed: int, size: tuple[int, int, int]) -> None:
     assert pole_weighted_mac(a, p, a, p).diagonal() == pytest.approx(np.ones(n))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(SEEDS)
 def test_pairs_do_not_depend_on_scales_or_places(seed: int) -> None:
     random = np.random.default_rng(seed)

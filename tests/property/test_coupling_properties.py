@@ -26,7 +26,7 @@ from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 
-patient = settings(deadline=None, max_examples=25)
+patient = settings(deadline=None, max_examples=15)
 
 
 @st.composite

@@ -90,7 +90,7 @@ def test_inverse_involute_solves_its_equation(value: float) -> None:
     assert involute(inverse_involute(value)) == pytest.approx(value, rel=1e-9, abs=1e-15)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=15)
 @given(pairs())
 def test_exchanging_driver_and_driven_mirrors_the_path(pair: GearPairGeometry) -> None:
     other = GearPairGeometry(pair.driven, pair.driver)
@@ -120,7 +120,7 @@ def test_compliance_knows_no_size(gear: Gear, scale: float) -> None:
     assert float(large) == pytest.approx(float(small), rel=1e-9)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=15)
 @given(pairs(), st.floats(0.2, 5.0))
 def test_stiffness_is_proportional_to_width_and_modulus(pair: GearPairGeometry, factor: float) -> None:
     # Teeth beside a narrower mate support those in mesh by their shear, whatever the width.
@@ -190,7 +190,7 @@ def test_parametric_power_is_the_energys_slope_in_phase(contact: ToothContact, p
     assert (after[3] - before[3]) / (2.0 * step) == pytest.approx(here[4], rel=1e-4, abs=1e-5 * scale)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=15)
 @given(contacts(), st.floats(0.0, 1e4))
 def test_static_mesh_balances_shares_and_only_pushes(contact: ToothContact, force: float) -> None:
     mesh = loaded_transmission_error(contact, force)
@@ -204,7 +204,7 @@ def test_static_mesh_balances_shares_and_only_pushes(contact: ToothContact, forc
     assert np.all(mesh.transmission_error >= first_touch)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=15)
 @given(pairs(relieved=False), st.floats(1.0, 1e4))
 def test_rigid_teeth_have_no_transmission_error(pair: GearPairGeometry, force: float) -> None:
     # Compression falls as 1/E: gears ten orders stiffer err ten orders less.

@@ -41,6 +41,7 @@ def frequencies(matrices: Matrices) -> npt.NDArray[np.float64]:
     return solve_modes(matrices, count=12).frequencies[:12]
 
 
+@pytest.mark.slow
 @few
 @given(size=st.floats(1e-2, 1e2), stiffness=st.floats(1e-2, 1e2), density=st.floats(1e-2, 1e2))
 def test_frequencies_scale_as_wave_speed_over_length(

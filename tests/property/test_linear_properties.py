@@ -17,7 +17,7 @@ from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 
-patient = settings(deadline=None, max_examples=40)
+patient = settings(deadline=None, max_examples=25)
 FREQUENCIES = np.array([0.3, 1.1, 7.0])
 
 

@@ -89,7 +89,7 @@ def loads(draw: st.DrawFn, bearing: RollingBearing) -> FloatArray:
     return force
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.data())
 def test_equilibrium_is_found_or_it_is_said_why_not(data: st.DataObject) -> None:
     """For every load, clearance, preload, tilt and speed: the elements' forces, summed here, balance the load."""
@@ -127,7 +127,7 @@ def test_equilibrium_is_found_or_it_is_said_why_not(data: st.DataObject) -> None
     assert values[0] >= -1e-9 * max(values[-1], 1.0)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(ball_rows(most=8), st.floats(0.0, 2.0 * math.pi), st.booleans(), logarithmic(-4.0, -2.6))
 def test_stiffness_is_the_derivative_of_the_reaction(row: BallRow, angle: float, turning: bool, depth: float) -> None:
     """By central differences, at a place where no ball is about to touch or leave."""
@@ -160,7 +160,7 @@ def test_stiffness_is_the_derivative_of_the_reaction(row: BallRow, angle: float,
     assert np.abs(even - state.even_stiffness).max() <= 1e-6 * np.abs(state.even_stiffness).max()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.data())
 def test_a_turn_by_one_element_turns_the_answer(data: st.DataObject) -> None:
     bearing = data.draw(bearings())
@@ -186,7 +186,7 @@ def test_a_turn_by_one_element_turns_the_answer(data: st.DataObject) -> None:
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(ball_rows(), st.floats(0.0, 2.0 * math.pi), logarithmic(-3.0, 0.0))
 def test_the_work_of_a_closed_path_is_none(row: BallRow, angle: float, size: float) -> None:
     """Betti: the stiffness between any two states is symmetric because their reactions have a potential."""

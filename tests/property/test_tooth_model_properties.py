@@ -30,7 +30,7 @@ MODELS: list[CompliantTeeth] = [
     WeberBanaschekStiffness(),
 ]
 named = pytest.mark.parametrize("model", MODELS, ids=lambda model: repr(model).replace(" ", ""))
-patient = settings(deadline=None, max_examples=20)
+patient = settings(deadline=None, max_examples=12)
 
 
 @st.composite

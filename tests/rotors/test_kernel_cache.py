@@ -73,6 +73,7 @@ def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) ->
     assert run(tmp_path) == (-4.0, 0)
 
 
+@pytest.mark.slow
 def test_kernels_are_logged_when_they_are_compiled_not_when_read(tmp_path: Path) -> None:
     packages(tmp_path)
     code = "import logging; logging.basicConfig(level='INFO', format='%(message)s')\n"

@@ -1,0 +1,8 @@
+"""Cases: those whose housings are alike share its modes."""
+
+import pytest
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _modes_solved_once(modes_solved_once: None) -> None:
+    """Modes of a housing that another test of this process has solved are not solved again."""
