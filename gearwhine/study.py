@@ -184,9 +184,8 @@ class Study:
         from gearwhine.solve.machine import described_machine, reduce_housing
 
         solved = self.housing
-        return described_machine(
-            self.case, None if solved is None else reduce_housing(self.case, solved, self.progress)
-        )
+        part = None if solved is None else reduce_housing(self.case, solved, self.progress)
+        return described_machine(self.case, part)
 
     def check(self) -> Result[CheckedCase]:
         """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""

@@ -13,7 +13,7 @@ from gearwhine.analyses.run import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import solve_machine
+from coupled_cases import about_operating_point
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
@@ -60,7 +60,7 @@ def swept_point(case: Case, text: str, outcome: PointResult | None = None, *, mo
 def sounding_machine() -> CoupledMachine:
     """Assemble its machine, as the quick run has it."""
     case = sounding_gearbox(QUICK).case
-    return solve_machine(case, housing=sounding_housing())[2]
+    return about_operating_point(case, sounding_housing()).coupled
 
 
 @cache
