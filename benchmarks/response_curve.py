@@ -15,12 +15,12 @@ from collections.abc import Callable
 import numpy as np
 from timing import Result, arguments, machine
 
-from gearwhine.case import Case, load_case, mesh_frequencies
+from gearwhine.case import Case, load_case
 from gearwhine.coupling import periodic_response, response_curve
 from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.coupling.periodic.steady_state import CURVE_TOLERANCE
-from gearwhine.solve.machine import described_machine
-from gearwhine.solve.transient import solve_transient
+from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.solve.machine import described_machine, plan_of
 
 RPM = 2.0 * np.pi / 60.0
 BALANCED = "rotor.input.unbalance="
@@ -59,10 +59,8 @@ def main() -> None:
         transients = {}
         for method in ("newmark", "exact"):
             by = load_case("spur-pair", [*changes, f"transient.method={method}"]).case
-            solve_transient(by, built, mesh_frequencies(by))
-            transients[method], _ = processor_seconds(
-                lambda by=by, built=built: solve_transient(by, built, mesh_frequencies(by))
-            )
+            solve_transient(built, plan_of(by))
+            transients[method], _ = processor_seconds(lambda by=by, built=built: solve_transient(built, plan_of(by)))
             print(f"  transient, {method:8s} {transients[method]:8.2f} s")
         speed = built.speeds[built.leading_rotor]
         periodic_response(built.at_speed(speed).system)

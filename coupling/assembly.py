@@ -11,6 +11,8 @@ come from :mod:`gearwhine.coupling.statics`.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -40,7 +42,14 @@ from gearwhine.coupling.machine.connectors import (
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from gearwhine.coupling.machine.gear_bodies import transport
-from gearwhine.coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
+from gearwhine.coupling.machine.gear_train import (
+    GearedShafts,
+    gear_train,
+    mesh_phases,
+    require_balance,
+    require_meshing,
+    turning_senses,
+)
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
@@ -111,10 +120,24 @@ class CoupledMachine:
         return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
 
     @property
+    def speed(self) -> float:
+        """Signed speed of the leading rotor [rad/s]."""
+        return self.speeds[self.leading_rotor]
+
+    @cached_property
+    def speed_ratios(self) -> dict[str, Fraction]:
+        """Speed of each shaft of the leading rotor's train over that one's, exact and signed."""
+        pairs = [
+            GearedShafts(mesh.driver.rotor, mesh.driven.rotor, (mesh.geometry.driver.teeth, mesh.geometry.driven.teeth))
+            for mesh in self.meshes
+        ]
+        return dict(gear_train(pairs, [rotor.name for rotor in self.rotors]).ratios)
+
+    @property
     def input_torque(self) -> float:
         """Mean torque on the leading rotor from outside, in its sense of rotation [N m]."""
         torques = (load for load in self.loads.torques if isinstance(load, Torque) and load.rotor == self.leading_rotor)
-        return math.copysign(1.0, self.speeds[self.leading_rotor]) * sum(torque.value for torque in torques)
+        return math.copysign(1.0, self.speed) * sum(torque.value for torque in torques)
 
     @property
     def train_inertia(self) -> float:
@@ -189,7 +212,7 @@ class CoupledMachine:
         gearwhine.rotors.RotorError
             Where the speed is beyond the table of a bearing.
         """
-        present = self.speeds[self.leading_rotor]
+        present = self.speed
         if present == 0.0:
             raise CouplingError(f"rotor {self.leading_rotor!r} stands still; expected a machine that turns")
         return assemble_machine(

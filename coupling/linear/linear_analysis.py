@@ -80,7 +80,7 @@ class SolvedSystem:
     @property
     def speed(self) -> float:
         """Speed of the first driver's shaft [rad/s]."""
-        return self.machine.speeds[self.machine.leading_rotor]
+        return self.machine.speed
 
     @property
     def unloaded(self) -> ContactState:

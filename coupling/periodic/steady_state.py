@@ -277,7 +277,7 @@ def solve_steady(
     gearwhine.coupling.PeriodicError
         Where no motion is found. A branch that is lost on its way is given as far as it was followed.
     """
-    speed = machine.speeds[machine.leading_rotor]
+    speed = machine.speed
     if speed == 0.0:
         raise CouplingError("a speed of 0; expected a speed: what stands still has no motion that repeats")
     progress("compiling the search for periodic motions (the first time takes longer)")

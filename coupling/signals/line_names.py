@@ -83,7 +83,7 @@ def line_names(
     tolerances = np.broadcast_to(np.asarray(tolerance, dtype=np.float64), (len(frequencies),))
     if not np.all(np.asarray(tolerance) > 0.0):
         raise CouplingError(f"names of lines within {tolerance} Hz; expected more than 0")
-    shaft_frequency = abs(machine.speeds[machine.leading_rotor]) / (2.0 * np.pi)
+    shaft_frequency = abs(machine.speed) / (2.0 * np.pi)
     highest = max(frequencies, default=0.0)
     meshes = [
         abs(contact.mesh_frequency) for contact in machine.system.contacts if contact.loaded and contact.mesh_frequency

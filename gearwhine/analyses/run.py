@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, mesh_frequencies, require
+from gearwhine.case import Case, require
 from gearwhine.coupling.linear.linear_analysis import solve_system
+from gearwhine.coupling.time.recorded_transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
+from gearwhine.output.checkpoints import stored_record
 from gearwhine.output.dataset import LabelledArrays, labelled
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import add_warnings, joined
@@ -42,7 +44,7 @@ from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import described_machine, load_machine, reduce_housing, run_of
+from gearwhine.solve.machine import described_machine, load_machine, plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
@@ -59,14 +61,13 @@ from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
 from gearwhine.solve.sound import check_before_modes
-from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
-from gearwhine.solve.transient_record import stored_record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
     from gearwhine.coupling.linear.linear_analysis import SolvedSystem
+    from gearwhine.coupling.time.recorded_transient import SolvedTransient
     from gearwhine.housing.correlation import Comparison
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
@@ -75,7 +76,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import SolvedSignature
     from gearwhine.solve.sound.solution import SolvedSound
-    from gearwhine.solve.transient import SolvedTransient
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -191,8 +191,8 @@ def run(
             keep = None
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            transient = solve_transient(case, machine, mesh_frequencies(case), progress, keep=keep)
-            if has_traced_lines(case):
+            transient = solve_transient(machine, plan_of(case), progress, keep=keep)
+            if has_traced_lines(machine):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
             run_signature = solve_run_signature(case, transient)

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
     from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
     from gearwhine.coupling.machine.speed_profile import TorqueLine as BuiltLine
+    from gearwhine.coupling.time.recording import TransientPlan
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -420,6 +421,21 @@ class Transient(Table):
             expected = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
             raise wrong(expected, "revolutions")
         return self
+
+    def build(self) -> TransientPlan:
+        """Build the plan of the transient."""
+        from gearwhine.coupling.time.recording import TransientPlan
+
+        return TransientPlan(
+            self.revolutions,
+            None if self.run is None else self.run.build(),
+            self.discard,
+            self.points_per_revolution,
+            self.tolerance,
+            self.start,
+            self.method,
+            self.modal_coordinates,
+        )
 
 
 class SpeedRange(Table):

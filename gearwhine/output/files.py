@@ -5,7 +5,6 @@ Locks on folders serve runs that share a results folder. Digests take libraries 
 
 import errno
 import fcntl
-import hashlib
 import json
 import os
 import re
@@ -13,9 +12,6 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -95,15 +91,6 @@ def texts_in(value: Any) -> set[str]:
     return set().union(*(texts_in(inner) for inner in _inner(value)))
 
 
-@cache
-def installed(library: str) -> str | None:
-    """Return the version of a library; None where it is not installed."""
-    try:
-        return version(library)
-    except PackageNotFoundError:
-        return None
-
-
 PRESENTATION = (
     "gearwhine.cli",
     "gearwhine.drawing_process",
@@ -118,40 +105,6 @@ PRESENTATION = (
 
 ROOMS = ("gearwhine.numerics", "gearwhine.meshes", "gearwhine.housing", "gearwhine.rotors", "gearwhine.coupling")
 """Packages of the physics, links in the front door's folder of a checkout."""
-
-
-@cache
-def source_digest(*names: str, without: tuple[str, ...] = ()) -> str:
-    """SHA-256 of the text of packages and modules, which changes between releases under one version number.
-
-    Code in them that does not affect the result counts too: that costs an unneeded solution at times, but misses none.
-
-    Parameters
-    ----------
-    *names : str
-        Dotted names of packages, with all that they hold, and of modules.
-    without : tuple of str
-        Dotted names of packages and modules that are left out.
-    """
-    total = hashlib.sha256()
-    left_out = {file for name in without for _, file in _source_files(name)}
-    for name in names:
-        for place, file in _source_files(name):
-            if file not in left_out:
-                total.update(f"{place}\0".encode())
-                total.update(file.read_bytes())
-    return total.hexdigest()
-
-
-def _source_files(name: str) -> list[tuple[str, Path]]:
-    """Return the files of a package or a module, each with its place in the tree."""
-    spec = find_spec(name)
-    if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"no package or module {name!r}")
-    file = Path(spec.origin)
-    top = file.parents[name.count(".") + (file.name == "__init__.py")]
-    files = sorted(file.parent.rglob("*.py")) if file.name == "__init__.py" else [file]
-    return [(path.relative_to(top).as_posix(), path) for path in files]
 
 
 def _inner(value: Any) -> list[Any]:

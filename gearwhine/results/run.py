@@ -41,11 +41,11 @@ if TYPE_CHECKING:
     from gearwhine.coupling.signals import LineName
     from gearwhine.coupling.signals.sidebands import Sideband
     from gearwhine.coupling.signals.spectrum import Spectrum
+    from gearwhine.coupling.time.recorded_transient import SolvedTransient
+    from gearwhine.coupling.time.recording import Signals
     from gearwhine.coupling.time.transient import TransientFigures
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
-    from gearwhine.solve.transient import SolvedTransient
-    from gearwhine.solve.transient_record import Signals
 
 MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 _HERTZ_LONG = ("Hz", "frequency")

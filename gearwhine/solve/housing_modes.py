@@ -56,7 +56,8 @@ from gearwhine.meshes import Mesh, mesh_quality
 from gearwhine.meshes.lengths import length_text
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
+from gearwhine.numerics.source_digest import installed, source_digest
+from gearwhine.output.files import MODE_CACHE_FILE, texts_in, with_contents
 from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 FloatArray = npt.NDArray[np.float64]

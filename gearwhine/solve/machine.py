@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from gearwhine.case import Case
+from gearwhine.case import Case, require
 from gearwhine.coupling import CoupledMachine, Machine
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.gears import GearError
@@ -17,6 +17,7 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
 from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.time.recording import TransientPlan
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import ModeSet
@@ -166,6 +167,19 @@ def solve_pairs(
             if case.needs_operating_point:
                 raise
     return machine.with_flanks_of(point).loaded_pairs(progress), point
+
+
+def plan_of(case: Case) -> TransientPlan:
+    """Return the plan of a case's transient.
+
+    Raises
+    ------
+    CaseError
+        Where the case has none.
+    """
+    require(case, "transient", command="run")
+    assert case.transient is not None
+    return case.transient.build()
 
 
 def run_of(case: Case) -> Run | None:

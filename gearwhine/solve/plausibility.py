@@ -23,10 +23,10 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import RollingBearing
 from gearwhine.solve.signature import SolvedSignature, TracedLine
-from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 

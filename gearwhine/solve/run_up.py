@@ -17,8 +17,8 @@ from gearwhine.case import Case, OrderTracking, mesh_frequencies, speed_ratios
 from gearwhine.coupling import signals as signature
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.signals import decibels, peak_of_rms
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from gearwhine.coupling import signals as signature
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.signals.peaks import SpectralPeaks
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
-from gearwhine.solve.transient import SolvedTransient
-from gearwhine.solve.transient_record import Signals
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
+from gearwhine.coupling.time.recording import Signals
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

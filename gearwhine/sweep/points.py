@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -9,10 +10,10 @@ from itertools import product
 import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.numerics.source_digest import installed, source_digest
 from gearwhine.output import file_stems
-from gearwhine.output.files import PRESENTATION, ROOMS, installed, source_digest, with_contents
+from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
 from gearwhine.solve.housing_modes import housing_key, mode_cache_inputs
-from gearwhine.solve.transient_record import transient_duration
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -120,7 +121,7 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
     )
     modes_key = None if case.housing is None else content_key(mode_cache_inputs(case))
     whole = None if case.housing is None else housing_key(case)
-    return Point(place, texts, case, key, modes_key, whole, f"{stem}-{key[:12]}.nc", transient_duration(case))
+    return Point(place, texts, case, key, modes_key, whole, f"{stem}-{key[:12]}.nc", _duration(case))
 
 
 def _described(keys: Sequence[SweptKey], place: tuple[int, ...]) -> str:
@@ -131,3 +132,10 @@ def _of_the_sweep(problem: Problem, overrides: Sequence[str]) -> Problem:
     """Return a problem with a swept value as a problem of the sweep."""
     text = problem.source.removeprefix("--set ")
     return replace(problem, source=f"sweep, {text}") if text in overrides else problem
+
+
+def _duration(case: Case) -> float:
+    """Duration of a case's transient [s]."""
+    assert case.transient is not None
+    assert case.operation is not None
+    return case.transient.build().duration(2.0 * math.pi / abs(case.operation.speed))

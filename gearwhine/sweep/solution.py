@@ -20,6 +20,7 @@ from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.coupling.signals.line_names import LineName
 from gearwhine.coupling.signals.spectrum import Window
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.failures import explain
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
@@ -32,12 +33,12 @@ from gearwhine.solve.machine import (
     ReducedHousing,
     described_machine,
     load_machine,
+    plan_of,
     reduce_housing,
     run_of,
 )
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
-from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.resonances import Resonances, find_resonances
 
@@ -129,7 +130,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
         load, warnings_of_load = find_load(case, described)
         loaded = load_machine(described, None if load is None else load.point, housing, run_of(case))
         frequencies = described.mesh_frequencies
-        solved = solve_transient(case, loaded.coupled, frequencies)
+        solved = solve_transient(loaded.coupled, plan_of(case))
         result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
         if load is not None:
             result.document["load"] = load_part(load)

@@ -12,8 +12,9 @@ from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.time.recorded_transient import mean_bearing_forces, solve_transient
 from gearwhine.output.manifest import opened_dataset
-from gearwhine.solve.transient import mean_bearing_forces, solve_transient
+from gearwhine.solve.machine import plan_of
 
 pytestmark = pytest.mark.slow
 
@@ -98,7 +99,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
     )
     case = load_case("helical-pair", (*SHORTER, *straight)).case
     machine = coupled(case)
-    spur, *_ = solve_transient(case, machine, mesh_frequencies(case)).histories.mesh_force.values()
+    spur, *_ = solve_transient(machine, plan_of(case)).histories.mesh_force.values()
     with opened_dataset(results / "results.nc") as data:
         helical = data["mesh_force"].isel(contact=0).values
     swings = [np.ptp(force) / np.mean(force) for force in (helical, spur)]
@@ -108,7 +109,7 @@ def test_helical_gears_excite_less_than_spur_gears_of_the_same_size(results: Pat
 def test_the_axial_force_on_the_bearings_is_the_thrust_of_the_teeth() -> None:
     """Closed form: F_a = T / r tan β, in opposite senses on both shafts; radial bearings carry none of it."""
     case = load_case("helical-pair", SHORTER).case
-    solved = solve_transient(case, coupled(case), mesh_frequencies(case))
+    solved = solve_transient(coupled(case), plan_of(case))
     forces = mean_bearing_forces(solved)
     thrust = 150.0 / (0.5 * 23 * 3e-3 / math.cos(math.radians(15.0))) * math.tan(math.radians(15.0))
     assert abs(forces["input-left"][2]) == pytest.approx(thrust, rel=2e-3)

@@ -14,17 +14,17 @@ import pytest
 import xarray as xr
 
 from gearwhine.analyses.run import RunSolution, run_arrays
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
 from gearwhine.coupling.linear.linear_analysis import solve_system
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.output.dataset import arrays_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, load_machine, reduce_housing
+from gearwhine.solve.machine import described_machine, load_machine, plan_of, reduce_housing
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.signature import solve_signature
-from gearwhine.solve.transient import solve_transient
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
 COARSE = ("--set", "housing.box.mesh_size=50 mm")
@@ -62,7 +62,7 @@ def write_whole(file: Path) -> set[str]:
     standing = load_machine(described, load.point, part)
     pairs, machine = standing.pairs, standing.coupled
     system = solve_system(machine)
-    transient = solve_transient(case, machine, mesh_frequencies(case))
+    transient = solve_transient(machine, plan_of(case))
     signature = solve_signature(transient, system.modes, housing.modes.frequencies_hz)
     whole = RunSolution(
         rotors, analyse_pairs(case, pairs, load.point), housing, None, system, transient, signature, None, load

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from coupled_cases import coupled
 
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.run import transient_document
-from gearwhine.solve.transient import solve_transient
+from gearwhine.solve.machine import plan_of
 
 FEW = ("--set", "rotor.input.modes=2", "--set", "rotor.output.modes=2")
 SHORT = (*FEW, "--set", "transient.revolutions=3", "--set", "transient.discard=1")
@@ -30,7 +31,7 @@ def documents() -> dict[str, dict[str, Any]]:
     for method in MARCHED:
         case = load_case("spur-pair", (*SHORT[1::2], f"transient.method='{method}'")).case
         machine = coupled(case)
-        found[method] = transient_document(solve_transient(case, machine, mesh_frequencies(case)))
+        found[method] = transient_document(solve_transient(machine, plan_of(case)))
     return found
 
 

@@ -12,11 +12,12 @@ from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.solve.housing_modes import base_participation, solve_housing
-from gearwhine.solve.transient import solve_transient
+from gearwhine.solve.machine import plan_of
 
 BASE = {
     "point": ["10 mm", "0 mm", "0 mm"],
@@ -93,7 +94,7 @@ def test_sensors_show_the_motion_in_space() -> None:
     case = parse_case(document)
     housing = solve_housing(case)
     machine = coupled(case, housing)
-    solved = solve_transient(case, machine, (2566.0,))
+    solved = solve_transient(machine, plan_of(case))
     assert np.mean(solved.histories.sensor_acceleration["top"]) == pytest.approx(300.0, rel=0.02)
     # Sideways, along the right wall's normal, it does not.
     assert abs(np.mean(solved.histories.sensor_acceleration["right wall"])) < 6.0

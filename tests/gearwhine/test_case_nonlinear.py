@@ -11,9 +11,10 @@ from coupled_cases import about_operating_point
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
-from gearwhine.solve.transient import solve_transient
+from gearwhine.solve.machine import plan_of
 
 SPUR_PAIR = tomllib.loads(files("gearwhine.cases").joinpath("spur-pair.toml").read_text(encoding="utf-8"))
 DEEP_GROOVE = {"count": 9, "element_diameter": "9 mm", "pitch_diameter": "46 mm", "clearance": "6 um"}
@@ -81,8 +82,8 @@ def test_all_of_it_moves_together() -> None:
     """Energies add up, the load's share of the first bearing comes out, and friction costs about half a percent."""
     case = spur_pair(pair={"friction": 0.06, "backlash": "60 um"}, **rolling("nonlinear"))
     standing = about_operating_point(case)
-    pairs, machine = standing.pairs, standing.coupled
-    solved = solve_transient(case, machine, (pairs[0].mesh_frequency,))
+    machine = standing.coupled
+    solved = solve_transient(machine, plan_of(case))
     document = transient_document(solved)
     assert document["energy_error"] < 5e-3
     assert case.operation is not None

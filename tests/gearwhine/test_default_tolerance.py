@@ -5,14 +5,15 @@ import pytest
 from coupled_cases import coupled
 from scipy.signal import argrelmax
 
-from gearwhine.case import load_case, mesh_frequencies
-from gearwhine.solve.transient import SolvedTransient, solve_transient
+from gearwhine.case import load_case
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
+from gearwhine.solve.machine import plan_of
 
 
 def solved(tolerance: str) -> SolvedTransient:
     settings = ("transient.revolutions=12", "transient.discard=10", f"transient.tolerance={tolerance}")
     case = load_case("helical-pair", settings).case
-    return solve_transient(case, coupled(case), mesh_frequencies(case))
+    return solve_transient(coupled(case), plan_of(case))
 
 
 @pytest.mark.slow

@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.coupling.linear.linear_analysis import solve_system
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
@@ -23,8 +24,8 @@ from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.rotors import Campbell
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import plan_of
 from gearwhine.solve.signature import SolvedSignature, solve_signature
-from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 
 class Drawn(NamedTuple):
@@ -44,7 +45,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     case = load_case(str(path)).case
     housing = solve_housing(case)
     machine = coupled(case, housing)
-    solved = solve_transient(case, machine, mesh_frequencies(case))
+    solved = solve_transient(machine, plan_of(case))
     modes = solve_system(machine).modes
     signature = solve_signature(solved, modes, housing.modes.frequencies_hz)
     figures = {f"{name}.png": figure for name, figure in draw_transient(case, solved, signature, housing, None)}

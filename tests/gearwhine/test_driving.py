@@ -22,14 +22,14 @@ from gearwhine.coupling.machine.speed_profile import free_speed
 from gearwhine.coupling.signals.spectrum import lines_at
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
-from gearwhine.solve.machine import described_machine, run_of
-from gearwhine.solve.transient import SolvedTransient, solve_transient
+from gearwhine.solve.machine import described_machine, plan_of, run_of
 
 RPM = math.pi / 30.0
 LINE = {"speed": ["0 rpm", "3000 rpm"], "torque": ["90 N*m", "0 N*m"]}
@@ -49,7 +49,7 @@ def spur_pair(transient: dict[str, Any], **operation: Any) -> dict[str, Any]:
 def run(case: Case) -> SolvedTransient:
     machine = coupled(case)
     # Nominal mesh frequencies matter to sampling alone.
-    return solve_transient(case, machine, (500.0,))
+    return solve_transient(machine, plan_of(case))
 
 
 def driving_of(case: Case, rotors: Sequence[RotorComponent]) -> Driving:
@@ -267,7 +267,7 @@ def test_a_free_run_at_its_speed_has_the_lines_of_the_steady_motion() -> None:
     machine = coupled(steady)
     response = periodic_response(machine.system)
     period = histories(machine, response.record(transient_outputs(machine), 256))
-    run = solve_transient(free, coupled(free), (mesh,)).histories
+    run = solve_transient(coupled(free), plan_of(free)).histories
     interval = float(run.times[1] - run.times[0])
     for name, load in period.bearing_load.items():
         expected = np.abs(lines_at(load.T, response.period / 256, np.array([mesh]), "uniform"))[:2, 0]

@@ -15,7 +15,7 @@ from gearwhine.housing.modes import eigensolver
 from gearwhine.housing.modes.eigensolver import arpack_modes
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.meshes import write_mesh
-from gearwhine.output.files import _source_files, source_digest
+from gearwhine.numerics.source_digest import _source_files, source_digest
 from gearwhine.solve.housing_modes import MODES_CODE, mode_cache_inputs, solve_housing
 
 CASE = "nasa-gear-noise-rig"

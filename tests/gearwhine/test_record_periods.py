@@ -8,7 +8,8 @@ import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones
-from gearwhine.solve.transient_record import Sampling, sampling
+from gearwhine.coupling.time.recording import Sampling, sampling
+from gearwhine.solve.machine import plan_of
 
 SHAFT = 5500.0 / 60.0  # both shafts of the pair [Hz]
 # 9 balls of 9 mm on a pitch circle of 46 mm pass 9/2 (1 - 9/46) = 333/92 times in a revolution.
@@ -33,7 +34,7 @@ def sampled(*settings: str, recorded: float = 7, largest: int = 1 << 27) -> Samp
     turns = (f"transient.revolutions={7 + recorded}", "transient.discard=7")
     case = load_case("spur-pair", (*turns, *PLAIN, *settings)).case
     machine = about_operating_point(case).coupled
-    return sampling(case, machine.system, None, 1e3, 40, 200, largest=largest)
+    return sampling(machine, plan_of(case), 1e3, 40, 200, largest=largest)
 
 
 @pytest.mark.parametrize(

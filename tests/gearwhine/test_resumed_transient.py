@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 from coupled_cases import coupled
 
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
+from gearwhine.output.checkpoints import BlockFiles, stored_record
 from gearwhine.output.files import held_lock
-from gearwhine.solve.transient import SolvedTransient, solve_transient
-from gearwhine.solve.transient_record import BlockFiles, stored_record
+from gearwhine.solve.machine import plan_of
 
 KILLS = 10
 BLOCK = 1024  # samples: some eighty checkpoints
@@ -33,7 +34,7 @@ def solve() -> Solve:
     machine = coupled(case)
 
     def solve(**options: Any) -> SolvedTransient:
-        return solve_transient(case, machine, mesh_frequencies(case), samples_per_block=BLOCK, **options)
+        return solve_transient(machine, plan_of(case), samples_per_block=BLOCK, **options)
 
     return solve
 
@@ -168,7 +169,7 @@ def test_an_interruption_while_a_block_is_put_in_its_place_keeps_it(
         raise KeyboardInterrupt
 
     # Between the block's renaming and its being counted.
-    monkeypatch.setattr("gearwhine.solve.transient_record._force_names", interrupted)
+    monkeypatch.setattr("gearwhine.output.checkpoints._force_names", interrupted)
     with pytest.raises(KeyboardInterrupt) as stop, stored_record(tmp_path, "key") as blocks:
         blocks.append({"columns": np.ones(3)})
     assert "goes on from there" in stop.value.__notes__[0]

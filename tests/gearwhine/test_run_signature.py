@@ -9,17 +9,18 @@ import pytest
 from coupled_cases import coupled
 from idler_case import idler
 
-from gearwhine.case import Case, load_case, mesh_frequencies
+from gearwhine.case import Case, load_case
 from gearwhine.coupling import SpeedProfile
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
+from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run
 from gearwhine.figures.machine.transient import _speed
 from gearwhine.output.dataset import arrays_of
 from gearwhine.output.quantity import document_of
 from gearwhine.output.sections import Table
 from gearwhine.results.run import RUN, RUN_SIGNATURE, report, run_signature_document, sections, transient_document
+from gearwhine.solve.machine import plan_of
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
-from gearwhine.solve.transient import SolvedTransient, solve_transient
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2", "transient.tolerance=5e-3", "transient.discard=0")
 
@@ -36,7 +37,7 @@ def run_up(teeth: tuple[int, int], seconds: float, *more: str) -> tuple[Case, So
     )
     case = load_case("spur-pair", changes).case
     machine = coupled(case)
-    return case, solve_transient(case, machine, mesh_frequencies(case))
+    return case, solve_transient(machine, plan_of(case))
 
 
 @pytest.mark.slow
@@ -263,7 +264,7 @@ def test_pairs_that_share_an_order_share_its_curve(tmp_path: Path) -> None:
     """An idler passes its tooth frequency on: one order for both of its meshes, and one for shafts of one speed."""
     run = "transient.run={ from = '1500 rpm', to = '4500 rpm', time = '0.1 s' }"
     case = load_case(idler(tmp_path), (*FEW, "rotor.third.modes=2", "transient.revolutions=", run)).case
-    solved = solve_transient(case, coupled(case), mesh_frequencies(case))
+    solved = solve_transient(coupled(case), plan_of(case))
     found = solve_run_signature(case, solved)
     assert found is not None
     meshes = {f"{n}× pinion -> wheel, {n}× wheel -> end": 28.0 * n for n in (1, 2, 3)}

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from coupled_cases import about_operating_point
 
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
 from gearwhine.coupling import coupled_modes
+from gearwhine.coupling.time import recording
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.results.run import transient_document
-from gearwhine.solve import transient_record
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import plan_of
 from gearwhine.solve.signature import solve_signature
-from gearwhine.solve.transient import solve_transient
 
 TURNING = 5500.0 / 60.0  # of all shafts [Hz]
 SHAFT = """
@@ -80,7 +81,7 @@ def test_sidebands_are_of_the_pressed_flanks_of_their_own_pair(tmp_path: Path) -
     """
     case = load_case(two_stages(tmp_path), BRAKED).case
     machine = about_operating_point(case).coupled
-    solved = solve_transient(case, machine, mesh_frequencies(case))
+    solved = solve_transient(machine, plan_of(case))
     signature = solve_signature(solved, coupled_modes(machine.system), None)
     pairs = transient_document(solved, signature)["gear_pairs"]
     assert [pair["flanks"] for pair in pairs] == ["back", "back"]
@@ -104,13 +105,13 @@ def test_lines_of_a_long_record_and_their_parts_are_of_all_its_stretches(monkeyp
 
     Over the stretches a part x of the line a has the share Σ Re x a* / Σ |a|²: its part of the line's power.
     """
-    monkeypatch.setattr(transient_record, "_LONGEST_STRETCH", 700)
+    monkeypatch.setattr(recording, "_LONGEST_STRETCH", 700)
     settings = ["housing.box.mesh_size=40 mm", "transient.revolutions=17", "transient.discard=1"]
     case = load_case("small-gearbox", [*settings, "transient.tolerance=1e-3"]).case
     housing = solve_housing(case)
     machine = about_operating_point(case, housing).coupled
     assert housing is not None
-    solved = solve_transient(case, machine, mesh_frequencies(case), record_bytes=1 << 16)
+    solved = solve_transient(machine, plan_of(case), record_bytes=1 << 16)
     assert solved.averages > 5
     signature = solve_signature(solved, coupled_modes(machine.system), housing.modes.frequencies_hz)
     stretches = list(solved.record.stretches())

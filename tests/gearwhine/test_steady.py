@@ -10,15 +10,16 @@ import pytest
 from coupled_cases import coupled
 
 import gearwhine as gw
-from gearwhine.case import CaseError, load_case, mesh_frequencies
+from gearwhine.case import CaseError, load_case
 from gearwhine.case.speeds_and_torques import branch_speeds
 from gearwhine.cli import run_command
 from gearwhine.coupling import CouplingError
 from gearwhine.coupling.periodic.steady_state import solve_steady
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.figures.machine.steady_state import draw_response_curve
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.steady_state import curve_sentences
-from gearwhine.solve.transient import solve_transient
+from gearwhine.solve.machine import plan_of
 
 FEW = ("rotor.input.modes=2", "rotor.output.modes=2")
 BALANCED = "rotor.input.unbalance="  # so that all repeats with the mesh
@@ -30,7 +31,7 @@ def test_the_transient_settles_to_it() -> None:
     changes = [*FEW, BALANCED, "transient.revolutions=21", "transient.discard=20", "transient.tolerance=1e-5"]
     case = load_case("spur-pair", changes).case
     machine = coupled(case)
-    marched = solve_transient(case, machine, mesh_frequencies(case))
+    marched = solve_transient(machine, plan_of(case))
     (motion,) = solve_steady(machine).motions
     (settled,) = (force for name, force in marched.histories.mesh_force.items() if "back" not in name)
     (steady,) = (force for name, force in motion.histories.mesh_force.items() if "back" not in name)

@@ -12,15 +12,15 @@ from coupled_cases import coupled
 from matplotlib.figure import Figure
 
 import gearwhine
-from gearwhine.case import CaseError, load_case, mesh_frequencies, swept_keys
+from gearwhine.case import CaseError, load_case, swept_keys
 from gearwhine.case.input_files import file_contents
+from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import reduce_housing
-from gearwhine.solve.transient import solve_transient
+from gearwhine.solve.machine import plan_of, reduce_housing
 from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_sweep, sweep_document, sweep_points
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.run import run_sweep
@@ -99,7 +99,7 @@ def solved() -> tuple:
 def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
     point, housing, result = solved
     machine = coupled(point.case, housing)
-    whole = solve_transient(point.case, machine, mesh_frequencies(point.case))
+    whole = solve_transient(machine, plan_of(point.case))
     for name, spectrum in whole.sensor_spectra.items():
         np.testing.assert_array_equal(result.sensor_spectra[name], spectrum.amplitude[: result.orders.size])
     # Orders are cycles for each turn: one turn is recorded, so they are whole numbers.

@@ -24,10 +24,11 @@ from gearwhine.coupling import TransientOutputs, TransientSettings, amplitude_sp
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
+from gearwhine.coupling.time.recorded_transient import starting_state
 from gearwhine.from_case.gear_pairs import pair_geometries
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes
-from gearwhine.solve.transient import starting_state
+from gearwhine.solve.machine import plan_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -88,7 +89,7 @@ def run(case: Case) -> Run:
             outputs.velocity,
             outputs.acceleration,
         ),
-        initial=starting_state(case, machine),
+        initial=starting_state(machine, plan_of(case)),
     )
     assert result.energy.error < 1e-3
     named = histories(machine, result)
@@ -255,7 +256,7 @@ def test_the_load_comes_on_at_once_where_the_case_says_so(case: Case, run: Run) 
         assert run.force[mesh][0] == 0.0
         assert run.force[mesh][: PER_REVOLUTION // 10].max() > 1.5 * run.force[mesh].mean()
     resting = load_case("three-stage", ("transient.start=equilibrium",)).case
-    assert starting_state(resting, coupled(resting)) is None
+    assert starting_state(coupled(resting), plan_of(resting)) is None
 
 
 def test_stage_1_has_the_most_elliptical_orbit(run: Run, remark: Callable[[str, str], None]) -> None:

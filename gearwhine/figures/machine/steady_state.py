@@ -147,7 +147,7 @@ def _motion_sheet(title: str, solved: SolvedSteady) -> Figure:
     drives = [contacts[number].name for number in solved.machine.loaded_contacts]
     stable = [motion for motion in solved.motions if motion.response.stable]
     machine = solved.machine
-    speed = f"{machine.speeds[machine.leading_rotor] * RPM:.0f} rpm, {machine.input_torque:.4g} N·m"
+    speed = f"{machine.speed * RPM:.0f} rpm, {machine.input_torque:.4g} N·m"
     unstable = "" if len(stable) == len(solved.motions) else "; grey: unstable"
     superposed = "" if solved.superposed is None else "; superposed from the motion by each excitation"
     # Names of excitations are long, and the same in all panels: they stand once, below.

@@ -22,6 +22,7 @@ from gearwhine.coupling import amplitude_spectrum
 from gearwhine.coupling.signals import decibels
 from gearwhine.coupling.signals.spectrum import Window, signal_parts
 from gearwhine.coupling.time.histories import Histories
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -55,7 +56,6 @@ from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.output.sections import arrowed, counted
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
-from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 

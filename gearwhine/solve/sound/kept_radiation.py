@@ -13,7 +13,7 @@ from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRad
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.output.files import source_digest
+from gearwhine.numerics.source_digest import source_digest
 from gearwhine.progress import in_order
 from gearwhine.solve.housing_modes import SolvedHousing
 

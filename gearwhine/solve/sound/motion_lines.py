@@ -20,8 +20,8 @@ from gearwhine.coupling.signals.line_names import LineName, line_names
 from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -16,6 +16,7 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
 from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.medium import Medium
@@ -60,7 +61,6 @@ from gearwhine.solve.sound.proofs import (
     power_balance_db,
     require_proofs,
 )
-from gearwhine.solve.transient import SolvedTransient
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

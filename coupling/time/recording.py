@@ -1,10 +1,4 @@
-"""Record of a time integration in blocks: sampling, checkpoint files, histories block by block, and their spectra.
-
-Checkpoints: a run stores its blocks in a hidden folder of the output folder, each with the state after it, for a later
-restart. The folder bears the key of everything that the integration depends on, and goes when the results are written.
-A block and its checkpoint are one file that appears whole: it is written beside, forced to the disk, and renamed. A run
-that is killed, interrupted or fails leaves its blocks; the next run with the same key goes on behind the last one
-before any damage. A run of anything else clears them away.
+"""Recording of a time integration in blocks: sampling, histories block by block, and their spectra.
 
 Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
 the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. They are
@@ -22,39 +16,38 @@ keep their height.
 """
 
 import math
-import os
-import shutil
-import struct
-import tempfile
-import zipfile
-import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, speed_ratios
-from gearwhine.coupling import CoupledSystem, SpeedProfile, TransientSettings, amplitude_spectrum
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import (
     driving_frequencies,
     element_passes,
     least_sampling_rate,
     varies_within,
 )
+from gearwhine.coupling.machine.excitation import Run
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.decimation import Decimation
 from gearwhine.coupling.signals.decimation import decimation as coupled_decimation
-from gearwhine.coupling.signals.spectrum import Spectrum, Window, averaged_spectrum, whole_period_samples
+from gearwhine.coupling.signals.spectrum import (
+    Spectrum,
+    Window,
+    amplitude_spectrum,
+    averaged_spectrum,
+    whole_period_samples,
+)
 from gearwhine.coupling.time.histories import Histories, ModalRecord
 from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
-from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
-
-_FOLDER_PREFIX = ".resume-"
-_KEY_DIGITS = 16  # digits of the key in the folder's name: no two integrations of one folder share them by chance
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 FloatArray = npt.NDArray[np.float64]
@@ -86,123 +79,6 @@ class Blocks(Protocol):
 
     def __getitem__(self, number: int, /) -> Arrays:
         """Return the arrays of a block."""
-
-
-class BlockFiles:
-    """Blocks in a folder, one file each; those behind a damaged or missing one do not count."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._count = 0
-        # All are read: a disk, a copy or another program damages any of them, not only the last one written.
-        while self._is_whole(self._count):
-            self._count += 1
-
-    def __len__(self) -> int:
-        """Return the number of whole blocks, up to the first damaged or missing one."""
-        return self._count
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether no block is on file, an uncounted one of an interruption included."""
-        return not self._file(0).exists()
-
-    def append(self, arrays: Arrays) -> None:
-        """Write the next block: after this call it is there, whatever happens."""
-        target = self._file(self._count)
-        beside = target.with_suffix(".part")
-        with beside.open("wb") as file:
-            np.savez(file, allow_pickle=False, **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(beside, target)
-        _force_names(self._folder)
-        self._count += 1
-
-    def __getitem__(self, number: int) -> Arrays:
-        """Read the arrays of a block."""
-        return self._read(range(self._count)[number])
-
-    def _file(self, number: int) -> Path:
-        return self._folder / f"block-{number:08d}.npz"
-
-    def _read(self, number: int) -> Arrays:
-        with self._file(number).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-            return {name: arrays[name] for name in arrays.files}
-
-    def _is_whole(self, number: int) -> bool:
-        """Whether a block is there and every array in it has the checksum that was written with it."""
-        try:
-            with zipfile.ZipFile(self._file(number)) as file:
-                return bool(file.namelist()) and file.testzip() is None
-        # A damaged header claims a compression, an encryption or a length that no block has.
-        except (OSError, ValueError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error, struct.error):
-            return False
-
-
-@contextmanager
-def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[BlockFiles]:
-    """Checkpoint blocks in an output folder under a key, removed when the work inside ends well.
-
-    If a living run performs the same integration in the same folder, this one stores blocks of its own.
-
-    Parameters
-    ----------
-    folder : path
-        The output folder.
-    key : str
-        Key of all inputs of the blocks.
-    fresh : bool
-        Whether to remove stored blocks, and begin anew.
-    """
-    is_new = not folder.exists()
-    with room_named(folder), ExitStack() as stack:
-        with exclusive_lock(folder):
-            place = _place(folder, f"{_FOLDER_PREFIX}{key[:_KEY_DIGITS]}", fresh=fresh)
-            stack.enter_context(held_lock(place))
-        blocks = BlockFiles(place)
-        try:
-            yield blocks
-        except BaseException as error:
-            if blocks.is_empty:
-                _clear(place, folder if is_new else None)
-            elif isinstance(error, KeyboardInterrupt):
-                error.add_note("what was marched so far is kept: the same command goes on from there, --fresh does not")
-            raise
-        _clear(place, None)
-
-
-def _place(folder: Path, name: str, *, fresh: bool) -> Path:
-    """Return a folder for the blocks, after those of any other ended run are cleared away."""
-    target = folder / name
-    for candidate in folder.glob(f"{_FOLDER_PREFIX}*"):
-        if (
-            candidate.is_dir()
-            and not candidate.is_symlink()
-            and (fresh or candidate != target)
-            and not is_locked(candidate)
-        ):
-            shutil.rmtree(candidate, ignore_errors=True)
-    if target.exists() and is_locked(target):
-        return Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
-    target.mkdir(exist_ok=True)
-    return target
-
-
-def _clear(place: Path, created: Path | None) -> None:
-    shutil.rmtree(place, ignore_errors=True)
-    if created is not None:
-        with suppress(OSError):  # another run is at work in it
-            created.rmdir()
-
-
-def _force_names(folder: Path) -> None:
-    """Force a folder's entries to the disk."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 @dataclass(frozen=True)
@@ -240,10 +116,82 @@ class Sampling:
         return self.decimation.factor > 1
 
 
+@dataclass(frozen=True)
+class TransientPlan:
+    """Stretch of a machine's motion that is integrated and recorded.
+
+    Attributes
+    ----------
+    revolutions : float or None
+        Number of revolutions of the first driver's shaft at constant speed; either this or a run.
+    run : SpeedRun, FreeRun or None
+        Speed over time.
+    discard : float
+        Revolutions before the record begins.
+    points_per_revolution : int
+        Least number of recorded samples of each revolution; no step is longer than the interval of so many.
+    tolerance : float
+        Tolerance of the local error of a step, see :class:`gearwhine.coupling.TransientSettings`.
+    start : {"equilibrium", "unloaded"}
+        Static equilibrium under the load; or straight shafts, teeth that just touch, and a load applied at once.
+    method : {"newmark", "exact", "auto"}
+    modal_coordinates : int
+        Number of modes of each shaft, torsional and bending, and of the housing, that are recorded.
+    """
+
+    revolutions: float | None = None
+    run: Run | None = None
+    discard: float = 0.0
+    points_per_revolution: int = 200
+    tolerance: float = 5e-4
+    start: Literal["equilibrium", "unloaded"] = "equilibrium"
+    method: Literal["newmark", "exact", "auto"] = "newmark"
+    modal_coordinates: int = 0
+
+    def __post_init__(self) -> None:
+        """Require a number of revolutions or a run, and numbers that can be."""
+        if (self.revolutions is None) == (self.run is None):
+            raise CouplingError(
+                f"a transient of {self.revolutions} revolutions and the run {self.run}; expected one of the two"
+            )
+        positive = Number(above=0.0)
+        rules = {"discard": Number(at_least=0.0), "tolerance": positive, "points_per_revolution": positive}
+        refuse(
+            attribute_findings(_PART, self, **rules, revolutions=Number(above=0.0, optional=True)),
+            CouplingError,
+        )
+
+    def duration(self, period: float) -> float:
+        """Duration [s] of a machine whose first driver's shaft turns once in a period [s]."""
+        if self.run is not None:
+            return self.run.duration
+        assert self.revolutions is not None
+        return self.revolutions * period
+
+    def record_from(self, period: float, profile: SpeedProfile | None) -> float:
+        """Return the time at which the discarded revolutions end [s].
+
+        Raises
+        ------
+        CouplingError
+            Where a run does not turn so far.
+        """
+        if profile is None or self.discard == 0.0:
+            return self.discard * period
+        time, duration = float(profile.times_of(np.array([self.discard * period]))[0]), self.duration(period)
+        if not time < duration:
+            revolutions = float(profile.at(duration)[0][0]) / period
+            expected = f"fewer revolutions than the {revolutions:g} that the run turns"
+            refuse([Finding(_PART, "discard", self.discard, expected)], CouplingError)
+        return time
+
+
+_PART = ("transient", "")
+
+
 def sampling(
-    case: Case,
-    system: CoupledSystem,
-    turning: SpeedProfile | None,
+    machine: CoupledMachine,
+    plan: TransientPlan,
     limit: float,
     signals: int,
     rows: int,
@@ -251,16 +199,13 @@ def sampling(
     largest: int = RECORD_BYTES,
     block: int | None = None,
 ) -> Sampling:
-    """Choose how a case is sampled: for its highest speed, where that varies.
+    """Choose how a machine's motion is sampled: for its highest speed, where that varies.
 
     Parameters
     ----------
-    case : Case
-        Case with an operation and a transient.
-    system : CoupledSystem
-        System whose motion is sampled: its excitations decide on the window.
-    turning : SpeedProfile or None
-        Speed over time; None where it is the nominal one all along.
+    machine : CoupledMachine
+        Machine whose motion is sampled: its excitations decide on the window.
+    plan : TransientPlan
     limit : float
         Highest frequency of interest [Hz].
     signals, rows : int
@@ -272,49 +217,47 @@ def sampling(
 
     Raises
     ------
-    CaseError
+    CouplingError
         Where more is discarded than a run turns, or an excitation asks for samples without end.
     """
-    assert case.operation is not None
-    assert case.transient is not None
-    transient = case.transient
-    nominal = _TWO_PI / abs(case.operation.speed)
-    fastest = 1.0 if turning is None else float(turning.speed_ratios.max())
+    system, profile = machine.system, machine.speed_profile
+    nominal = _TWO_PI / abs(machine.speed)
+    fastest = 1.0 if profile is None else float(profile.speed_ratios.max())
     period = nominal / fastest
-    duration, record_from = transient_duration(case), _record_from(case, nominal, turning)
+    duration, record_from = plan.duration(nominal), plan.record_from(nominal, profile)
     rate, exciting = least_sampling_rate(system, record_from, duration, fastest=fastest)
     if rate * duration > _MOST_SAMPLES:
-        told = f"an excitation at {exciting:.4g} Hz, which asks for {rate * duration:.2g} samples in {duration:.4g} s"
-        expected = f"at most {_MOST_SAMPLES:g} of them: a lower frequency, or a shorter run"
-        raise CaseError([Problem("transient", told, expected)])
-    per_revolution = _power_of_two(max(transient.points_per_revolution, _OVERSAMPLING * limit * period, rate * period))
+        raise CouplingError(
+            f"transient: an excitation at {exciting:.4g} Hz asks for {rate * duration:.2g} samples in "
+            f"{duration:.4g} s; expected at most {_MOST_SAMPLES:g} of them: a lower frequency, or a shorter run"
+        )
+    per_revolution = _power_of_two(max(plan.points_per_revolution, _OVERSAMPLING * limit * period, rate * period))
     settings = TransientSettings(
         duration=duration,
         record_from=record_from,
         sample_interval=period / per_revolution,
-        largest_step=nominal / transient.points_per_revolution,
-        tolerance=transient.tolerance,
-        method=transient.method,
+        largest_step=nominal / plan.points_per_revolution,
+        tolerance=plan.tolerance,
+        method=plan.method,
     )
     if settings.samples < _FEWEST_SAMPLES:
-        problem = Problem(
-            "transient", f"a record of {settings.samples} samples", f"{_FEWEST_SAMPLES} or more: a longer run"
+        raise CouplingError(
+            f"transient: a record of {settings.samples} samples; expected {_FEWEST_SAMPLES} or more: a longer run"
         )
-        raise CaseError([problem])
-    steady = turning is None and not varies_within(system, settings.record_from, settings.duration)
+    steady = profile is None and not varies_within(system, settings.record_from, settings.duration)
     orders = _driving_orders(system, nominal)
     if 8 * signals * settings.samples <= largest:
         window: Window = "hann"
         stretch = settings.samples
-        if turning is None:
-            stretch, window = _whole_stretch(case, system, orders if steady else None, per_revolution, stretch)
+        if profile is None:
+            stretch, window = _whole_stretch(machine, orders if steady else None, per_revolution, stretch)
         return Sampling(settings, block or SAMPLES_PER_BLOCK, coupled_decimation(1, 0.25), stretch, window)
     stored_per_revolution = min(_power_of_two(_STORED_SAMPLING * limit * period), per_revolution // 2)
     factor = per_revolution // stored_per_revolution
     decimation = coupled_decimation(factor, limit * period / stored_per_revolution)
     stored = decimation.kept(settings.samples)
     most = max(min(_LONGEST_STRETCH, _STRETCH_BYTES // (8 * signals)), stored_per_revolution)
-    whole = _period(case, orders) if steady else None
+    whole = _period(machine, orders) if steady else None
     repeats = whole is not None and whole * stored_per_revolution <= min(most, stored)
     unit = stored_per_revolution * (whole if whole is not None and repeats else 1)
     units = max(stored // unit, 1)
@@ -322,37 +265,6 @@ def sampling(
     if block is None:
         block = min(max(_BLOCK_BYTES // (8 * rows), SAMPLES_PER_BLOCK), _LARGEST_BLOCK)
     return Sampling(settings, block, decimation, stretch, "uniform" if repeats else "hann")
-
-
-def transient_duration(case: Case) -> float:
-    """Duration of the transient [s]."""
-    assert case.operation is not None
-    assert case.transient is not None
-    if case.transient.run is not None:
-        return case.transient.run.duration
-    assert case.transient.revolutions is not None
-    return case.transient.revolutions * (_TWO_PI / abs(case.operation.speed))
-
-
-def _record_from(case: Case, period: float, turning: SpeedProfile | None) -> float:
-    """Return the time at which the discarded revolutions end [s].
-
-    Raises
-    ------
-    CaseError
-        Where a run does not turn so far.
-    """
-    assert case.transient is not None
-    discard = case.transient.discard
-    if turning is None or discard == 0.0:
-        return discard * period
-    time = float(turning.times_of(np.array([discard * period]))[0])
-    duration = transient_duration(case)
-    if not time < duration:
-        revolutions = float(turning.at(duration)[0][0]) / period
-        expected = f"fewer revolutions than the {revolutions:g} that the run turns"
-        raise CaseError([Problem("transient.discard", discard, expected)])
-    return time
 
 
 def _power_of_two(least: float) -> int:
@@ -366,7 +278,7 @@ def _driving_orders(system: CoupledSystem, revolution: float) -> list[float]:
 
 
 def _whole_stretch(
-    case: Case, system: CoupledSystem, orders: list[float] | None, per_revolution: int, samples: int
+    machine: CoupledMachine, orders: list[float] | None, per_revolution: int, samples: int
 ) -> tuple[int, Window]:
     """Return the number of samples at the end of a record that hold whole periods, and the window for them.
 
@@ -375,19 +287,18 @@ def _whole_stretch(
     varies in the record.
     """
     if orders is not None:
-        turns = [abs(float(ratio)) for ratio in speed_ratios(case).values()]
+        turns = [abs(float(ratio)) for ratio in machine.speed_ratios.values()]
         whole = whole_period_samples(samples, 1.0 / per_revolution, [*turns, *orders])
         if whole is not None:
             return whole, "uniform"
-    assert case.operation is not None
-    meshes = [abs(contact.mesh_frequency) * _TWO_PI / abs(case.operation.speed) for contact in system.contacts]
+    meshes = [abs(contact.mesh_frequency) * _TWO_PI / abs(machine.speed) for contact in machine.system.contacts]
     whole = whole_period_samples(samples, 1.0 / per_revolution, [1.0, *meshes], least=_NEARLY_ALL)
     return whole or samples, "hann"
 
 
-def _period(case: Case, orders: list[float]) -> int | None:
+def _period(machine: CoupledMachine, orders: list[float]) -> int | None:
     """Fewest revolutions of the first driver in which all shafts and orders repeat; None where there are none."""
-    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    whole = math.lcm(*(ratio.denominator for ratio in machine.speed_ratios.values()))
     for order in orders:
         periods = Fraction(whole * order).limit_denominator(_MOST_TURNS)
         whole *= periods.denominator

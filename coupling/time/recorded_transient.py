@@ -1,4 +1,4 @@
-"""Transient of a case: time integration of the loaded machine; histories of sensors, gears and bearings."""
+"""Recorded transient of a machine: time integration in blocks; histories of sensors, gears and bearings, spectra."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 import gearwhine
-from gearwhine.case import Case, require
-from gearwhine.coupling import CoupledMachine, SpeedProfile
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.peaks import SpectralPeaks, spectral_peaks
 from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
 from gearwhine.coupling.time.exponential_collocation import integration_method
@@ -22,6 +23,18 @@ from gearwhine.coupling.time.histories import (
 )
 from gearwhine.coupling.time.histories import histories as coupled_histories
 from gearwhine.coupling.time.integration import Checkpoint
+from gearwhine.coupling.time.recording import (
+    RECORD_BYTES,
+    Arrays,
+    Blocks,
+    Sampling,
+    Signals,
+    TransientPlan,
+    TransientRecord,
+    block_arrays,
+    record_spectra,
+    sampling,
+)
 from gearwhine.coupling.time.settings import MotionRecord
 from gearwhine.coupling.time.transient import (
     TransientFigures,
@@ -32,22 +45,12 @@ from gearwhine.coupling.time.transient import (
 )
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.output.files import PRESENTATION, installed, source_digest
-from gearwhine.solve.transient_record import (
-    RECORD_BYTES,
-    Arrays,
-    Blocks,
-    Sampling,
-    Signals,
-    TransientRecord,
-    block_arrays,
-    record_spectra,
-    sampling,
-)
+from gearwhine.numerics.source_digest import installed, source_digest
 
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
+_HARMONICS = 4.0  # mesh harmonics that count where no housing limits the model
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 
 
@@ -58,12 +61,8 @@ class SolvedTransient:
     Attributes
     ----------
     machine : gearwhine.coupling.CoupledMachine
-    speed : float
-        Speed of the first driver's rotor at operation [rad/s].
     method : str
         The method of time integration, "newmark" or "exact".
-    turning : SpeedProfile or None
-        Speed over time; None where it is the nominal one all along.
     result : TransientFigures
     record : TransientRecord
         Everything recorded, piece by piece.
@@ -78,15 +77,23 @@ class SolvedTransient:
     """
 
     machine: CoupledMachine
-    speed: float
     method: str
-    turning: SpeedProfile | None
     result: TransientFigures
     record: TransientRecord
     signals: Signals
     sensor_spectra: dict[str, Spectrum]
     force_spectra: dict[str, Spectrum]
     trusted_limit: float
+
+    @property
+    def speed(self) -> float:
+        """Nominal speed of the first driver's shaft [rad/s]."""
+        return self.machine.speed
+
+    @property
+    def turning(self) -> SpeedProfile | None:
+        """Speed over time; None where it is the nominal one all along."""
+        return self.machine.speed_profile
 
     @property
     def record_start(self) -> float:
@@ -180,35 +187,36 @@ class SolvedTransient:
         return list(named), self.record.spectrum(np.array(list(named.values())), self.trusted_limit)
 
 
-def has_traced_lines(case: Case) -> bool:
+def has_traced_lines(machine: CoupledMachine) -> bool:
     """Whether lines of the sensors are traced to their origin.
 
     Lines have names, and parts that add up, where speeds are steady and the ground is at rest.
     """
-    assert case.operation is not None
-    assert case.transient is not None
-    return case.transient.run is None and case.operation.base is None
+    return machine.speed_profile is None and machine.loads.base is None
 
 
 def solve_transient(
-    case: Case,
     machine: CoupledMachine,
-    mesh_frequencies: tuple[float, ...],
+    plan: TransientPlan,
     progress: Progress = silent,
     *,
     keep: Callable[[str], Blocks] | None = None,
     record_bytes: int = RECORD_BYTES,
     samples_per_block: int | None = None,
 ) -> SolvedTransient:
-    """Integrate the machine's motion through the case's revolutions or run, and take the spectra of its record.
+    """Integrate the machine's motion through the revolutions or the run of a plan, and take the spectra of its record.
 
     Where the record holds whole turns of every shaft and whole periods of every excitation, the spectra are taken as
     they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled for its highest speed,
-    and ``discard`` counts revolutions as they are turned. A record that is too long for memory
-    is filtered and stored at fewer samples, see :mod:`gearwhine.solve.transient_record`.
+    and ``discard`` counts revolutions as they are turned. A record that is too long for memory is filtered and stored
+    at fewer samples, see :mod:`gearwhine.coupling.time.recording`.
 
     Parameters
     ----------
+    machine : CoupledMachine
+        Assembled for the run of the plan.
+    plan : TransientPlan
+    progress : callable
     keep : callable, optional
         Returns the blocks stored under a key of the integration's inputs; the integration continues after them. By
         default all blocks are held in memory.
@@ -217,16 +225,19 @@ def solve_transient(
 
     Raises
     ------
+    gearwhine.coupling.CouplingError
+        Where the machine stands still, is assembled for no such run, or is discarded over more than it turns.
     gearwhine.coupling.TransientError
         Where the motion cannot be followed or its energies do not balance.
     """
-    require(case, "operation", "transient", command="run")
-    assert case.transient is not None
-    assert case.operation is not None
-    turning = machine.speed_profile
-    fastest = 1.0 if turning is None else max(1.0, float(turning.speed_ratios.max()))
-    limit = _trusted_limit(machine, tuple(fastest * frequency for frequency in mesh_frequencies))
-    modal, traced = case.transient.modal_coordinates, has_traced_lines(case)
+    if machine.speed == 0.0:
+        raise CouplingError("a machine that stands still has no revolutions; expected a speed")
+    if (machine.speed_profile is None) != (plan.run is None):
+        raise CouplingError("a machine assembled at another speed over time than that of its transient's plan")
+    profile = machine.speed_profile
+    fastest = 1.0 if profile is None else max(1.0, float(profile.speed_ratios.max()))
+    limit = _trusted_limit(machine, fastest)
+    modal, traced = plan.modal_coordinates, has_traced_lines(machine)
     outputs = with_modal_rows(machine, transient_outputs(machine), modal, housing=traced)
 
     def named(result: MotionRecord) -> Signals:
@@ -236,13 +247,11 @@ def solve_transient(
     rows = sum(map(len, (outputs.displacement, outputs.velocity, outputs.acceleration)))
     rows += 2 * len(machine.system.contacts)
     signals = nothing.columns.shape[1]
-    chosen = sampling(
-        case, machine.system, turning, limit, signals, rows, largest=record_bytes, block=samples_per_block
-    )
+    chosen = sampling(machine, plan, limit, signals, rows, largest=record_bytes, block=samples_per_block)
     progress("preparing the time stepper")
     integration = (machine.system, chosen.settings, outputs)
-    start = starting_state(case, machine)
-    key = integration_key(*integration, turning=turning, initial=start, samples_per_block=chosen.samples_per_block)
+    start = starting_state(machine, plan)
+    key = integration_key(*integration, turning=profile, initial=start, samples_per_block=chosen.samples_per_block)
     blocks: Blocks = _InMemory()
     if keep is not None:
         blocks = keep(_with_code(fingerprint(key, machine.loads.base), chosen))
@@ -250,7 +259,7 @@ def solve_transient(
     filter_state = nothing.columns if last is None else last["held"]
     integrated = integrate_blocks(
         *integration,
-        turning=turning,
+        turning=profile,
         initial=start,
         after=None if last is None else Checkpoint.from_arrays(last),
         samples_per_block=chosen.samples_per_block,
@@ -263,10 +272,8 @@ def solve_transient(
     figures = transient_figures(chosen.settings, record.end)
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
-    method = integration_method(machine.system, chosen.settings, turning or SpeedProfile.steady())
-    return SolvedTransient(
-        machine, case.operation.speed, method, turning, figures, record, stretch, of_sensors, of_meshes, limit
-    )
+    method = integration_method(machine.system, chosen.settings, profile or SpeedProfile.steady())
+    return SolvedTransient(machine, method, figures, record, stretch, of_sensors, of_meshes, limit)
 
 
 def _with_code(key: str, chosen: Sampling) -> str:
@@ -278,7 +285,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
             "integration": key,
             "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": source_digest("gearwhine.coupling", "gearwhine", without=PRESENTATION),
+            "source": source_digest("gearwhine.numerics", "gearwhine.rotors", "gearwhine.coupling"),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
     )
@@ -288,13 +295,12 @@ class _InMemory(list[Arrays]):
     """Record in memory, without files to resume from."""
 
 
-def starting_state(case: Case, machine: CoupledMachine) -> tuple[FloatArray, FloatArray] | None:
-    """Coordinates and rates that the case starts from; None: static equilibrium under its load.
+def starting_state(machine: CoupledMachine, plan: TransientPlan) -> tuple[FloatArray, FloatArray] | None:
+    """Coordinates and rates that a plan starts from; None: static equilibrium under the load.
 
     A train that turns unloaded has straight, untwisted shafts and teeth that just touch: all coordinates are zero.
     """
-    assert case.transient is not None
-    if case.transient.start == "equilibrium":
+    if plan.start == "equilibrium":
         return None
     return np.zeros(machine.system.size), np.zeros(machine.system.size)
 
@@ -304,8 +310,9 @@ def mean_bearing_forces(solved: SolvedTransient) -> dict[str, FloatArray]:
     return {name: load[:, :3].mean(axis=0) for name, load in solved.histories.bearing_load.items()}
 
 
-def _trusted_limit(machine: CoupledMachine, mesh_frequencies: tuple[float, ...]) -> float:
+def _trusted_limit(machine: CoupledMachine, fastest: float) -> float:
     """Return the limit up to which the housing's modes are complete [Hz]; without a housing, that of the gears."""
     if machine.housing is not None and machine.housing.complete_below is not None:
         return machine.housing.complete_below / _TWO_PI
-    return 4.0 * max(mesh_frequencies, default=1000.0)
+    meshes = [fastest * abs(contact.mesh_frequency) for contact in machine.system.contacts]
+    return _HARMONICS * max(meshes, default=1000.0)
