@@ -27,6 +27,7 @@ from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import (
     RUN_SIGNATURE,
+    SOUND_LEFT_OUT,
     TRANSIENT,
     HistoryStream,
     TracedTransient,
@@ -57,7 +58,7 @@ from gearwhine.solve.plausibility import (
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
-from gearwhine.solve.sound import check_before_modes
+from gearwhine.solve.sound import check_before_modes, is_in_run
 from gearwhine.solve.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.solve.transient_record import stored_record
 
@@ -131,7 +132,8 @@ def run(
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
+        before = check_before_modes(case) if is_in_run(case) else None
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=before)
     timed("housing", begin)
     begin = time.perf_counter()
     part = None if housing is None or not (case.rotor and case.operation) else reduce_housing(case, housing, progress)
@@ -203,7 +205,9 @@ def run(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
-    if case.acoustics is not None and housing is not None:
+    if case.acoustics is not None and not is_in_run(case):
+        document["sound_not_solved"] = SOUND_LEFT_OUT
+    if is_in_run(case) and housing is not None:
         from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_run
         from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
 

@@ -920,6 +920,12 @@ def _basis_error(document: Document) -> list[str]:
     return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
 
 
+SOUND_LEFT_OUT = (
+    "Sound: left out of the run; the command sound finds that of the steady motion, run with "
+    "acoustics.in_run = true that of its own"
+)
+
+
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the measured comparison, mesh forces, the sensors' lines and their origin, and the proofs."""
     housing = (modes_sentence(document["housing"]),) if "housing" in document else ()
@@ -972,6 +978,8 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield f"Coupled system: {counted(len(document['system']['modes']), 'mode')}"
     if "sound" in document:
         yield from sound.brief(document["sound"])
+    if "sound_not_solved" in document:
+        yield document["sound_not_solved"]
 
 
 def _highest_orders(orders: list[Document]) -> list[Document]:
