@@ -337,7 +337,9 @@ def test_a_result_is_held_against_the_keys_that_its_command_reads(
     assert bool(mismatches(tmp_path, {"command": command}, present)) is differs
 
 
-@pytest.mark.parametrize(("change", "differs"), [("lines = 3", False), ("in_run = true", True), ("method = 'erp'", True)])
+@pytest.mark.parametrize(
+    ("change", "differs"), [("lines = 3", False), ("in_run = true", True), ("method = 'erp'", True)]
+)
 def test_a_run_without_sound_is_not_held_against_the_keys_of_sound(
     tmp_path: Path, change: str, *, differs: bool
 ) -> None:
