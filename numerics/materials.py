@@ -18,6 +18,8 @@ _LIGHTEST, _HEAVIEST = 300.0, 23e3  # kg/m³
 _SOFTEST_SOLID = 1e3  # Pa, of gels: below it a number has lost its unit
 _MOST_POISSON = 0.48
 """Poisson's ratio above which a solid is nearly incompressible and finite elements lock."""
+_INCOMPRESSIBLE = 0.4999
+"""Poisson's ratio from which on bulk and shear modulus differ so much that stiffness loses the digits of shear."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,9 @@ def material_findings(part: Part, youngs_modulus: float, poisson_ratio: float, d
     elif not _LIGHTEST <= density <= _HEAVIEST:
         expected = "a density of 300 to 23000 kg/m^3, as solids have (steel has 7850 kg/m^3)"
         yield Finding(part, "density", density, expected, "warning")
-    if not Number(at_least=0.0, below=0.5).accepts(poisson_ratio):
-        yield Finding(part, "poisson_ratio", poisson_ratio, "a Poisson ratio of at least 0 and below 0.5")
+    if not Number(at_least=0.0, below=_INCOMPRESSIBLE).accepts(poisson_ratio):
+        expected = "a Poisson ratio of at least 0 and below 0.4999, above which elements lock (steel has 0.3)"
+        yield Finding(part, "poisson_ratio", poisson_ratio, expected)
     elif poisson_ratio > _MOST_POISSON:
         expected = "a Poisson ratio of at most 0.48: finite elements of a nearly incompressible solid are too stiff"
         yield Finding(part, "poisson_ratio", poisson_ratio, expected, "warning")

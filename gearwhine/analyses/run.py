@@ -10,8 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coupling.errors import TransientError
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
+from gearwhine.case.checks.plausible import overload
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.output import staging
@@ -186,7 +188,13 @@ def run(
             keep = None
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            transient = solve_transient(case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep)
+            try:
+                transient = solve_transient(case, machine, mesh_frequencies(case), progress, housing=housing, keep=keep)
+            except TransientError as error:
+                # Under a load that no tooth bears the advice of the integration is beside the point.
+                if told := overload(case):
+                    raise TransientError(f"{told}; no motion under this load is found") from error
+                raise
             if has_traced_lines(case):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)

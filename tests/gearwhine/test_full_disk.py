@@ -75,9 +75,13 @@ def test_the_limit_of_open_files_is_raised_where_the_system_lets_us(monkeypatch:
 
 
 def test_a_full_disk_keeps_what_was_marched_and_says_where(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match="large") as caught, room_for(40_000), stored_record(tmp_path, "key") as blocks:
-        for size in (10, 10_000):
-            blocks.append({"a": np.zeros(size)})
+    def march() -> None:
+        with room_for(40_000), stored_record(tmp_path, "key") as blocks:
+            for size in (10, 10_000):
+                blocks.append({"a": np.zeros(size)})
+
+    with pytest.raises(OSError, match="large") as caught:
+        march()
     (place,) = tmp_path.iterdir()
     assert [path.name for path in place.iterdir()] == ["block-00000000.npz"]
     assert explain(caught.value) == (1, f"File too large: {tmp_path}")
