@@ -157,7 +157,7 @@ def run(
         if case.measured is not None:
             comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
-            add_warnings(document, comparison_warnings(comparison))
+            add_warnings(document, comparison_warnings(comparison, housing.modes))
 
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if case.rotor and case.operation:
