@@ -1,7 +1,7 @@
 """Gradients of the sound power of mesh harmonics, against that of machines whose housing is moved and solved anew."""
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -212,11 +212,26 @@ def study() -> gw.Study:
 
 
 @pytest.mark.slow
+def test_a_line_sounds_as_in_the_motion_where_the_mesh_stiffness_hardly_varies() -> None:
+    """Of helical teeth, whose stiffness varies by 3 %, the line that leads is that of the whole law within 0.1 dB."""
+    stiffness = {"matrix": np.diag([1.2e8, 1.2e8, 5e7, 0.0, 0.0]).tolist()}
+    changes: dict[str, Any] = {f"bearing.{number}.stiffness": stiffness for number in range(4)}
+    for gear, angle in (("pinion", "20 deg"), ("wheel", "-20 deg")):
+        changes |= {f"gear.{gear}.module": f"{3.175 * np.cos(np.deg2rad(20.0))} mm"}  # at the same centre distance
+        changes |= {f"gear.{gear}.face_width": "30 mm", f"gear.{gear}.helix_angle": angle}
+    study = gw.load("small-gearbox", SOUNDING | changes)
+    loudest = study.operating_point(sensitivity=True).document["loudest_lines"][0]
+    steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
+    assert loudest["excitation"] == "1× pinion -> wheel"
+    assert loudest["sound_power_db"] == pytest.approx(steady[loudest["excitation"]], abs=0.1)
+
+
+@pytest.mark.slow
 def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
-    # The steady motion follows the whole law of the teeth, which counts less at the mesh frequency than above.
+    # The steady motion follows the whole law of the teeth, whose stiffness varies by a third here; see the next test.
     steady = {one["name"]: one["sound_power_db"] for one in study.sound().document["lines"]}
     assert loudest[1]["sound_power_db"] == pytest.approx(steady["1× pinion -> wheel"], abs=1.0)
     for one in loudest:
