@@ -729,7 +729,7 @@ class Machine:
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in bearings],
             frequency_limit=limit,
             count=count,
-            gears_at=list(dict.fromkeys(at for at, _ in loaded_at)),
+            gears_at=list(dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft)])),
             forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
@@ -782,6 +782,19 @@ class Machine:
             for gear, middle in zip(self._gears_of(pair), geometry.common_middles, strict=True)
             if gear.shaft == shaft
         ]
+
+    def _ends_of_shared_faces(self, shaft: Shaft) -> list[float]:
+        """Return both ends of the faces in several meshes, as far as the shaft moves with them [m].
+
+        Loads there are ports of the shaft. The load of one mesh, spread over the face, moves the face of the other by
+        more than a load in the middle would; a compliance in series with one mesh cannot have that part.
+        """
+        ends = list[float]()
+        for gear in self._gears_on(shaft.name):
+            if self._pair_count(gear.name) > 1:
+                half = 0.5 * gear.gear.face_width
+                ends += np.clip([gear.at - half, gear.at + half], *carrying_length(gear, shaft.rotor)).tolist()
+        return ends
 
     def _pair_count(self, gear: str) -> int:
         """Count the pairs that a gear takes part in."""

@@ -18,7 +18,8 @@ connector over y with the stiffness K and the offset M₀ - a F₀ - K y₀.
 
 The modes of the shafts are exact in their static response to the force in the middle of the face. What they lack of the
 response to the slope and the tilt, and to the spread of the force, is a compliance R over (δ, y) in series with the
-slices' tangent (:mod:`coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken.
+slices' tangent (:mod:`coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken. R has nothing from
+mesh to mesh of one gear; the shafts have ports at both ends of such a face, so that their modes lack little there.
 
 K resists as long as flanks touch. It is linear about the mean load, so it does not end where a mesh loses contact in
 motion; linear analyses leave it out where the contact has parted. Flanks without a mean load have a and K of all

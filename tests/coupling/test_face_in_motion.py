@@ -144,15 +144,9 @@ def test_lines_of_contact_that_pass_over_the_face_act_as_their_mean() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize(("modes", "within"), [(None, 0.015), (24, 0.005)])
-def test_a_spur_power_split_answers_as_springs_over_its_faces(sense: int, modes: int | None, within: float) -> None:
-    """Each mesh has the compliance over its face that the shafts' modes lack, but not what they lack from mesh to mesh.
-
-    Gears in two meshes feel that, with few modes by 1.4 % at 2400 Hz; more modes take it away.
-    """
-    model = power_split(sense, ConstantStiffness(4e8))
-    model = replace(model, shafts=[replace(shaft, mode_count=modes) for shaft in model.shafts])
-    np.testing.assert_allclose(compared(model), 1.0, atol=within)
+def test_a_spur_power_split_answers_as_springs_over_its_faces(sense: int) -> None:
+    """Gears in two meshes, each of which moves the face of the other; with few modes of the shafts."""
+    np.testing.assert_allclose(compared(power_split(sense, ConstantStiffness(4e8))), 1.0, atol=0.003)
 
 
 @pytest.mark.slow
