@@ -11,9 +11,9 @@ import sys
 
 import numpy as np
 
-import coupling
-from coupling.linear.frequency_response import BasisError, mesh_error_response
+from gearwhine import coupling
 from gearwhine.case import load_case
+from gearwhine.coupling.linear.frequency_response import BasisError, mesh_error_response
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import basis_error, build_machine, reduce_housing

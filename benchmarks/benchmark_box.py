@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing import Material, Support
-from housing.model.supports import fixed_freedoms
-from meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
+from gearwhine.housing import Material, Support
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
 
 STEEL = Material(2.07e11, 0.3, 7850.0)
 SIZE = (0.330, 0.279, 0.254)

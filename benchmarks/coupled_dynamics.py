@@ -28,7 +28,7 @@ from numba import njit
 from scipy.integrate import solve_ivp
 from timing import arguments, machine, timed
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
@@ -43,12 +43,12 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.machine.components import rotor_component
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.time.settings import Method
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.time.settings import Method
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from typing import get_args
 from benchmark_box import STEEL, benchmark_box
 from timing import arguments, machine
 
-from housing.fem.assembly import assemble
-from housing.fem.matrices import Matrices
-from housing.modes.eigensolver import Solver
-from housing.modes.natural_modes import solve_modes
+from gearwhine.housing.fem.assembly import assemble
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes.eigensolver import Solver
+from gearwhine.housing.modes.natural_modes import solve_modes
 
 
 def seconds(matrices: Matrices, limit: float, solver: Solver, threads: int) -> tuple[float, float]:

@@ -11,9 +11,9 @@ import meshio
 import numpy as np
 
 from gearwhine.from_case.rotors import build_bearings, build_rotor
-from housing import measured
-from meshes.gmsh_meshing import gmsh_session
-from rotors import write_ross
+from gearwhine.housing import measured
+from gearwhine.meshes.gmsh_meshing import gmsh_session
+from gearwhine.rotors import write_ross
 
 Files = dict[str, bytes]
 

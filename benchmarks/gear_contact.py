@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from timing import arguments, machine, timed
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ElasticRingStiffness,
     Gear,
     GearPairGeometry,
@@ -31,8 +31,8 @@ from coupling.gears import (
     optimal_tip_relief,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
 PHASES = np.arange(256) / 256.0
 CALLS, STRETCHES = 7000, 40

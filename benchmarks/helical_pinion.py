@@ -15,11 +15,11 @@ import skfem
 from scipy import sparse
 from skfem.helpers import ddot, sym_grad, trace
 
-from coupling.gears import Gear
-from coupling.gears.geometry.profile import gear_outline
-from coupling.gears.geometry.toothed_section import toothed_section
-from housing.fem.factorization import Factorizer
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.profile import gear_outline
+from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 MODULE = 3e-3
 STRAIGHT = Gear("pinion", 20, MODULE, math.radians(20.0), 10 * MODULE)

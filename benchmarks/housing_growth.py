@@ -14,7 +14,7 @@ import numpy as np
 from benchmark_box import STEEL, benchmark_box
 from timing import machine, timed
 
-from housing import assemble, solve_modes
+from gearwhine.housing import assemble, solve_modes
 
 _MODES = 30
 _LIMIT = 2.0 * np.pi * 3984.0

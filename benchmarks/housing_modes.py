@@ -14,9 +14,9 @@ from benchmark_box import STEEL, Problem, benchmark_box
 from scipy.sparse.linalg import eigsh
 from timing import arguments, machine, timed
 
-from housing import ModeSet, assemble, solve_modes
-from housing.fem.factorization import Factorizer
-from housing.fem.matrices import FreeSystem
+from gearwhine.housing import ModeSet, assemble, solve_modes
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.housing.fem.matrices import FreeSystem
 
 
 def ours(problem: Problem, *, limit: float | None, count: int | None) -> ModeSet:

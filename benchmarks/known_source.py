@@ -24,12 +24,12 @@ from timing import arguments, machine
 
 from gearwhine.case import load_case
 from gearwhine.from_case.mesh import build_mesh
-from housing.acoustics import boundary_elements
-from housing.acoustics.boundary_elements import BoundaryElements, SoundField
-from housing.acoustics.known_source import KnownSources
-from housing.acoustics.medium import HardPlane
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.acoustics import boundary_elements
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField
+from gearwhine.housing.acoustics.known_source import KnownSources
+from gearwhine.housing.acoustics.medium import HardPlane
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiation import HousingRadiation
 
 FloatArray = npt.NDArray[np.float64]
 

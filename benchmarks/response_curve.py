@@ -15,9 +15,9 @@ from collections.abc import Callable
 import numpy as np
 from timing import Result, arguments, machine
 
-from coupling import periodic_response, response_curve
-from coupling.periodic.continuation import ResponseCurve
 from gearwhine.case import Case, load_case, mesh_frequencies
+from gearwhine.coupling import periodic_response, response_curve
+from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.steady_state import CURVE_TOLERANCE

@@ -1,10 +1,10 @@
 """Fit of a box to the measured frequencies of NASA's gear noise rig from one start, for studies of many boxes.
 
-The search is that of `gearwhine update` (:mod:`housing.updating`): the same misfit, surrogate and trust region. It
-differs in where it solves. Most steps are on elements of 24 mm, whose bias against elements of 12 mm is corrected by
-that of the nominal box. They end where the dominant modes have the frequencies, clearly enough, and the number of modes
-is the known one. A few steps on elements of 12 mm follow, until the dominant modes have the frequencies there. Starts
-that are far off, and searches that do not come near, are given up.
+The search is that of `gearwhine update` (:mod:`gearwhine.housing.updating`): the same misfit, surrogate and trust
+region. It differs in where it solves. Most steps are on elements of 24 mm, whose bias against elements of 12 mm is
+corrected by that of the nominal box. They end where the dominant modes have the frequencies, clearly enough, and the
+number of modes is the known one. A few steps on elements of 12 mm follow, until the dominant modes have the frequencies
+there. Starts that are far off, and searches that do not come near, are given up.
 """
 
 import time
@@ -17,12 +17,12 @@ import numpy.typing as npt
 
 from gearwhine.case import Case
 from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
+from gearwhine.housing import HousingError
+from gearwhine.housing.updating import Misfit, Target, measure
+from gearwhine.housing.updating.mesh_bias import Debiased, MeshBias, debiased
+from gearwhine.housing.updating.parameters import values_at
+from gearwhine.housing.updating.trust_region import Effort, search
 from gearwhine.solve.updating import measurement_of
-from housing import HousingError
-from housing.updating import Misfit, Target, measure
-from housing.updating.mesh_bias import Debiased, MeshBias, debiased
-from housing.updating.parameters import values_at
-from housing.updating.trust_region import Effort, search
 
 FloatArray = npt.NDArray[np.float64]
 

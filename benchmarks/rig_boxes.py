@@ -37,21 +37,21 @@ import tomli_w
 from matplotlib.lines import Line2D
 from rig_box_fits import bias_of, fit_box
 
-from coupling import TransientOutputs, TransientSettings, simulate
-from coupling.machine.components import HousingComponent
-from coupling.machine.coupled_system import embed
 from gearwhine.case import Case, case_document, load_case
 from gearwhine.case.units import amount
+from gearwhine.coupling import TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.coupled_system import embed
 from gearwhine.figures.style import BLUE, FOOT, HEAD, RED, legend, panel_pair, panel_title, sheet
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.parametric_housing import fitted_case, with_entry
+from gearwhine.housing.acoustics.boundary_elements import surface_product
+from gearwhine.housing.acoustics.surface_velocity import face_surface
+from gearwhine.housing.updating.mesh_bias import MeshBias
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.updating import update_housing, updated_case
-from housing.acoustics.boundary_elements import surface_product
-from housing.acoustics.surface_velocity import face_surface
-from housing.updating.mesh_bias import MeshBias
 
 FloatArray = npt.NDArray[np.float64]
 Runs = Callable[..., "Run"]

@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from timing import arguments, machine
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     Rotor,

@@ -21,9 +21,9 @@ from timing import arguments, machine, timed
 
 import gearwhine as gw
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.meshes import Mesh
 from gearwhine.solve import housing_modes
 from gearwhine.solve.sensitivity.housing_changes import face_changes
-from meshes import Mesh
 
 RIG = "nasa-gear-noise-rig"
 OUTER = ["top", "bottom", "front", "back", "left", "right"]

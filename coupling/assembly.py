@@ -1,11 +1,11 @@
 """Assembly of the coupled system by component mode synthesis: components, bearings (5x5 stiffness), gear pairs, loads.
 
-Each component enters in its own modal coordinates (:mod:`coupling.machine.components`: projection onto free modes, and
-residual attachment modes in place of the constraint modes of the Craig-Bampton method). Connectors join them: the 5x5
-stiffness and damping matrices of bearings over x, y, z and the rotations about x and y, tooth contacts along the lines
-of action, dashpots of couplings (:mod:`coupling.machine.connectors`). The equation of motion is stated in
-:class:`coupling.machine.coupled_system.CoupledSystem`; loaded flanks and mean mesh stiffness come from
-:mod:`coupling.statics`.
+Each component enters in its own modal coordinates (:mod:`gearwhine.coupling.machine.components`: projection onto free
+modes, and residual attachment modes in place of the constraint modes of the Craig-Bampton method). Connectors join
+them: the 5x5 stiffness and damping matrices of bearings over x, y, z and the rotations about x and y, tooth contacts
+along the lines of action, dashpots of couplings (:mod:`gearwhine.coupling.machine.connectors`). The equation of motion
+is stated in :class:`gearwhine.coupling.machine.coupled_system.CoupledSystem`; loaded flanks and mean mesh stiffness
+come from :mod:`gearwhine.coupling.statics`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,34 +15,40 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.gears import ToothContact
-from coupling.gears.contact.sliding_friction import sliding_friction
-from coupling.gears.geometry.pair import mesh_frequency
-from coupling.gears.loaded.face_load import FaceTangent
-from coupling.machine.base_motion import base_loads, gravity_load
-from coupling.machine.bearing_laws import RollingLaw
-from coupling.machine.components import (
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
+from gearwhine.coupling.gears.geometry.pair import mesh_frequency
+from gearwhine.coupling.gears.loaded.face_load import FaceTangent
+from gearwhine.coupling.machine.base_motion import base_loads, gravity_load
+from gearwhine.coupling.machine.bearing_laws import RollingLaw
+from gearwhine.coupling.machine.components import (
     Component,
     HousingComponent,
     PedestalComponent,
     RotorComponent,
     pedestal_component,
 )
-from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector, Sliding, SpeedTable
-from coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
-from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
-from coupling.machine.gear_bodies import transport
-from coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
-from coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
-from coupling.machine.mesh_face import MeshFace, mesh_face
-from coupling.machine.mounted_parts import GearMesh, MountedBearing
-from coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
-from coupling.machine.thrust import ThrustPair, require_thrust_carried
-from coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
-from coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
-from coupling.statics.static_equilibrium import with_loaded_flanks
-from rotors import Bearing
+from gearwhine.coupling.machine.connectors import (
+    ContactConnector,
+    LinearConnector,
+    NonlinearConnector,
+    Sliding,
+    SpeedTable,
+)
+from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
+from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from gearwhine.coupling.machine.gear_bodies import transport
+from gearwhine.coupling.machine.gear_train import mesh_phases, require_balance, require_meshing, turning_senses
+from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, largest_torques
+from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
+from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
+from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
+from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
+from gearwhine.rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -169,7 +175,7 @@ class CoupledMachine:
         ------
         CouplingError
             Where the machine stands still, which leaves the ratios of its speeds open.
-        rotors.RotorError
+        gearwhine.rotors.RotorError
             Where the speed is beyond the table of a bearing.
         """
         present = self.speeds[self.leading_rotor]
@@ -207,7 +213,7 @@ def assemble_machine(
     rotors : sequence of RotorComponent
     housing : HousingComponent or None
     speeds : dict of str to float
-        Signed speed of each rotor [rad/s]; at rest see :func:`coupling.machine.gear_train.turning_senses`.
+        Signed speed of each rotor [rad/s]; at rest see :func:`gearwhine.coupling.machine.gear_train.turning_senses`.
     bearings : sequence of MountedBearing
     meshes : sequence of GearMesh
     loads : MachineLoads
@@ -227,7 +233,7 @@ def assemble_machine(
         one, a rotor has no speed, a seat no housing, a train more than one drive, helical gears push a rotor that no
         bearing holds along its axis, or the gears of a pair cannot be in mesh: by speeds that are not in the ratio of
         their teeth, or of one sense; by axes that are not at their centre distance; by faces that are not in one plane.
-    rotors.RotorError
+    gearwhine.rotors.RotorError
         Where a bearing's table does not reach as far as the speeds.
     """
     pedestals = [
@@ -491,7 +497,7 @@ def _with_faces(
     """Return the system with flanks that resist tilting and with load shuttling, and their faces.
 
     ``flanks`` are mesh and sense of each contact of the system, ``known`` the faces of the machine at another speed.
-    See `coupling.machine.mesh_face`.
+    See `gearwhine.coupling.machine.mesh_face`.
     """
     mean = known if known is not None and known.hold_in(system) else None
     if mean is None:
@@ -621,10 +627,10 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
 def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
-    The runout error e_err is subtracted from the compression δ of :mod:`coupling.machine.mesh_kinematics`. A gear whose
-    centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
+    The runout error e_err is subtracted from the compression δ of :mod:`gearwhine.coupling.machine.mesh_kinematics`. A
+    gear whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
     e_err = -e (ε_k - ε_i): the same first-order runout as
-    :func:`coupling.gears.geometry.pitch_deviations.runout_error`.
+    :func:`gearwhine.coupling.gears.geometry.pitch_deviations.runout_error`.
     """
     line = mesh.line_of_action(sense)
     direction = np.zeros(coordinates.size)

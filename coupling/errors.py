@@ -1,6 +1,6 @@
 """Errors of the coupled machine and its analyses."""
 
-from numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError
 
 
 class CouplingError(RefusedPartError):

@@ -16,26 +16,31 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine, assemble_machine
-from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import Gear, GearError, GearPairGeometry
-from coupling.gears.contact.contact_law import law_between_rims
-from coupling.gears.contact.face_slices import face_stations
-from coupling.gears.geometry.pair import turning_sense
-from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
-from coupling.gears.stiffness.beam import PlaneState
-from coupling.gears.stiffness.models import rim_compliances
-from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
-from coupling.linear.campbell import SystemCampbell, system_campbell
-from coupling.linear.complex_modes import CoupledModes, coupled_modes
-from coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
-from coupling.machine.axial_location import AxialLocation, axial_support
-from coupling.machine.bearing_laws import RollingLaw
-from coupling.machine.components import HousingComponent, RotorComponent, component_of_housing, rotor_component
-from coupling.machine.driving_frequencies import least_sampling_rate
-from coupling.machine.face_compliance import face_compliance
-from coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
-from coupling.machine.gear_train import (
+from gearwhine.coupling.assembly import CoupledMachine, assemble_machine
+from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
+from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.gears.contact.face_slices import face_stations
+from gearwhine.coupling.gears.geometry.pair import turning_sense
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair, operation_findings
+from gearwhine.coupling.gears.stiffness.beam import PlaneState
+from gearwhine.coupling.gears.stiffness.models import rim_compliances
+from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
+from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
+from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
+from gearwhine.coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
+from gearwhine.coupling.machine.axial_location import AxialLocation, axial_support
+from gearwhine.coupling.machine.bearing_laws import RollingLaw
+from gearwhine.coupling.machine.components import (
+    HousingComponent,
+    RotorComponent,
+    component_of_housing,
+    rotor_component,
+)
+from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
+from gearwhine.coupling.machine.face_compliance import face_compliance
+from gearwhine.coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
+from gearwhine.coupling.machine.gear_train import (
     GearedShafts,
     GearTrain,
     Output,
@@ -45,9 +50,9 @@ from coupling.machine.gear_train import (
     imbalances_of_shafts,
     require_balanced_outputs,
 )
-from coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
-from coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
-from coupling.machine.parts import (
+from gearwhine.coupling.machine.loads import BowReactions, MachineLoads, ShaftForce, Torque, Unbalance, largest_torques
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
+from gearwhine.coupling.machine.parts import (
     CONSTANT,
     Driving,
     Shaft,
@@ -60,29 +65,29 @@ from coupling.machine.parts import (
     require_stations,
     rotor_with_gears,
 )
-from coupling.machine.shaft_dashpots import ShaftDashpots
-from coupling.machine.solids import force_findings, machine_findings, unbalance_findings
-from coupling.machine.thrust import ThrustPair, require_thrust_carried
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import periodic_response
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.operating_point_search import solve_operating_point
-from coupling.statics.static_model import (
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
+from gearwhine.coupling.machine.solids import force_findings, machine_findings, unbalance_findings
+from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
+from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.shooting import periodic_response
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.operating_point_search import solve_operating_point
+from gearwhine.coupling.statics.static_model import (
     StaticGear,
     StaticPair,
     StaticShaftPart,
     static_bearing,
     static_pair,
 )
-from coupling.time.histories import histories, transient_outputs
-from coupling.time.settings import TransientSettings
-from coupling.time.transient import Motion, simulate
-from housing import HousingModes
-from housing.own_copies import keep_tuples
-from numerics.findings import Finding, Instance, Number, attribute_findings, refuse
-from rotors import Coupling, EquilibriumError, Rotor, modal_rotor
-from rotors.analyses.static_stiffness import static_shaft
-from rotors.analyses.unbalance import bow_shape
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.transient import Motion, simulate
+from gearwhine.housing import HousingModes
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.findings import Finding, Instance, Number, attribute_findings, refuse
+from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
+from gearwhine.rotors.analyses.static_stiffness import static_shaft
+from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -105,7 +110,7 @@ class Machine:
         Driving torque on the first driver's shaft [N m]; negative where it brakes.
     outputs : sequence of Output
         Shafts where the torque leaves; by default the shafts that drive no other, with equal power.
-    housing : housing.HousingModes or HousingComponent, optional
+    housing : gearwhine.housing.HousingModes or HousingComponent, optional
     torque_at : float
         Station of the input torque, from the left end of its shaft [m].
     forces : sequence of ShaftForce
@@ -118,9 +123,9 @@ class Machine:
         twice, both gears of a pair sit on one shaft, faces are not in one plane, outputs do not balance the torque or
         nothing takes it, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
         that is off its shaft, or nothing carries the thrust of helical gears.
-    coupling.gears.GearError
+    gearwhine.coupling.gears.GearError
         Where the gears of a pair do not fit each other at the distance of their shafts.
-    rotors.RotorError
+    gearwhine.rotors.RotorError
         Where a gear, bearing or torque is beyond the end of its shaft.
     """
 
@@ -355,8 +360,8 @@ class Machine:
         Raises
         ------
         CouplingError
-            As :func:`coupling.assemble_machine`.
-        rotors.RotorError
+            As :func:`gearwhine.coupling.assemble_machine`.
+        gearwhine.rotors.RotorError
             Where a bearing's table over speed does not reach as far as the speeds.
         """
         pairs = self.loaded_pairs() if pairs is None else pairs
@@ -407,7 +412,7 @@ class Machine:
             Where a load drives a motion that nothing holds, or the torques do not load the gears.
         EquilibriumNotFoundError
             Where no equilibrium is found, or the forces do not balance.
-        rotors.EquilibriumError
+        gearwhine.rotors.EquilibriumError
             Where a rolling bearing is loaded beyond its theory.
         """
         pairs = []
@@ -444,7 +449,7 @@ class Machine:
 
         Raises
         ------
-        EquilibriumNotFoundError, rotors.EquilibriumError
+        EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
             As :meth:`operating_point`.
         """
         outputs = [output if output.torque is None else replace(output, torque=0.0) for output in self.outputs]
@@ -479,7 +484,7 @@ class Machine:
 
         Raises
         ------
-        CouplingError, EquilibriumNotFoundError, rotors.EquilibriumError
+        CouplingError, EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
             As :meth:`operating_point`; and where a bearing leaves its shaft loose under its load.
         """
         point = self.operating_point(gravity) if point is None else point
@@ -526,7 +531,7 @@ class Machine:
         return self._linearised.assemble()
 
     def modes(self) -> CoupledModes:
-        """Complex natural modes about the mean contact, see :func:`coupling.coupled_modes`.
+        """Complex natural modes about the mean contact, see :func:`gearwhine.coupling.coupled_modes`.
 
         Raises
         ------
@@ -589,7 +594,7 @@ class Machine:
         Parameters
         ----------
         tolerance : float
-            Relative tolerance of the state after a period, see :func:`coupling.periodic_response`.
+            Relative tolerance of the state after a period, see :func:`gearwhine.coupling.periodic_response`.
 
         Raises
         ------
@@ -621,7 +626,7 @@ class Machine:
             Least number of samples of the record in a revolution, doubled until no excitation folds down to a lower
             frequency; the largest step is the interval of so many.
         tolerance : float
-            Tolerance of the local error of a step, see :class:`coupling.TransientSettings`.
+            Tolerance of the local error of a step, see :class:`gearwhine.coupling.TransientSettings`.
         driving : Driving
             Torques that vary, motion of the base, gravity.
 

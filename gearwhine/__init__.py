@@ -26,41 +26,41 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from coupling import CouplingError as CouplingError
-    from coupling import Machine as Machine
-    from coupling import MountedBearing as MountedBearing
-    from coupling import Output as Output
-    from coupling import Shaft as Shaft
-    from coupling import ShaftForce as ShaftForce
-    from coupling import ShaftGear as ShaftGear
-    from coupling.gears import Gear as Gear
-    from coupling.gears import GearError as GearError
-    from coupling.gears.loaded.gear_pair import GearPair as GearPair
     from gearwhine.analyses.result import Result as Result
     from gearwhine.case import Case as Case
     from gearwhine.case import CaseError as CaseError
     from gearwhine.case.units import rpm as rpm
     from gearwhine.case.units import to_rpm as to_rpm
+    from gearwhine.coupling import CouplingError as CouplingError
+    from gearwhine.coupling import Machine as Machine
+    from gearwhine.coupling import MountedBearing as MountedBearing
+    from gearwhine.coupling import Output as Output
+    from gearwhine.coupling import Shaft as Shaft
+    from gearwhine.coupling import ShaftForce as ShaftForce
+    from gearwhine.coupling import ShaftGear as ShaftGear
+    from gearwhine.coupling.gears import Gear as Gear
+    from gearwhine.coupling.gears import GearError as GearError
+    from gearwhine.coupling.gears.loaded.gear_pair import GearPair as GearPair
+    from gearwhine.housing import STEEL as STEEL
+    from gearwhine.housing import Housing as Housing
+    from gearwhine.housing import HousingError as HousingError
+    from gearwhine.housing import Joint as Joint
+    from gearwhine.housing import LumpedMass as LumpedMass
+    from gearwhine.housing import Material as Material
+    from gearwhine.housing import Mount as Mount
+    from gearwhine.housing import Seat as Seat
+    from gearwhine.housing import Sensor as Sensor
+    from gearwhine.housing import Support as Support
+    from gearwhine.meshes import GeometryError as GeometryError
+    from gearwhine.rotors import Bearing as Bearing
+    from gearwhine.rotors import Disc as Disc
+    from gearwhine.rotors import Rotor as Rotor
+    from gearwhine.rotors import RotorError as RotorError
+    from gearwhine.rotors import Segment as Segment
+    from gearwhine.rotors import ShaftMaterial as ShaftMaterial
     from gearwhine.study import Study as Study
     from gearwhine.study import build as build
     from gearwhine.study import load as load
-    from housing import STEEL as STEEL
-    from housing import Housing as Housing
-    from housing import HousingError as HousingError
-    from housing import Joint as Joint
-    from housing import LumpedMass as LumpedMass
-    from housing import Material as Material
-    from housing import Mount as Mount
-    from housing import Seat as Seat
-    from housing import Sensor as Sensor
-    from housing import Support as Support
-    from meshes import GeometryError as GeometryError
-    from rotors import Bearing as Bearing
-    from rotors import Disc as Disc
-    from rotors import Rotor as Rotor
-    from rotors import RotorError as RotorError
-    from rotors import Segment as Segment
-    from rotors import ShaftMaterial as ShaftMaterial
 
 try:
     __version__ = version("gearwhine")
@@ -68,14 +68,14 @@ except PackageNotFoundError:  # run from a checkout that is not installed
     __version__ = "0+unknown"
 
 _HOMES = {
-    "coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftForce", "ShaftGear"),
-    "coupling.gears": ("Gear", "GearError"),
-    "coupling.gears.loaded.gear_pair": ("GearPair",),
+    "gearwhine.coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftForce", "ShaftGear"),
+    "gearwhine.coupling.gears": ("Gear", "GearError"),
+    "gearwhine.coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
     "gearwhine.study": ("Study", "build", "load"),
-    "housing": (
+    "gearwhine.housing": (
         "Housing",
         "HousingError",
         "Joint",
@@ -87,8 +87,8 @@ _HOMES = {
         "Sensor",
         "Support",
     ),
-    "meshes": ("GeometryError",),
-    "rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
+    "gearwhine.meshes": ("GeometryError",),
+    "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

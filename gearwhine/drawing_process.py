@@ -20,9 +20,9 @@ from typing import IO, Any, Self
 import numpy as np
 
 import gearwhine
+from gearwhine.housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 from gearwhine.progress import Progress
-from housing.errors import EncoderUnavailableError, HousingError, RendererUnavailableError
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 _ERRORS = (EncoderUnavailableError, HousingError, RendererUnavailableError)
 _CAPTIONS = ("name", "title", "note", "quantity", "largest")
@@ -58,7 +58,7 @@ def draw_in_process(
 ) -> list[str]:
     """Draw shapes into a folder, and with a name for it also the ``sheet`` of all; the files' names.
 
-    With a view ``beside`` each picture shows both sides, see :func:`housing.pictures.images.render_shapes`.
+    With a view ``beside`` each picture shows both sides, see :func:`gearwhine.housing.pictures.images.render_shapes`.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def _tell(document: dict[str, Any]) -> None:
 
 def _draw(desk: Path) -> list[str]:
     """Draw the task in a folder."""
-    from housing.pictures.images import animate_shapes, render_shapes, render_sheet
+    from gearwhine.housing.pictures.images import animate_shapes, render_shapes, render_sheet
 
     task = json.loads((desk / "task.json").read_text(encoding="utf-8"))
     with np.load(desk / "arrays.npz", allow_pickle=False) as arrays:

@@ -22,10 +22,16 @@ def explain(error: Exception) -> tuple[int, str | None]:
 
     Wrong input is 2. A missing system library, or a result that failed its own proof, is 1 with its advice.
     """
-    from coupling.errors import CouplingError, EquilibriumNotFoundError, ModesError, PeriodicError, TransientError
-    from coupling.gears.errors import ContactAccuracyError, GearError
     from gearwhine.case import CaseError
-    from housing.errors import (
+    from gearwhine.coupling.errors import (
+        CouplingError,
+        EquilibriumNotFoundError,
+        ModesError,
+        PeriodicError,
+        TransientError,
+    )
+    from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
+    from gearwhine.housing.errors import (
         EncoderUnavailableError,
         FactorizationError,
         HealthError,
@@ -34,9 +40,9 @@ def explain(error: Exception) -> tuple[int, str | None]:
         ReductionError,
         RendererUnavailableError,
     )
-    from meshes.errors import GeometryError, MesherUnavailableError
-    from rotors.errors import EquilibriumError, RotorError
-    from rotors.errors import IncompleteModesError as IncompleteRotorModesError
+    from gearwhine.meshes.errors import GeometryError, MesherUnavailableError
+    from gearwhine.rotors.errors import EquilibriumError, RotorError
+    from gearwhine.rotors.errors import IncompleteModesError as IncompleteRotorModesError
 
     if isinstance(error, CaseError):
         count = len(error.problems)

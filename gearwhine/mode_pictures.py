@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
+from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import warning
@@ -18,13 +18,13 @@ from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 
 if TYPE_CHECKING:
+    from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.measured import MappedSurvey
+    from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
     from gearwhine.solve.sensitivity.influences import LoadSensitivity
     from gearwhine.solve.sound.solution import SolvedSound
-    from housing.correlation.comparison import Comparison
-    from housing.measured import MappedSurvey
-    from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
@@ -53,7 +53,7 @@ View = Literal[
     "iso-back-below",
     "iso-opposite",
 ]
-"""Directions of view, see :mod:`housing.pictures.views`."""
+"""Directions of view, see :mod:`gearwhine.housing.pictures.views`."""
 
 _DOMINANT = 8
 _OPPOSITE = {"iso": "iso-opposite"}  # opposite view, for pictures of both sides
@@ -71,7 +71,7 @@ def check_request(
     ------
     CaseError
         For numbers of modes that are none, lines as models or below zero, or measured shapes without a survey.
-    housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
+    gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
         Where no renderer or encoder is available.
     """
     if which not in (None, "dominant", "all"):
@@ -92,11 +92,11 @@ def check_request(
                 [Problem("measured.file", UNSAID, "a survey with points and shapes, for render --measured")]
             )
     if mode_format != "glb" and (which is not None or lines):
-        from housing.pictures.scene import find_renderer
+        from gearwhine.housing.pictures.scene import find_renderer
 
         find_renderer()
     if mode_format == "mp4":
-        from housing.pictures.images import find_encoder
+        from gearwhine.housing.pictures.images import find_encoder
 
         find_encoder()
 
@@ -145,11 +145,11 @@ def draw_modes(
         numbers = parse_numbers(which, count)
     numbers = sorted({*numbers, *besides})
     if mode_format == "glb":
-        from housing.pictures.gltf import write_mode_models
+        from gearwhine.housing.pictures.gltf import write_mode_models
 
         return [path.name for path in write_mode_models(housing.mesh, housing.modes, numbers, place, housing.up)]
     from gearwhine.drawing_process import draw_in_process
-    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+    from gearwhine.housing.pictures.drawn_shapes import drawn_housing, drawn_modes
 
     surface = drawn_housing(housing.mesh, housing.up)
     shapes = drawn_modes(surface, housing.modes, numbers, notes)
@@ -173,8 +173,8 @@ def draw_lines(
     CaseError
         As :func:`gearwhine.solve.operating_shapes.read_spectrum_lines`.
     """
+    from gearwhine.housing.pictures.drawn_shapes import drawn_housing
     from gearwhine.solve.operating_shapes import lines_document, read_spectrum_lines
-    from housing.pictures.drawn_shapes import drawn_housing
 
     lines = read_spectrum_lines(folder, frequencies, housing)
     draw_operating_shapes(housing, lines, view, mode_format, place, progress)
@@ -191,8 +191,8 @@ def draw_operating_shapes(
 ) -> list[str]:
     """Draw the housing at lines of a run into ``place``, and name the files: ``line-1283.3Hz.png`` and so on."""
     from gearwhine.drawing_process import draw_in_process
+    from gearwhine.housing.pictures.drawn_shapes import drawn_housing
     from gearwhine.solve.operating_shapes import operating_shape_of_line
-    from housing.pictures.drawn_shapes import drawn_housing
 
     surface = drawn_housing(housing.mesh, housing.up)
     shapes = [operating_shape_of_line(line, housing.modes, surface) for line in lines]
@@ -207,11 +207,11 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
     folder : path
         Results folder; the list is empty where it holds no readable modes of a housing.
     """
+    from gearwhine.housing.errors import ModeFileError
+    from gearwhine.housing.pictures.drawn_shapes import drawn_housing, drawn_modes
+    from gearwhine.housing.pictures.gltf import light_model
+    from gearwhine.housing.storage.mode_file import read_modes
     from gearwhine.solve.operating_shapes import operating_shape_of_line, stored_lines
-    from housing.errors import ModeFileError
-    from housing.pictures.drawn_shapes import drawn_housing, drawn_modes
-    from housing.pictures.gltf import light_model
-    from housing.storage.mode_file import read_modes
 
     try:
         record = read_modes(folder / MODE_CACHE_FILE)
@@ -235,7 +235,7 @@ def draw_load_pictures(
     Without a renderer a warning says that pictures are missing; numbers and figures remain.
     """
     from gearwhine.drawing_process import one_process
-    from housing.errors import RendererUnavailableError
+    from gearwhine.housing.errors import RendererUnavailableError
 
     if housing is None or solved.point.housing is None:
         return []
@@ -266,11 +266,11 @@ def draw_deflection(
 
     Raises
     ------
-    housing.errors.RendererUnavailableError
+    gearwhine.housing.errors.RendererUnavailableError
         Where no renderer is available.
     """
     from gearwhine.drawing_process import draw_in_process
-    from housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
+    from gearwhine.housing.pictures.drawn_shapes import DRAWN_SCALE, DrawnShape, drawn_housing
 
     surface = drawn_housing(housing.mesh, housing.up)
     motion = housing.modes.displacement(coordinates, surface.nodes)
@@ -304,12 +304,12 @@ def draw_sensitivity(
 
     Raises
     ------
-    housing.errors.RendererUnavailableError
+    gearwhine.housing.errors.RendererUnavailableError
         Where no renderer is available.
     """
     from gearwhine.drawing_process import draw_in_process
     from gearwhine.figures.style import shortened
-    from housing.pictures.drawn_shapes import DrawnShape, drawn_housing
+    from gearwhine.housing.pictures.drawn_shapes import DrawnShape, drawn_housing
 
     assert solved.sensitivity is not None
     if solved.sensitivity.density is None or solved.point.housing is None:
@@ -345,7 +345,7 @@ def draw_sensitivity(
 def _line_shapes(sensitivity: "LoadSensitivity", nodes: npt.NDArray[np.int64]) -> "Iterator[list[DrawnShape]]":
     """Change of the level of the sensor's line and of the sound that are ranked, by material on the surface."""
     from gearwhine.figures.style import shortened
-    from housing.acoustics.sound_levels import power_level
+    from gearwhine.housing.acoustics.sound_levels import power_level
 
     if sensitivity.lines is None:
         return
@@ -375,7 +375,7 @@ def _level_shape(
     name: str, title: str, now: str, motion: npt.NDArray[np.complex128], density: FloatArray
 ) -> "list[DrawnShape]":
     """Change of a level by material on the surface [dB/m³], on the housing's motion at its line."""
-    from housing.pictures.drawn_shapes import DrawnShape
+    from gearwhine.housing.pictures.drawn_shapes import DrawnShape
 
     values = _PER_MM_DM2 * 1e-6 * density
     largest = float(np.quantile(np.abs(values), _SHOWN_PART))
@@ -406,7 +406,7 @@ def draw_sound_pictures(
     progress : callable
     """
     from gearwhine.drawing_process import draw_in_process
-    from housing.errors import RendererUnavailableError
+    from gearwhine.housing.errors import RendererUnavailableError
 
     shapes = _intensity_shapes(solved)
     try:
@@ -422,7 +422,7 @@ def draw_sound_pictures(
 
 def _radiating_surface(solved: "SolvedSound", up: Sequence[float] = (0.0, 1.0, 0.0)) -> "DrawnHousing":
     """Return the triangles of all radiating surfaces."""
-    from housing.pictures.drawn_shapes import DrawnHousing
+    from gearwhine.housing.pictures.drawn_shapes import DrawnHousing
 
     surfaces = [elements.surface for elements in solved.radiation.elements]
     starts = np.cumsum([0, *(len(surface.points) for surface in surfaces)])
@@ -433,8 +433,8 @@ def _radiating_surface(solved: "SolvedSound", up: Sequence[float] = (0.0, 1.0, 0
 
 def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
     """Mean sound intensity out of the surface over all lines, and at each of the loudest."""
-    from housing.acoustics.sound_levels import power_level
-    from housing.pictures.drawn_shapes import DrawnShape
+    from gearwhine.housing.acoustics.sound_levels import power_level
+    from gearwhine.housing.pictures.drawn_shapes import DrawnShape
 
     lines = sorted((line for line in solved.lines if line.sound.power > 0.0), key=lambda line: -line.sound.power)
     if not lines:
@@ -491,9 +491,9 @@ def draw_measured(
         Where no measured mode has a partner.
     """
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
+    from gearwhine.housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
+    from gearwhine.housing.pictures.views import viewing_direction
     from gearwhine.solve.comparison import mapped_shapes, read_measured
-    from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
-    from housing.pictures.views import viewing_direction
 
     measured = read_measured(case)
     if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:

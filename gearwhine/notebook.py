@@ -15,9 +15,9 @@ from gearwhine.output.report.elements import fragment
 from gearwhine.output.sections import Column, Finding, Section, table_of
 
 if TYPE_CHECKING:
-    from coupling import Machine
     from gearwhine.case import Case
-    from housing import HousingModes
+    from gearwhine.coupling import Machine
+    from gearwhine.housing import HousingModes
 
 _MM = 1e3
 _MOST_MODES = 30
@@ -36,8 +36,8 @@ def register() -> None:
     if shell is None:
         return
     formatter = shell.display_formatter.formatters["text/html"]
-    formatter.for_type_by_name("coupling.machine_description", "Machine", machine_html)
-    formatter.for_type_by_name("housing.housing", "HousingModes", modes_html)
+    formatter.for_type_by_name("gearwhine.coupling.machine_description", "Machine", machine_html)
+    formatter.for_type_by_name("gearwhine.housing.housing", "HousingModes", modes_html)
     formatter.for_type_by_name("gearwhine.case.model", "Case", case_html)
 
 

@@ -14,10 +14,12 @@ from gearwhine.case import Case, CaseSource, LoadedCase, load_case
 from gearwhine.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from coupling import Machine
     from gearwhine.analyses.case import Format
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
+    from gearwhine.coupling import Machine
+    from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
     from gearwhine.output.export import Signals
     from gearwhine.solve.case_summary import CheckedCase
@@ -31,8 +33,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.steady_state import SolvedSteady
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
-    from housing.correlation.comparison import Comparison
-    from meshes import Mesh
 
 
 def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequence[str] = ()) -> Study:

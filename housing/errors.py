@@ -1,6 +1,6 @@
 """Errors of the housing's model, its modes and its measured data."""
 
-from numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError
 
 
 class HousingError(RefusedPartError):

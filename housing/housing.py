@@ -12,23 +12,23 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.assembly import assemble
-from housing.fem.matrices import Matrices
-from housing.material import Material, element_constants, enclosed_volume, mass_properties
-from housing.model.bolted_joints import bolted_joint
-from housing.model.bushings import Bushing, Joint, Mount
-from housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
-from housing.model.patches import Patch, rigid_motions
-from housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
-from housing.model.supports import Support
-from housing.modes.discretisation_error import discretisation_errors, fixture_nodes
-from housing.modes.effective_mass import damping_ratios, modal_damping
-from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
-from housing.modes.health import HealthReport, health_report
-from housing.modes.natural_modes import ModeSet, solve_modes
-from housing.own_copies import keep_tuples
-from meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.assembly import assemble
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.material import Material, element_constants, enclosed_volume, mass_properties
+from gearwhine.housing.model.bolted_joints import bolted_joint
+from gearwhine.housing.model.bushings import Bushing, Joint, Mount
+from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
+from gearwhine.housing.model.patches import Patch, rigid_motions
+from gearwhine.housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
+from gearwhine.housing.model.supports import Support
+from gearwhine.housing.modes.discretisation_error import discretisation_errors, fixture_nodes
+from gearwhine.housing.modes.effective_mass import damping_ratios, modal_damping
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
+from gearwhine.housing.modes.health import HealthReport, health_report
+from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Housing:
 
     Attributes
     ----------
-    mesh : meshes.Mesh
+    mesh : gearwhine.meshes.Mesh
         Mesh of the solid, with a surface for each seat.
     material : Material
         Material of all elements that are in no volume of ``materials``.
@@ -123,7 +123,7 @@ class Housing:
 
         Raises
         ------
-        meshes.GeometryError
+        gearwhine.meshes.GeometryError
             Where the file cannot be read or meshed, or has no bore where a seat is said to be.
         HousingError
             As :class:`Housing`.
@@ -158,7 +158,7 @@ class Housing:
 
         Raises
         ------
-        meshes.GeometryError
+        gearwhine.meshes.GeometryError
             Where the file cannot be read, or has no bore where a seat is said to be.
         HousingError
             As :class:`Housing`.
@@ -182,7 +182,7 @@ class Housing:
 
         Raises
         ------
-        meshes.GeometryError
+        gearwhine.meshes.GeometryError
             Where the box cannot be meshed.
         HousingError
             As :class:`Housing`.
@@ -206,7 +206,7 @@ class Housing:
 
         Raises
         ------
-        HousingError, meshes.GeometryError
+        HousingError, gearwhine.meshes.GeometryError
             Where a fixture finds no place on the mesh.
         """
         return attach_fixtures(self.free_matrices() if free is None else free, self.mesh, self.fixtures)
@@ -240,7 +240,7 @@ class Housing:
             Places where the machine bears on the housing: for each bearing, its seat and its distance along z from the
             centre of the seat [m]. By default each seat stands for one bearing at its centre.
         solver : {"lanczos", "eigsh"}
-            Eigensolver, see :func:`housing.solve_modes`.
+            Eigensolver, see :func:`gearwhine.housing.solve_modes`.
         progress : callable
             Called with a line of text before each step.
 
@@ -435,7 +435,7 @@ def cover_joints(
 
     Parameters
     ----------
-    box : meshes.BoxGeometry
+    box : gearwhine.meshes.BoxGeometry
     material : Material
         Material of the housing.
     bolt_material, cover_material : Material, optional

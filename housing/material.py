@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from meshes import Mesh
-from meshes.shape_functions import element_moments, quadrature, shape_functions
-from numerics.findings import Finding, refuse
-from numerics.materials import material_findings
+from gearwhine.housing.errors import HousingError
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.shape_functions import element_moments, quadrature, shape_functions
+from gearwhine.numerics.findings import Finding, refuse
+from gearwhine.numerics.materials import material_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -155,7 +155,7 @@ def mass_properties(mesh: Mesh, material: Material, materials: Mapping[str, Mate
     Parameters
     ----------
     mesh, material, materials
-        As for :func:`housing.assemble`.
+        As for :func:`gearwhine.housing.assemble`.
     """
     density = element_constants(mesh, material, materials or {})[2]
     moments = [element_moments(mesh.points, block.nodes, block.kind) for block in mesh.blocks]

@@ -11,9 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from meshes.elements import Facets, FloatArray, IntArray, facet_centers, facet_corners, facet_normals, pick_facets
-from meshes.errors import GeometryError
-from meshes.mesh import Mesh
+from gearwhine.meshes.elements import (
+    Facets,
+    FloatArray,
+    IntArray,
+    facet_centers,
+    facet_corners,
+    facet_normals,
+    pick_facets,
+)
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.mesh import Mesh
 
 BoolArray = npt.NDArray[np.bool_]
 

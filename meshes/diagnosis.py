@@ -12,11 +12,11 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from meshes.elements import FloatArray, IntArray, facet_corners, group_rows
-from meshes.lengths import UNITS, length_text, plausible
-from meshes.mesh import Mesh, MeshDefect, Severity, mesh_defect, place_text
-from meshes.quality import edge_lengths, shape_numbers
-from meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
+from gearwhine.meshes.elements import FloatArray, IntArray, facet_corners, group_rows
+from gearwhine.meshes.lengths import UNITS, length_text, plausible
+from gearwhine.meshes.mesh import Mesh, MeshDefect, Severity, mesh_defect, place_text
+from gearwhine.meshes.quality import edge_lengths, shape_numbers
+from gearwhine.meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
 
 _NEAR = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
 

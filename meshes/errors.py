@@ -1,6 +1,6 @@
 """Errors of geometries and meshes."""
 
-from numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError
 
 
 class GeometryError(RefusedPartError):

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from scipy import sparse
 
-from meshes.elements import (
+from gearwhine.meshes.elements import (
     ElementBlock,
     FaceTable,
     Facets,
@@ -23,8 +23,8 @@ from meshes.elements import (
     facets_of,
     outside_nodes,
 )
-from meshes.errors import GeometryError
-from meshes.shape_functions import volumes
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.shape_functions import volumes
 
 Severity = Literal["error", "warning"]
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from meshes.bores import CylindricalBore, describe_bore, find_bores, fits_circle, joined_by_span, unit_vector
-from meshes.elements import Facets, FloatArray, facet_centers, facet_corners, facet_normals, pick_facets
-from meshes.errors import GeometryError
-from meshes.mesh import Mesh
+from gearwhine.meshes.bores import CylindricalBore, describe_bore, find_bores, fits_circle, joined_by_span, unit_vector
+from gearwhine.meshes.elements import Facets, FloatArray, facet_centers, facet_corners, facet_normals, pick_facets
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.mesh import Mesh
 
 _PLANE_SLACK = 1e-4  # part of the mesh's diagonal
 _NORMAL = 0.99  # least cosine between a facet's normal and that of the plane it lies on

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from meshes.elements import KINDS, FloatArray, IntArray
+from gearwhine.meshes.elements import KINDS, FloatArray, IntArray
 
 
 def shape_functions(kind: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:

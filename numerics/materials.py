@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from numerics.findings import Finding, Number, Part
+from gearwhine.numerics.findings import Finding, Number, Part
 
 _SOFTEST, _STIFFEST = 0.5e9, 1.3e12  # Pa
 _LIGHTEST, _HEAVIEST = 300.0, 23e3  # kg/m³

@@ -23,43 +23,43 @@ Each analysis returns a frozen result with the certificate that no mode is missi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Sub-packages, each of which imports only those before it: ``rotors.numerics``, ``rotors.model`` (description),
-``rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count), ``rotors.rolling_bearings``, ``rotors.ross``
-(file exchange), ``rotors.modes`` (undamped modes, modal rotor), ``rotors.whirl`` (damped gyroscopic whirl),
-``rotors.analyses``.
+Sub-packages, each of which imports only those before it: ``gearwhine.rotors.numerics``, ``gearwhine.rotors.model``
+(description), ``gearwhine.rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count),
+``gearwhine.rotors.rolling_bearings``, ``gearwhine.rotors.ross`` (file exchange), ``gearwhine.rotors.modes`` (undamped
+modes, modal rotor), ``gearwhine.rotors.whirl`` (damped gyroscopic whirl), ``gearwhine.rotors.analyses``.
 
 The compiled kernels load with the first analysis. Lengths are in m, frequencies and speeds in rad/s. The frame is
 right-handed with z along the shaft.
 """
 
-from rotors.analyses.campbell import Campbell as Campbell
-from rotors.analyses.campbell import campbell as campbell
-from rotors.analyses.critical_speeds import critical_speeds as critical_speeds
-from rotors.analyses.rest_frequencies import rest_frequencies as rest_frequencies
-from rotors.analyses.statics import static_deflection as static_deflection
-from rotors.analyses.torsional_response import torsional_response as torsional_response
-from rotors.analyses.unbalance import unbalance_response as unbalance_response
-from rotors.errors import EquilibriumError as EquilibriumError
-from rotors.errors import IncompleteModesError as IncompleteModesError
-from rotors.errors import RotorError as RotorError
-from rotors.model.bearing import AxisSpring as AxisSpring
-from rotors.model.bearing import Bearing as Bearing
-from rotors.model.bearing import Pedestal as Pedestal
-from rotors.model.bearing import RadialSupport as RadialSupport
-from rotors.model.loads import Unbalance as Unbalance
-from rotors.model.material import ElasticMaterial as ElasticMaterial
-from rotors.model.material import ShaftMaterial as ShaftMaterial
-from rotors.model.segment import Coupling as Coupling
-from rotors.model.segment import Segment as Segment
-from rotors.model.shaft import Disc as Disc
-from rotors.model.shaft import Rotor as Rotor
-from rotors.modes.lateral import solve_lateral_modes as solve_lateral_modes
-from rotors.modes.modal_rotor import ModalRotor as ModalRotor
-from rotors.modes.modal_rotor import modal_rotor as modal_rotor
-from rotors.modes.torsional_and_axial import solve_axial_modes as solve_axial_modes
-from rotors.modes.torsional_and_axial import solve_torsional_modes as solve_torsional_modes
-from rotors.ross.reading import read_ross as read_ross
-from rotors.ross.writing import write_ross as write_ross
-from rotors.whirl.whirl_modes import WhirlModes as WhirlModes
-from rotors.whirl.whirl_modes import WhirlSolver as WhirlSolver
-from rotors.whirl.whirl_modes import solve_whirl as solve_whirl
+from gearwhine.rotors.analyses.campbell import Campbell as Campbell
+from gearwhine.rotors.analyses.campbell import campbell as campbell
+from gearwhine.rotors.analyses.critical_speeds import critical_speeds as critical_speeds
+from gearwhine.rotors.analyses.rest_frequencies import rest_frequencies as rest_frequencies
+from gearwhine.rotors.analyses.statics import static_deflection as static_deflection
+from gearwhine.rotors.analyses.torsional_response import torsional_response as torsional_response
+from gearwhine.rotors.analyses.unbalance import unbalance_response as unbalance_response
+from gearwhine.rotors.errors import EquilibriumError as EquilibriumError
+from gearwhine.rotors.errors import IncompleteModesError as IncompleteModesError
+from gearwhine.rotors.errors import RotorError as RotorError
+from gearwhine.rotors.model.bearing import AxisSpring as AxisSpring
+from gearwhine.rotors.model.bearing import Bearing as Bearing
+from gearwhine.rotors.model.bearing import Pedestal as Pedestal
+from gearwhine.rotors.model.bearing import RadialSupport as RadialSupport
+from gearwhine.rotors.model.loads import Unbalance as Unbalance
+from gearwhine.rotors.model.material import ElasticMaterial as ElasticMaterial
+from gearwhine.rotors.model.material import ShaftMaterial as ShaftMaterial
+from gearwhine.rotors.model.segment import Coupling as Coupling
+from gearwhine.rotors.model.segment import Segment as Segment
+from gearwhine.rotors.model.shaft import Disc as Disc
+from gearwhine.rotors.model.shaft import Rotor as Rotor
+from gearwhine.rotors.modes.lateral import solve_lateral_modes as solve_lateral_modes
+from gearwhine.rotors.modes.modal_rotor import ModalRotor as ModalRotor
+from gearwhine.rotors.modes.modal_rotor import modal_rotor as modal_rotor
+from gearwhine.rotors.modes.torsional_and_axial import solve_axial_modes as solve_axial_modes
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_modes as solve_torsional_modes
+from gearwhine.rotors.ross.reading import read_ross as read_ross
+from gearwhine.rotors.ross.writing import write_ross as write_ross
+from gearwhine.rotors.whirl.whirl_modes import WhirlModes as WhirlModes
+from gearwhine.rotors.whirl.whirl_modes import WhirlSolver as WhirlSolver
+from gearwhine.rotors.whirl.whirl_modes import solve_whirl as solve_whirl

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import IncompleteModesError
+from gearwhine.rotors.errors import IncompleteModesError
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,10 +35,10 @@ class ModeCertificate:
         shape, both integrated along the shaft; zero of rigid motions. Whirl: largest last correction of a root of the
         exact equations, relative to the root.
     method : str
-        ``"wittrick-williams"``: the root count of `rotors.transfer_matrix.wittrick_williams`. ``"inertia"``: the same
-        count of the Hermitian dynamic stiffness (`rotors.whirl.completeness`). ``"winding"``: the argument principle
-        (`rotors.whirl.argument_principle`). ``"crossings"``: crossings of a Campbell diagram, whose branches are
-        proved.
+        ``"wittrick-williams"``: the root count of `gearwhine.rotors.transfer_matrix.wittrick_williams`. ``"inertia"``:
+        the same count of the Hermitian dynamic stiffness (`gearwhine.rotors.whirl.completeness`). ``"winding"``: the
+        argument principle (`gearwhine.rotors.whirl.argument_principle`). ``"crossings"``: crossings of a Campbell
+        diagram, whose branches are proved.
     orthonormality : float
         Largest entry of |Φᵀ M Φ − I|; zero for whirl, whose modes have no such products.
     """

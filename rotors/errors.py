@@ -3,7 +3,7 @@
 import math
 import numbers
 
-from numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError
 
 
 class RotorError(RefusedPartError):

@@ -11,19 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.periodic import periodic_response
-from coupling.time.settings import Method
 from gearwhine.cli import run_command
-from housing.acoustics.boundary_elements import BoundaryElements
-from housing.acoustics.boundary_integrals import solid_angles
-from housing.acoustics.medium import HardPlane
-from housing.acoustics.radiating_surface import RadiatingSurface
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.periodic import periodic_response
+from gearwhine.coupling.time.settings import Method
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
+from gearwhine.housing.acoustics.boundary_integrals import solid_angles
+from gearwhine.housing.acoustics.medium import HardPlane
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, solve_whirl
 
 MASS = Component("mass", ("torsion",), np.zeros((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))
 HELD = Component("mass", ("torsion",), np.ones((1, 1)), np.full((1, 1), 0.2), np.zeros((1, 1)))

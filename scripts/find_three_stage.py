@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 import gearwhine as gw
-from rotors import solve_lateral_modes, solve_torsional_modes
+from gearwhine.rotors import solve_lateral_modes, solve_torsional_modes
 
 FloatArray = npt.NDArray[np.float64]
 

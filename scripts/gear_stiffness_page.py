@@ -10,10 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling.gears import Gear, GearPairGeometry, StiffnessModel, mesh_stiffness, stiffness_model, tooth_contact
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    StiffnessModel,
+    mesh_stiffness,
+    stiffness_model,
+    tooth_contact,
+)
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 PAGE = Path(__file__).parent.parent / "docs" / "gear-stiffness.md"
 FIGURE = PAGE.parent / "images" / "gear-stiffness.png"

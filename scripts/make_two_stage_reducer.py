@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 TARGET = Path(__file__).parents[1] / "gearwhine" / "cases" / "two-stage-reducer.step"
 SOLIDS = ("lower housing", "upper housing", "inspection cover")

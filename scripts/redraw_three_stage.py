@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gearwhine as gw
-from coupling import amplitude_spectrum
-from coupling.signals.peaks import spectral_peaks
+from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.signals.peaks import spectral_peaks
 
 ORBIT_REVOLUTIONS = 5
 LAST_HZ = 1024.0

@@ -8,8 +8,8 @@ python=$1
 missing() {
     "$python" - <<'PY'
 import ctypes, sys
-from meshes.errors import MesherUnavailableError
-from meshes.gmsh_meshing import SYSTEM_PACKAGES, load_gmsh
+from gearwhine.meshes.errors import MesherUnavailableError
+from gearwhine.meshes.gmsh_meshing import SYSTEM_PACKAGES, load_gmsh
 packages = []
 try:
     load_gmsh()

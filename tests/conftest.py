@@ -17,8 +17,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import settings
 
-from meshes import ElementBlock, Mesh
-from meshes.elements import KINDS, ElementKind
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import KINDS, ElementKind
 
 # The same examples in every run, however slow the machine; `--hypothesis-profile=explore` looks for new ones.
 settings.register_profile("fixed", deadline=None, derandomize=True, max_examples=50)

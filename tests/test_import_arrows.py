@@ -22,10 +22,16 @@ def imported_rooms(path: Path) -> set[str]:
     names: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names |= {alias.name.split(".")[0] for alias in node.names}
+            names |= {room_of(alias.name) for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            names.add(node.module.split(".")[0])
+            names |= {room_of(f"{node.module}.{alias.name}") for alias in node.names}
     return names & set(ALLOWED)
+
+
+def room_of(module: str) -> str:
+    """Return the room of a module: gearwhine.housing.modes is of housing, gearwhine.case of the front door."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "gearwhine" and parts[1:2] and parts[1] in ALLOWED else parts[0]
 
 
 @pytest.mark.parametrize("room", ALLOWED)
@@ -35,6 +41,17 @@ def test_a_room_imports_only_what_its_arrows_allow(room: str) -> None:
     for path in files:
         forbidden = imported_rooms(path) - ALLOWED[room] - {room}
         assert not forbidden, f"{path.relative_to(ROOT)} imports {sorted(forbidden)}"
+
+
+def test_the_rooms_are_imported_as_parts_of_the_package() -> None:
+    """PyPI has a ``housing``, a ``coupling`` and a ``meshes`` of others, and a user's folder may have such a file."""
+    folders = (*ALLOWED, "tests", "scripts", "benchmarks", "docs")
+    for path in (path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module or ""] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
+            bare = {name for name in names if name.partition(".")[0] in set(ALLOWED) - {"gearwhine"}}
+            assert not bare, f"{path.relative_to(ROOT)} imports {sorted(bare)}; expected gearwhine.…"
 
 
 def loaded_after(statement: str) -> set[str]:
@@ -47,7 +64,7 @@ def loaded_after(statement: str) -> set[str]:
 @pytest.mark.parametrize("room", ["meshes", "housing", "rotors", "coupling", "coupling.gears"])
 def test_importing_a_room_brings_neither_mesher_nor_renderer_nor_compiler(room: str) -> None:
     heavy = {"gmsh", "vtkmodules", "pyvista", "matplotlib", "numba", "pydantic"}
-    assert not loaded_after(f"import {room}") & heavy
+    assert not loaded_after(f"import gearwhine.{room}") & heavy
 
 
 def test_help_imports_nothing_that_takes_long() -> None:
@@ -61,6 +78,7 @@ def test_help_imports_nothing_that_takes_long() -> None:
 
 def module_of(path: Path) -> str:
     parts = path.relative_to(ROOT).with_suffix("").parts
+    parts = parts if parts[0] == "gearwhine" else ("gearwhine", *parts)
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
@@ -138,7 +156,7 @@ def test_no_topic_imports_itself_by_way_of_others() -> None:
     inner = {"a.b.c": {"a.d.e"}, "a.d.f": {"a.b.g"}, "a.d.e": set[str](), "a.b.g": set[str]()}
     assert circles(topic_arrows(inner)["a"]) == [["b", "d"]]
     topics = topic_arrows(arrows(faces=True))
-    assert {"", "coupling", "coupling.gears", "housing", "rotors", "gearwhine", "gearwhine.solve"} <= set(topics)
+    assert {"gearwhine", "gearwhine.coupling.gears", "gearwhine.housing", "gearwhine.solve"} <= set(topics)
     assert {folder: circles(inner) for folder, inner in topics.items() if circles(inner)} == {}
 
 

@@ -1,7 +1,7 @@
 r"""Collocation element of time, compiled: its matrices, contact forces at its Gauss points, defect of their polynomial.
 
 The matrices are exponentials of the modes and their integrals with the element's polynomials, see
-:mod:`coupling.collocation.integration_kernels`.
+:mod:`gearwhine.coupling.collocation.integration_kernels`.
 
 Importing this module imports numba.
 """
@@ -12,7 +12,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import (
+from gearwhine.coupling.collocation.arrays import (
     AT_END,
     AT_ENDS,
     BARYCENTRIC,
@@ -26,10 +26,10 @@ from coupling.collocation.arrays import (
     Steps,
     Work,
 )
-from coupling.connector_forces.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, evaluate_contact
-from coupling.connector_forces.dense_kernels import SUMS, add_rows, solve_in_place
-from coupling.connector_forces.kernel_arrays import Contacts
-from rotors.numerics.compiled import uncounted
+from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, evaluate_contact
+from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, solve_in_place
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.rotors.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -31,7 +31,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import (
+from gearwhine.coupling.collocation.arrays import (
     BINOMIAL,
     GAUSS,
     INSIDE,
@@ -46,7 +46,7 @@ from coupling.collocation.arrays import (
     Trace,
     Work,
 )
-from coupling.collocation.element_kernels import (
+from gearwhine.coupling.collocation.element_kernels import (
     advance,
     advance_to,
     carry_on,
@@ -58,17 +58,23 @@ from coupling.collocation.element_kernels import (
     moments,
     solve_element,
 )
-from coupling.collocation.switch_kernels import (
+from gearwhine.coupling.collocation.switch_kernels import (
     apply_saltation,
     branch,
     first_switch,
     propagate_sensitivity,
     saltation_factor,
 )
-from coupling.connector_forces.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
-from coupling.connector_forces.dense_kernels import SUMS, project
-from coupling.connector_forces.kernel_arrays import DAMPING_LOSS, LARGEST_KINETIC, LOAD_WORK, ROTATION_WORK, Contacts
-from rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, FORCE, PHASE_SLOPE
+from gearwhine.coupling.connector_forces.dense_kernels import SUMS, project
+from gearwhine.coupling.connector_forces.kernel_arrays import (
+    DAMPING_LOSS,
+    LARGEST_KINETIC,
+    LOAD_WORK,
+    ROTATION_WORK,
+    Contacts,
+)
+from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -150,8 +156,9 @@ def integrate_elements(
 ) -> tuple[int, int, int]:
     """Integrate the amplitudes z and their disturbances through elements; slot -1 marks an element of any size.
 
-    Disturbances are laid out as in :mod:`coupling.collocation.switch_kernels`. The trace holds ``stored`` elements at
-    the start. Returns the number of stored elements, the number of cuts, and 0, ``NO_BALANCE`` or ``NO_ROOM``.
+    Disturbances are laid out as in :mod:`gearwhine.coupling.collocation.switch_kernels`. The trace holds ``stored``
+    elements at the start. Returns the number of stored elements, the number of cuts, and 0, ``NO_BALANCE`` or
+    ``NO_ROOM``.
     """
     c = reference.stiffness.size
     count, cuts = stored, 0
@@ -374,9 +381,9 @@ def add_powers(
 ) -> None:
     """Add the work of the loads and the losses without those of the teeth [J], and keep the largest kinetic energy.
 
-    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of :class:`coupling.time.integration.Checkpoint`.
-    Rates of a batch of elements are one product, for their rows do not fit the innermost cache beside an element's
-    matrices.
+    ``excess`` (e, s c) is the trace's, ``totals`` (5,) are those of
+    :class:`gearwhine.coupling.time.integration.Checkpoint`. Rates of a batch of elements are one product, for their
+    rows do not fit the innermost cache beside an element's matrices.
     """
     for first in range(0, trace.start.size, room.weights.shape[0]):
         count = amplitudes_of(steps, trace, excess, free, first, room)

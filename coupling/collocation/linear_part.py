@@ -25,9 +25,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import Reference
-from coupling.errors import CouplingError, PeriodicError
-from coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.collocation.arrays import Reference
+from gearwhine.coupling.errors import CouplingError, PeriodicError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

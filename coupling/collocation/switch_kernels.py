@@ -19,12 +19,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import INSIDE, ORDER, PLACES, Reference, Steps, Work
-from coupling.collocation.element_kernels import end_matrices, interpolated, law
-from coupling.connector_forces.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
-from coupling.connector_forces.dense_kernels import SUMS, solve_part_in_place
-from coupling.connector_forces.kernel_arrays import Contacts
-from rotors.numerics.compiled import uncounted
+from gearwhine.coupling.collocation.arrays import INSIDE, ORDER, PLACES, Reference, Steps, Work
+from gearwhine.coupling.collocation.element_kernels import end_matrices, interpolated, law
+from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
+from gearwhine.coupling.connector_forces.dense_kernels import SUMS, solve_part_in_place
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.rotors.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,15 +1,15 @@
 r"""Rolling-bearing law, compiled: forces and tangent stiffness by the ring's deflections and the cage angle.
 
-The laws of a ball at the azimuth ψ and of a roller's slice are those of :mod:`rotors.rolling_bearings.element_contacts`
-and :mod:`rotors.rolling_bearings.roller_slices`, without inertia. Added is the slope of the energy over ψ, by which the
-rotating cage does work on the balls: with the ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the
-ring's,
+The laws of a ball at the azimuth ψ and of a roller's slice are those of
+:mod:`gearwhine.rotors.rolling_bearings.element_contacts` and :mod:`gearwhine.rotors.rolling_bearings.roller_slices`,
+without inertia. Added is the slope of the energy over ψ, by which the rotating cage does work on the balls: with the
+ball's forces (f_r, f_z) in its plane and its motions (m_r, m_z) by the ring's,
 
     ∂U/∂ψ = f_r ∂m_r/∂ψ + f_z ∂m_z/∂ψ.
 
 The outer ring of a floating bearing takes the place along z at which the elements have no axial force; forces and
-tangent are condensed over it, see :mod:`rotors.rolling_bearings.equilibrium`. As the energy is least there, its slope
-over ψ is that at the place held.
+tangent are condensed over it, see :mod:`gearwhine.rotors.rolling_bearings.equilibrium`. As the energy is least there,
+its slope over ψ is that at the place held.
 
 A gap of radius g around the shaft pushes with F ((r - g) / depth)^n against the radius r.
 
@@ -21,8 +21,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
-from rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.coupling.connector_forces.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
+from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.bearing_kernels import evaluate_bearings
-from coupling.connector_forces.dense_kernels import solve_in_place
-from coupling.connector_forces.kernel_arrays import Bearings, Contacts, Scratch
-from coupling.gears.contact.tooth_force_kernels import (
+from gearwhine.coupling.connector_forces.bearing_kernels import evaluate_bearings
+from gearwhine.coupling.connector_forces.dense_kernels import solve_in_place
+from gearwhine.coupling.connector_forces.kernel_arrays import Bearings, Contacts, Scratch
+from gearwhine.coupling.gears.contact.tooth_force_kernels import (
     friction_shares,
     ranked_penetration,
     tooth_energy,
@@ -19,7 +19,7 @@ from coupling.gears.contact.tooth_force_kernels import (
     tooth_force_and_energy,
     tooth_force_and_tangents,
 )
-from rotors.numerics.compiled import inner
+from gearwhine.rotors.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ _NEWTON_STEPS = 30
 _CONVERGED = 1e-13
 """Error of the deflections, over the largest of them, at which Newton's iteration ends."""
 
-# Columns of the laws' table: results of coupling.gears.contact.tooth_force_kernels.tooth_force.
+# Columns of the laws' table: results of gearwhine.coupling.gears.contact.tooth_force_kernels.tooth_force.
 FORCE, TANGENT, DAMPING, ENERGY, PHASE_SLOPE, TOUCHING = 0, 1, 2, 3, 4, 5
 
 

@@ -1,8 +1,8 @@
 """Plain arrays of the coupled system for the time-stepping kernels, by name.
 
-n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`coupling.time.step_matrices` fills them from
-a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear bearings, e
-in all, then two for each contact with friction.
+n coordinates, c contacts, r connector directions, h harmonic loads; :mod:`gearwhine.coupling.time.step_matrices` fills
+them from a coupled system. Nonlinear laws act along k directions: those of the contacts, then those of b nonlinear
+bearings, e in all, then two for each contact with friction.
 
 Rolling-bearing and gap laws are plain arrays too.
 """
@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
-from coupling.machine.connectors import NonlinearConnector
-from rotors.rolling_bearings import BallRow
+from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
+from gearwhine.coupling.machine.connectors import NonlinearConnector
+from gearwhine.rotors.rolling_bearings import BallRow
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -86,7 +86,7 @@ class Contacts(NamedTuple):
     """The tooth contacts, padded to common lengths."""
 
     direction: FloatArray  # (k, n) Dᵀ, those of bearings and friction included
-    law: FloatArray  # numbers of all laws, one after another: `coupling.gears.contact.lookup_tables`
+    law: FloatArray  # numbers of all laws, one after another: `gearwhine.coupling.gears.contact.lookup_tables`
     law_at: IntArray  # (c,) offset of the law of each contact
     shares_at: IntArray  # (c,) offset of the friction law of each contact; -1 where lines of contact slide as one
     phase: FloatArray  # (c,)
@@ -167,10 +167,10 @@ class Scratch(NamedTuple):
     drag: FloatArray  # (c, 4) slopes of friction
     jacobian: FloatArray  # (e + c, e + c)
     residual: FloatArray  # (e + c, 1)
-    stiffest: FloatArray  # (1,): `coupling.connector_forces.contact_kernels._stiffest`
+    stiffest: FloatArray  # (1,): `gearwhine.coupling.connector_forces.contact_kernels._stiffest`
     tangents: FloatArray  # (b, 5, 5) of bearings
-    bearing_work: FloatArray  # (8, 5): `coupling.connector_forces.bearing_kernels.evaluate_bearings`
-    powers: FloatArray  # (5,): `coupling.time.newmark.evaluate_powers`
+    bearing_work: FloatArray  # (8, 5): `gearwhine.coupling.connector_forces.bearing_kernels.evaluate_bearings`
+    powers: FloatArray  # (5,): `gearwhine.coupling.time.newmark.evaluate_powers`
     powers_before: FloatArray  # (5,)
     block: FloatArray  # (w,)
 

@@ -2,7 +2,7 @@
 
 import math
 
-from numerics.findings import RefusedPartError
+from gearwhine.numerics.findings import RefusedPartError
 
 
 class GearError(RefusedPartError):

@@ -21,7 +21,7 @@ from numpy.polynomial import Chebyshev
 from scipy.fft import dct
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
-from coupling.gears.errors import ContactAccuracyError, GearError
+from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 
 FloatArray = npt.NDArray[np.float64]
 Function = Callable[[FloatArray], FloatArray]

@@ -21,13 +21,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import CouplingError
-from coupling.linear.complex_modes import coupled_modes
-from coupling.linear.eigenpairs import refine_pair
-from coupling.linear.excitation_orders import ExcitationLine, excitation_lines
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
-from rotors.numerics.branch_following import (
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.eigenpairs import refine_pair
+from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.rotors.numerics.branch_following import (
     BranchPoint,
     along_branches,
     extended_branches,
@@ -64,7 +64,7 @@ class ModesAtSpeed:
         Speed [rad/s].
     values : ndarray of complex, shape (m,)
     right, left : ndarray of complex, shapes (m, n)
-        Vectors, normalised as in :class:`coupling.linear.eigenpairs.Eigenpairs`.
+        Vectors, normalised as in :class:`gearwhine.coupling.linear.eigenpairs.Eigenpairs`.
     damping : ndarray, shape (n, n)
         C at that speed.
     """
@@ -216,7 +216,7 @@ class SystemCampbell:
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)
-        Kinds and places as in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kinds and places as in :class:`gearwhine.coupling.linear.complex_modes.CoupledModes`.
     whirl : ndarray, shape (s, b)
         Whirl sense about +z of the rotor that whirls most.
     teeth : ndarray, shape (s, b)
@@ -272,9 +272,10 @@ def system_campbell(
     frequency_limit : float
         Frequency limit: branches below it at some speed are followed [rad/s].
     lines : sequence of ExcitationLine, optional
-        Lines; by default those of :func:`coupling.linear.excitation_orders.excitation_lines`.
+        Lines; by default those of :func:`gearwhine.coupling.linear.excitation_orders.excitation_lines`.
     contact : ContactState, optional
-        Contact at every speed; by default :func:`coupling.statics.mean_mesh.mean_contact` under the machine's load.
+        Contact at every speed; by default :func:`gearwhine.coupling.statics.mean_mesh.mean_contact` under the machine's
+        load.
     progress : callable
         Called with the finished part, from 0 to 1.
 

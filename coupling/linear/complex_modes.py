@@ -25,10 +25,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from coupling.machine.components import RotorComponent
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.machine.components import RotorComponent
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -268,8 +268,8 @@ def coupled_modes(system: CoupledSystem, contact: ContactState | None = None) ->
     ----------
     system : CoupledSystem
     contact : ContactState, optional
-        Contact state: by default :func:`coupling.statics.mean_mesh.mean_contact`, or
-        :func:`coupling.statics.mean_mesh.contact_at` for an instant.
+        Contact state: by default :func:`gearwhine.coupling.statics.mean_mesh.mean_contact`, or
+        :func:`gearwhine.coupling.statics.mean_mesh.contact_at` for an instant.
 
     Raises
     ------
@@ -314,7 +314,7 @@ def whirl_directions(system: CoupledSystem, vectors: ComplexArray, means: FloatA
 
     Counter-clockwise circles have y a quarter turn behind x. With x and y in the same mass-normalised shapes of the
     shaft, the sense is the part of the kinetic energy in such circles less that in the opposite ones. ``vectors`` and
-    ``means`` are those of :func:`coupling.linear.complex_modes.group_bases`: indistinguishable modes have one
+    ``means`` are those of :func:`gearwhine.coupling.linear.complex_modes.group_bases`: indistinguishable modes have one
     sense.
     """
     directions = np.full((len(means), len(system.components)), np.nan)
@@ -385,7 +385,7 @@ class GrowingMode:
     eigenvalue : complex
         λ [1/s]; real for a divergence without oscillation.
     kind, where : str
-        Kind and place as in :class:`coupling.linear.complex_modes.CoupledModes`.
+        Kind and place as in :class:`gearwhine.coupling.linear.complex_modes.CoupledModes`.
     feeders : tuple of (Part, float)
         Parts that feed energy into it, the strongest first, with their negative parts of the damping ratio. For a
         divergence by negative stiffness, those parts with minus their shares of the strain energy.

@@ -5,9 +5,9 @@ model of a line is solved thrice about the mean load,
 
     (K + iω C_s - ω² I) q = f,      C_s = s (C + Cᵀ)/2 + (C - Cᵀ)/2,      s = 1/2, 1, 2,
 
-with the same load f: all that excites the machine at the line (:mod:`coupling.linear.line_mechanisms`), or, where
-nothing does, unit loads along every line of action. The skew part of C is gyroscopic: it does no work and stays. The
-band are the levels for s = 1/2 and s = 2 over that for s = 1 [dB]; 0 lies within. Between resonances it is narrow,
+with the same load f: all that excites the machine at the line (:mod:`gearwhine.coupling.linear.line_mechanisms`), or,
+where nothing does, unit loads along every line of action. The skew part of C is gyroscopic: it does no work and stays.
+The band are the levels for s = 1/2 and s = 2 over that for s = 1 [dB]; 0 lies within. Between resonances it is narrow,
 since mass or stiffness holds the motion there; near one it reaches from -6 to +6 dB.
 """
 
@@ -18,12 +18,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import ModesError
-from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from coupling.linear.frequency_response import SUM_RULE, excitations, superposed
-from coupling.linear.line_mechanisms import LineMechanisms
-from coupling.statics.mean_mesh import linear_matrices
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import ModesError
+from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.frequency_response import SUM_RULE, excitations, superposed
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

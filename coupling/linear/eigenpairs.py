@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import ModesError
+from gearwhine.coupling.errors import ModesError
 
 FloatArray = npt.NDArray[np.float64]
 

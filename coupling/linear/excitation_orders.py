@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import CouplingError
-from coupling.machine.base_motion import BaseHarmonic
-from coupling.machine.driving_frequencies import element_passes as passing_frequencies
-from coupling.machine.loads import TorqueRipple
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.base_motion import BaseHarmonic
+from gearwhine.coupling.machine.driving_frequencies import element_passes as passing_frequencies
+from gearwhine.coupling.machine.loads import TorqueRipple
 
 _TWO_PI = 2.0 * math.pi
 _STANDSTILL = 1e-9  # part of a mesh order below which a sideband is constant in time, and no line

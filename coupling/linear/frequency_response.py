@@ -5,7 +5,8 @@ load (k + iwc) d e, and every contact carries F = (k + iwc)(dᵀq - e), the erro
 force by unit error, d.c. limit k of the mesh in series with the dynamic compliance of the machine behind it.
 
 The receptance H of the coupled system about a contact state is found by direct solution or by mode superposition: q =
-H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of :mod:`coupling.linear.eigenpairs`,
+H(s) f, H(s) = (s² I + s C + K)⁻¹ and s = iw. Superposition uses the expansion of
+:mod:`gearwhine.coupling.linear.eigenpairs`,
 
     H(s) = X / s² - (Σ q pᴴ) / s + Σ q pᴴ / (s - λ),
 
@@ -31,13 +32,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import CouplingError, ModesError
-from coupling.linear.complex_modes import CoupledModes
-from coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
-from rotors.analyses.harmonic_response import at_positive_frequency
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError, ModesError
+from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -62,7 +63,8 @@ def receptance(
     ----------
     system : CoupledSystem
     outputs, inputs : ndarray, shapes (o, n) and (i, n)
-        Directions of motion over the coordinates; see :func:`coupling.machine.coupled_system.embed` for a component's.
+        Directions of motion over the coordinates; see :func:`gearwhine.coupling.machine.coupled_system.embed` for a
+        component's.
     frequencies : ndarray, shape (f,)
         w [rad/s], not 0; the response at -w is the conjugate.
     contact : ContactState, optional
@@ -265,7 +267,7 @@ def mesh_error_response(
     CouplingError
         Where the machine has no such mesh, or it does not touch.
     ModesError
-        As :func:`coupling.linear.frequency_response`.
+        As :func:`gearwhine.coupling.linear.frequency_response`.
     """
     if not 0 <= mesh < len(machine.meshes):
         raise CouplingError(f"gear mesh number {mesh} of {len(machine.meshes)}; expected one of those, from 0")
@@ -295,7 +297,7 @@ def sensor_force_response(
     CouplingError
         Where the housing has no such sensor.
     ModesError
-        As :func:`coupling.linear.frequency_response`.
+        As :func:`gearwhine.coupling.linear.frequency_response`.
     """
     rows = machine.sensor_rows
     if sensor not in rows:

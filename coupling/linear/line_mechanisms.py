@@ -1,6 +1,7 @@
 r"""Mechanisms of spectral lines: what excites a machine at a frequency, and the part of a sensor's line by each.
 
-About the mean load the motion at a frequency ω is linear in what excites it (:mod:`coupling.linear.mesh_harmonics`),
+About the mean load the motion at a frequency ω is linear in what excites it
+(:mod:`gearwhine.coupling.linear.mesh_harmonics`),
 
     (K + iω C - ω² I) q = Σ f_m,      a_m = -ω² s · q_m,
 
@@ -8,9 +9,10 @@ s the row of a sensor, f_m the load of the mechanism m:
 
 - ``transmission_error``: k e d at the harmonics of a mesh, e those of the loaded transmission error of teeth that are
   all alike: of their shape, deflection and changing number in contact;
-- ``load_shuttling``: the moments of a load that moves along the face (:mod:`coupling.machine.load_shuttling`);
+- ``load_shuttling``: the moments of a load that moves along the face
+  (:mod:`gearwhine.coupling.machine.load_shuttling`);
 - ``friction``: Coulomb's friction on the flanks under the mean force, which reverses at the pitch point
-  (:mod:`coupling.machine.tooth_friction`);
+  (:mod:`gearwhine.coupling.machine.tooth_friction`);
 - ``pitch_errors``: k e d of what differs between teeth, by pitch deviations and damage, at the harmonics of the hunting
   period, e the loaded transmission error less that of teeth that are alike; and (k + iω c) e d by the runout of gears;
 - ``unbalance``, ``shaft_bow``, ``torque_ripple``, ``base_motion``: as given.
@@ -28,16 +30,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.assembly import CoupledMachine
-from coupling.gears.loaded.transmission_error import (
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.gears.loaded.transmission_error import (
     LoadedMesh,
     hunting_period_mesh,
     loaded_transmission_error,
     mesh_period_phases,
     polygon_phasors,
 )
-from coupling.linear.mesh_harmonics import MeshHarmonicModel
-from coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.machine.connectors import ContactConnector
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -236,7 +238,7 @@ class LineMechanisms:
     def _alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
         """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
 
-        The friction is μ F (A, B) [N], shape (n, 2), see `coupling.machine.tooth_friction.friction_of`.
+        The friction is μ F (A, B) [N], shape (n, 2), see `gearwhine.coupling.machine.tooth_friction.friction_of`.
         """
         force, meshes = self._force, {}
         for number in self.model.loaded:
@@ -272,7 +274,7 @@ def _friction(contact: ContactConnector, mesh: LoadedMesh) -> FloatArray | None:
     """Friction force of a contact by the phase under its mean force, shape (n, 2) [N]; None without friction."""
     if contact.sliding is None:
         return None
-    from coupling.gears.contact.tooth_force_kernels import friction_history
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
 
     sliding = contact.sliding.friction
     law, by_slices = contact.friction_law

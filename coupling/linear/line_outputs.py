@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.housing_rates import HousingRates
+from gearwhine.coupling.linear.housing_rates import HousingRates
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

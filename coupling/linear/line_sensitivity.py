@@ -1,8 +1,8 @@
 r"""Sensitivity of spectral lines: adjoint gradients of outputs at mesh harmonics, at sensors and in the sound.
 
-A line is an output J(q) of the motion q of :mod:`coupling.linear.mesh_harmonics`, Z q = f, such as the amplitude of a
-sensor or the sound power (:mod:`coupling.linear.line_outputs`), with the adjoint load g: dJ = Re gᵀ dq. One adjoint
-solve for each line gives its derivative by any parameter of the machine,
+A line is an output J(q) of the motion q of :mod:`gearwhine.coupling.linear.mesh_harmonics`, Z q = f, such as the
+amplitude of a sensor or the sound power (:mod:`gearwhine.coupling.linear.line_outputs`), with the adjoint load g: dJ =
+Re gᵀ dq. One adjoint solve for each line gives its derivative by any parameter of the machine,
 
     Zᵀ μ = g,      dJ = Re [μᵀ (df - dZ q)] + ∂J
 
@@ -11,21 +11,22 @@ solve for each line gives its derivative by any parameter of the machine,
 housing's surface; the sound power is that of the same linear lines.
 
 *Housing*: dZ has dK + iω dC - ω² dM of its coordinates, projected, and the motions of its ports
-(:mod:`coupling.linear.housing_rates`). Its modes and residual modes are a fixed basis for the derivative. The output
-errs by the product of what the basis lacks of the motion and of the adjoint field, the derivative by either. So both
-fields must be exact in it, which residual modes of bearings and sensors are nearly, and the harmonic responses of the
-housing's finite-element matrices to the loads of both fields make them
-(:func:`housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of these
-matrices, of which that of any other basis differs by second order.
+(:mod:`gearwhine.coupling.linear.housing_rates`). Its modes and residual modes are a fixed basis for the derivative. The
+output errs by the product of what the basis lacks of the motion and of the adjoint field, the derivative by either. So
+both fields must be exact in it, which residual modes of bearings and sensors are nearly, and the harmonic responses of
+the housing's finite-element matrices to the loads of both fields make them
+(:func:`gearwhine.housing.modes.residual_modes.missing_harmonic_responses`). What is differentiated is then the line of
+these matrices, of which that of any other basis differs by second order.
 
 *Operating point*: where the tangent of a rolling bearing and the gap of flanks are those of the static equilibrium,
 these, and with them k, c, e and the shuttling, change with the deflections there. Their derivatives by bearing
 deflections and approaches of flanks, central differences of the laws, are the gradient of the output by the static
-coordinates; its adjoint (:mod:`coupling.statics.sensitivity`) gives the rest of the derivative. The energy of the
-flanks has continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to which
-short steps converge. k is a second derivative: at each phase it has a step where a slice of the face comes into touch.
-Its mean over a mesh period is continuous, its mean over some phases is constant but for such steps. So its differences
-are taken over ten times as many phases and over many steps, and are good to a tenth of the derivative by a tilt.
+coordinates; its adjoint (:mod:`gearwhine.coupling.statics.sensitivity`) gives the rest of the derivative. The energy of
+the flanks has continuous first derivatives, so e and the shuttling have a derivative by the gap at every phase, to
+which short steps converge. k is a second derivative: at each phase it has a step where a slice of the face comes into
+touch. Its mean over a mesh period is continuous, its mean over some phases is constant but for such steps. So its
+differences are taken over ten times as many phases and over many steps, and are good to a tenth of the derivative by a
+tilt.
 
 A first-order change is right for steps that move no resonance past the line. For others the response is solved anew
 with the matrices changed to first order (:meth:`LineModel.stepped_housing`), which needs no new modes.
@@ -42,18 +43,18 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.errors import CouplingError
-from coupling.gears import ToothContact
-from coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
-from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.linear.housing_rates import HousingRates
-from coupling.linear.line_outputs import LineOutput, SensorAmplitude
-from coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response
-from coupling.machine.connectors import LinearConnector
-from coupling.machine.mesh_face import MeshFace
-from coupling.statics.operating_point import BearingLoad, OperatingPoint
-from coupling.statics.sensitivity import deflection_slope, rigid_slope
-from rotors.rolling_bearings import rolling_state
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears.contact.face_slices import FACE_STATIONS, face_stations, lagrange
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.linear.housing_rates import HousingRates
+from gearwhine.coupling.linear.line_outputs import LineOutput, SensorAmplitude
+from gearwhine.coupling.linear.mesh_harmonics import HARMONICS, MeshHarmonicModel, Response
+from gearwhine.coupling.machine.connectors import LinearConnector
+from gearwhine.coupling.machine.mesh_face import MeshFace
+from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint
+from gearwhine.coupling.statics.sensitivity import deflection_slope, rigid_slope
+from gearwhine.rotors.rolling_bearings import rolling_state
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

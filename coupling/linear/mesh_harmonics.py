@@ -18,16 +18,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.assembly import CoupledMachine
-from coupling.gears import ToothContact
-from coupling.gears.loaded.transmission_error import (
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears.loaded.transmission_error import (
     LoadedMesh,
     hunting_period_mesh,
     loaded_transmission_error,
     mesh_period_phases,
     transmission_error_phasors,
 )
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -1,13 +1,14 @@
 r"""Level at a sensor by the flanks of one gear pair: aim of a tip relief.
 
-About the mean load the motion at the n-th harmonic of a mesh is that of :mod:`coupling.linear.mesh_harmonics`,
+About the mean load the motion at the n-th harmonic of a mesh is that of
+:mod:`gearwhine.coupling.linear.mesh_harmonics`,
 
     Z q = f_n,      f_n = k e_n d + m_n,
 
 e_n the transmission error and m_n the moments of load shuttling of its flanks. Other flanks have other e_n, m_n and
 another law L over the mean approach of the face, its slope and the tilt, the rows Y of shape (3, n)
-(:mod:`coupling.machine.mesh_face`), and with L another Z: of one contact, the update of rank three Z + Yᵀ ΔL Y, whose
-inverse is that of Woodbury,
+(:mod:`gearwhine.coupling.machine.mesh_face`), and with L another Z: of one contact, the update of rank three Z + Yᵀ ΔL
+Y, whose inverse is that of Woodbury,
 
     sᵀ q = p·f - (p Yᵀ) ΔL (I + U Yᵀ ΔL)⁻¹ U f,      Zᵀ p = s,      Zᵀ Uᵀ = Yᵀ,
 
@@ -24,10 +25,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.errors import CouplingError
-from coupling.gears import LoadedMesh, ToothContact
-from coupling.gears.contact.contact_law import law_between_rims
-from coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import LoadedMesh, ToothContact
+from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -85,7 +86,7 @@ class SensorLevel:
             Loaded mesh of the flanks that carry over one mesh period.
         contact : ToothContact
             Contact law of these flanks by their own phase, see
-            :attr:`coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
+            :attr:`gearwhine.coupling.gears.loaded.gear_pair.LoadedGearPair.carrying_flanks`.
         """
         model, number, force = self.model, self._loaded[0], mesh.force
         # The machine has the rims on their hubs beside its contacts.

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from coupling.machine.mounted_parts import MountedBearing
-from rotors.rolling_bearings import BallRow, RollingBearing, Row, SphericalRollerRow
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, Row, SphericalRollerRow
 
 _BOTH = frozenset((1, -1))
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from housing.own_copies import keep_arrays, keep_tuples
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.housing.own_copies import keep_arrays, keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

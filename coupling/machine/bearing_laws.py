@@ -1,7 +1,7 @@
 """Nonlinear bearing laws in the time domain: rolling elements with clearance, and gaps that close.
 
 A law turns the deflections δ of the shaft against its seat (x, y, z and the rotations about x and y) into the forces of
-the shaft on the seat; :mod:`coupling.connector_forces.bearing_kernels` is its compiled form.
+the shaft on the seat; :mod:`gearwhine.coupling.connector_forces.bearing_kernels` is its compiled form.
 """
 
 import math
@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from rotors.rolling_bearings import FourPointRow, RollerRow, RollingState
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.rotors.rolling_bearings import FourPointRow, RollerRow, RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class RollingLaw:
 class GapLaw:
     """Radial gap law of a ring around the shaft: beyond the gap the force is F (penetration / depth)^n.
 
-    :mod:`coupling.connector_forces.bearing_kernels` has its compiled form.
+    :mod:`gearwhine.coupling.connector_forces.bearing_kernels` has its compiled form.
 
     Attributes
     ----------

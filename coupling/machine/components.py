@@ -18,14 +18,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.errors import CouplingError
-from coupling.gears.stiffness.wheel_modes import PlateMode
-from coupling.machine.gear_bodies import GearBody, RimSpring
-from housing import HousingModes, ModeSet
-from rotors import ModalRotor, Pedestal
-from rotors.modes.lateral import LateralModes
-from rotors.modes.modal_rotor import gyroscopic_matrix
-from rotors.modes.torsional_and_axial import AxialModes
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode
+from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
+from gearwhine.housing import HousingModes, ModeSet
+from gearwhine.rotors import ModalRotor, Pedestal
+from gearwhine.rotors.modes.lateral import LateralModes
+from gearwhine.rotors.modes.modal_rotor import gyroscopic_matrix
+from gearwhine.rotors.modes.torsional_and_axial import AxialModes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -282,7 +282,7 @@ def housing_component(
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
     seats, seat_z, sensors, participation, seat_axes
-        See :class:`HousingComponent`; by :meth:`housing.ModeSet.project_all`.
+        See :class:`HousingComponent`; by :meth:`gearwhine.housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
 
@@ -322,7 +322,7 @@ def housing_component(
 
 
 def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
-    """Make the housing's component from its natural modes, see :meth:`housing.Housing.modes`."""
+    """Make the housing's component from its natural modes, see :meth:`gearwhine.housing.Housing.modes`."""
     seats = {seat.name: seat.center for seat in modes.housing.seats}
     return housing_component(
         modes.mode_set,
@@ -403,7 +403,7 @@ def rotor_component(
 
     The rims of gears move on their hubs by φ, as coordinates beside those of the shaft's modes q. With the modes'
     motions τ of the hubs, their stiffness K, and the springs k and inertias S and J_r of the rims
-    (:mod:`coupling.gears.stiffness.rim_on_hub`), whose whole inertia the modes of the shaft contain,
+    (:mod:`gearwhine.coupling.gears.stiffness.rim_on_hub`), whose whole inertia the modes of the shaft contain,
 
         [I, τᵀ S; S τ, J_r] [q''; φ''] + [K, 0; 0, k] [q; φ] = f.
 

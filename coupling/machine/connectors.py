@@ -5,8 +5,8 @@ relative deflections δ = Dᵀ q, and a law that turns deflections, velocities a
 equations of motion, so the two sides feel equal and opposite forces, whatever the law.
 
 The law of a linear bearing is its stiffness and damping matrix, at most 5x5 over x, y, z and the rotations about x and
-y; nonlinear laws of bearings are those of :mod:`coupling.machine.bearing_laws`, that of teeth is
-:class:`coupling.gears.ToothContact`.
+y; nonlinear laws of bearings are those of :mod:`gearwhine.coupling.machine.bearing_laws`, that of teeth is
+:class:`gearwhine.coupling.gears.ToothContact`.
 """
 
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.gears import ToothContact
-from coupling.gears.contact.sliding_friction import SlidingFriction
-from coupling.machine.bearing_laws import BearingLaw
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
+from gearwhine.coupling.machine.bearing_laws import BearingLaw
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +44,8 @@ class LinearConnector:
     offset : ndarray, shape (d,), or None
         Force f₀ of a law that is linearised about a deflection [N]; the system's constant loads contain -D f₀.
     of_contact : int or None
-        Number of the tooth contact whose flanks resist tilting by this connector (:mod:`coupling.machine.mesh_face`).
+        Number of the tooth contact whose flanks resist tilting by this connector
+        (:mod:`gearwhine.coupling.machine.mesh_face`).
     """
 
     name: str
@@ -134,7 +135,7 @@ class NonlinearConnector:
 
 @dataclass(frozen=True)
 class Sliding:
-    """Sliding of the flanks of a tooth contact, see :mod:`coupling.machine.tooth_friction`.
+    """Sliding of the flanks of a tooth contact, see :mod:`gearwhine.coupling.machine.tooth_friction`.
 
     Attributes
     ----------
@@ -159,7 +160,7 @@ class ContactConnector:
 
     With the mesh phase p(t) = phase + f t at a mesh frequency f and the runout error e(t) = Σ a cos(w t + c), the
     compression is δ = dᵀ q - e(t) - clearance and the force is
-    :func:`coupling.gears.contact.tooth_force_kernels.tooth_force`.
+    :func:`gearwhine.coupling.gears.contact.tooth_force_kernels.tooth_force`.
 
     Attributes
     ----------
@@ -176,7 +177,7 @@ class ContactConnector:
     clearance : float
         Compression dᵀ q at which even flanks touch [m]: the backlash, for the back flanks, 0 for the drive flanks. For
         flanks that carry the mean load it includes what their mean tilt adds to the compression at the stiffness
-        centre, where d is taken (:mod:`coupling.machine.mesh_face`).
+        centre, where d is taken (:mod:`gearwhine.coupling.machine.mesh_face`).
     loaded : bool
         Whether these flanks carry the mean load.
     compression_limit : float

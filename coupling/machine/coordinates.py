@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.machine.components import Component, RotorComponent
-from coupling.machine.connectors import LinearConnector, SpeedTable
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad, embed
-from coupling.machine.loads import (
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.components import Component, RotorComponent
+from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad, embed
+from gearwhine.coupling.machine.loads import (
     AnyTorque,
     BowReactions,
     Drive,

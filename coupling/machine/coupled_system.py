@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, NonlinearConnector
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -28,11 +28,11 @@ class HarmonicLoad:
         Circular frequency w at the nominal speeds [rad/s].
     amplitude : ndarray of complex, shape (n,)
     follows : "time", "turning" or "unbalance"
-        Dependence on the speed where it is not the nominal one, see :mod:`coupling.machine.speed_profile`: constant
-        frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w)
-        e^{iws}.
+        Dependence on the speed where it is not the nominal one, see :mod:`gearwhine.coupling.machine.speed_profile`:
+        constant frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i
+        s''/w) e^{iws}.
     mechanism : str
-        What makes it, see :mod:`coupling.linear.line_mechanisms`.
+        What makes it, see :mod:`gearwhine.coupling.linear.line_mechanisms`.
     """
 
     frequency: float

@@ -14,10 +14,10 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import ToothContact
-from coupling.machine.bearing_laws import RollingLaw
-from coupling.machine.coupled_system import CoupledSystem
-from rotors.rolling_bearings import characteristic_frequencies
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.machine.bearing_laws import RollingLaw
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.rotors.rolling_bearings import characteristic_frequencies
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -2,8 +2,8 @@
 
 The load of a mesh is spread over its face. Its mean, its moment and its twist over the face are loads on the sections
 that carry the face; the modes of the shaft are static-exact for a force and a torque in the middle alone (residual
-flexibility: MacNeal 1971). With P the exact static flexibility (:mod:`rotors.analyses.static_stiffness`) and Φ the
-shapes by frequencies ω, each load p lacks
+flexibility: MacNeal 1971). With P the exact static flexibility (:mod:`gearwhine.rotors.analyses.static_stiffness`) and
+Φ the shapes by frequencies ω, each load p lacks
 
     R = pᵀ (P - Σ φ φᵀ / ω²) p,
 
@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.face_slices import DEFAULT_SLICES, face_stations, mean_and_slope
-from rotors import ModalRotor, Rotor
-from rotors.analyses.static_stiffness import static_shaft
+from gearwhine.coupling.gears.contact.face_slices import DEFAULT_SLICES, face_stations, mean_and_slope
+from gearwhine.rotors import ModalRotor, Rotor
+from gearwhine.rotors.analyses.static_stiffness import static_shaft
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -3,28 +3,28 @@
 What a gear's body yields as a whole is strained near its bore, while most of its inertia is near the rim: it lies
 between the shaft and the teeth with their inertia, and not between the teeth of two gears. In motion the rotation of
 the rim against the hub, and its shift across the shaft, are coordinates of the shaft's component
-(:func:`coupling.machine.components.rotor_component`), and the law of the contact loses that part of the compliance
-which pairs of teeth share. Springs in series have the same deflection in either place, so the static equilibrium of one
-pair of gears is that of the complete contact law.
+(:func:`gearwhine.coupling.machine.components.rotor_component`), and the law of the contact loses that part of the
+compliance which pairs of teeth share. Springs in series have the same deflection in either place, so the static
+equilibrium of one pair of gears is that of the complete contact law.
 
 A gear that several pairs share has one rim, which all of them move: an idler passes its torque on without a twist, and
 paths that part at a gear feel its twist alike. Its springs are the stiffest that one of its pairs has by the width of
 the common face, and what is left stays in the others' contact laws. The static machine has such rims, too
-(:func:`coupling.statics.operating_point_search.solve_operating_point`).
+(:func:`gearwhine.coupling.statics.operating_point_search.solve_operating_point`).
 
 The spring stays in the contact law where a body has no inertia of its own at its place, so that there is nothing beside
 the shaft that it could move. Of a gear in one pair it stays there also where the rim on a hub at rest vibrates far
 above the frequencies of the shaft's modes: it responds statically in any place then. The frequency f of a mesh mode
 errs by about half of (f / f_rim)² of itself.
 
-*Out of the plane* a wheel with a web has modes on its hub (:mod:`coupling.gears.stiffness.wheel_modes`): the umbrella,
-tilt and others with nodal diameters. Those below `KEPT_BELOW` times the limit of the shaft's modes are kept; in the
-others the body is rigid, as a disc without a web is. The static machine has them, too: helical teeth tilt a
+*Out of the plane* a wheel with a web has modes on its hub (:mod:`gearwhine.coupling.gears.stiffness.wheel_modes`): the
+umbrella, tilt and others with nodal diameters. Those below `KEPT_BELOW` times the limit of the shaft's modes are kept;
+in the others the body is rigid, as a disc without a web is. The static machine has them, too: helical teeth tilt a
 thin wheel. The umbrella joins the motion of the shaft along its axis and one nodal diameter its tilt in both planes,
 with their coupling inertia and gyroscopic moment, as rims do. A mode with more nodal diameters is a cosine and a sine
 in directions at rest. Its shape rotates with the body, so the rates in the body are D q = q' + n Ω J q, with
-J = [0, 1; -1, 0], and with g of :mod:`coupling.gears.stiffness.wheel_modes`, the part c = n - g of the Coriolis force,
-and the damping ζ of its material,
+J = [0, 1; -1, 0], and with g of :mod:`gearwhine.coupling.gears.stiffness.wheel_modes`, the part c = n - g of the
+Coriolis force, and the damping ζ of its material,
 
     q'' + 2 ζ ω q' + ω² q + 2 Ω g J q' + (n² - 2 n g) Ω² q + 2 ζ ω n Ω J q = f.
 
@@ -32,7 +32,8 @@ Without Coriolis force g = n: an observer at rest sees a standing wave of the bo
 diameter the term of Ω² is left out: what the centrifugal force does to a rim that tilts rigidly cancels it.
 
 Laws of contact count, under loads that vary over the face, the tilt of a body of the full face width
-(:mod:`coupling.gears.stiffness.body_over_face`), beside that of the web here: about (web / face)³ of it twice.
+(:mod:`gearwhine.coupling.gears.stiffness.body_over_face`), beside that of the web here: about (web / face)³ of it
+twice.
 """
 
 from collections.abc import Sequence
@@ -42,9 +43,9 @@ from math import inf, pi, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import Gear
-from coupling.gears.stiffness.rim_on_hub import RimShares
-from coupling.gears.stiffness.wheel_modes import PlateMode, wheel_modes, wheel_section
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.stiffness.rim_on_hub import RimShares
+from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode, wheel_modes, wheel_section
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -64,7 +65,7 @@ class RimSpring:
     stiffness : float
         [N m] of a rotation, [N/m] of a shift.
     coupling_inertia : float
-        S [kg m²] or [kg], see :mod:`coupling.gears.stiffness.rim_on_hub`.
+        S [kg m²] or [kg], see :mod:`gearwhine.coupling.gears.stiffness.rim_on_hub`.
     rim_inertia : float
         J_r [kg m²] or M_r [kg].
     """

@@ -7,8 +7,8 @@ constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
 gears roll without slip, tooth 0 of driver and driven gear lie at angles that are linear in the pair's phase
-(`coupling.gears.geometry.profile.meshing_rotations`), and an angle that is already known gives the phase. Gears that
-close a loop must fit: where teeth would clash, they cannot be assembled.
+(`gearwhine.coupling.gears.geometry.profile.meshing_rotations`), and an angle that is already known gives the phase.
+Gears that close a loop must fit: where teeth would clash, they cannot be assembled.
 """
 
 import math
@@ -18,15 +18,15 @@ from fractions import Fraction
 from math import hypot
 from typing import Literal
 
-from coupling.errors import CouplingError
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.errors import InterferenceError, NoContactError
-from coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
-from coupling.gears.geometry.profile import meshing_rotations
-from coupling.machine.coordinates import trains
-from coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
-from coupling.machine.mounted_parts import GearMesh
-from numerics.findings import Number, Rule, Text, attribute_findings, refuse
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
+from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
+from gearwhine.coupling.gears.geometry.profile import meshing_rotations
+from gearwhine.coupling.machine.coordinates import trains
+from gearwhine.coupling.machine.loads import AnyTorque, Torque, TorqueRipple, largest_torques
+from gearwhine.coupling.machine.mounted_parts import GearMesh
+from gearwhine.numerics.findings import Number, Rule, Text, attribute_findings, refuse
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -443,7 +443,7 @@ def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]
     """Return the sense of rotation of each pair's driver, 1 or -1.
 
     Gears in mesh turn opposite ways, at rest too. There the first pair of a train has the sense that
-    :func:`coupling.gears.geometry.pair.turning_sense` gives its driver, and the others follow.
+    :func:`gearwhine.coupling.gears.geometry.pair.turning_sense` gives its driver, and the others follow.
 
     Parameters
     ----------
@@ -585,7 +585,7 @@ def geometry_on_axes(
     ------
     CouplingError
         Where the gears are not in one plane.
-    coupling.gears.GearError
+    gearwhine.coupling.gears.GearError
         Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
         the shafts.
     """

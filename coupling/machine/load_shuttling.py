@@ -15,9 +15,9 @@ about the driven gear's centre; the moment on the driver is opposite. Both arms 
 the mean force, which stands for F in M: the dynamic part of the force would add a product of two small quantities.
 The flanks are held there: their gap over the face is that of the mean load at every phase. How far the shafts yield to
 the moments, and how the flanks answer that, is the machine's motion, in which the mesh resists tilting
-(:mod:`coupling.machine.mesh_face`); so nothing counts twice. The moments act on the slope of the approach over the
-face, which is the tilt of the shafts and their twist over the face, by z̄, and on their tilt by -h ξ̄. The mean moments
-are those of the mesh's law over its face.
+(:mod:`gearwhine.coupling.machine.mesh_face`); so nothing counts twice. The moments act on the slope of the approach
+over the face, which is the tilt of the shafts and their twist over the face, by z̄, and on their tilt by -h ξ̄. The
+mean moments are those of the mesh's law over its face.
 
 Teeth that are not alike, by pitch deviations or damage, have other arms in each mesh period. The harmonics of the mesh
 are those of the mean of all mesh periods of the hunting period; the sidebands of the arms about them are left out.
@@ -26,10 +26,10 @@ are those of the mean of all mesh periods of the hunting period; the sidebands o
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
-from coupling.gears.contact.contact_law import places_on_line_of_action
-from coupling.gears.loaded.transmission_error import different_periods
-from coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.gears import GearError, GearPairGeometry, ToothContact, loaded_transmission_error
+from gearwhine.coupling.gears.contact.contact_law import places_on_line_of_action
+from gearwhine.coupling.gears.loaded.transmission_error import different_periods
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def shuttling_loads(
     tilting : ndarray, shape (n,) or (2, n)
         Compression of the mesh by each coordinate, for each metre that the load is off the middle of the face, and off
         the pitch point times -h: slope of the approach over the face and tilt of the shafts
-        (:mod:`coupling.machine.mesh_face`). One row stands for both.
+        (:mod:`gearwhine.coupling.machine.mesh_face`). One row stands for both.
     phase : float
         Mesh phase at t = 0 [mesh periods].
     mesh_frequency : float

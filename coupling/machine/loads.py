@@ -1,7 +1,7 @@
 """Loads on a machine by the names of its parts: unbalance, shaft bow, forces, torques and their ripple.
 
-:mod:`coupling.machine.coordinates` turns them into generalised forces, :mod:`coupling.machine.base_motion` does it for
-a moving base and gravity.
+:mod:`gearwhine.coupling.machine.coordinates` turns them into generalised forces,
+:mod:`gearwhine.coupling.machine.base_motion` does it for a moving base and gravity.
 """
 
 from collections.abc import Sequence
@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.machine.base_motion import BaseMotion
-from housing.own_copies import keep_arrays, keep_tuples
-from numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.base_motion import BaseMotion
+from gearwhine.housing.own_copies import keep_arrays, keep_tuples
+from gearwhine.numerics.findings import Number, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -181,7 +181,7 @@ class MachineLoads:
     bows : sequence of BowReactions
     torques : sequence of AnyTorque
     drives : sequence of Drive
-        Stations of the torques that accelerate a train, see :mod:`coupling.machine.coordinates`.
+        Stations of the torques that accelerate a train, see :mod:`gearwhine.coupling.machine.coordinates`.
     base : BaseMotion, optional
         Motion of the ground under bearings, pedestals and the housing's supports.
     gravity : sequence of float, optional

@@ -10,23 +10,25 @@ period of the loads under a mean force F is, linear in y about the mean load,
 
 with a the place of the stiffness centre, K the stiffness that resists tilting about it, F₀ and M₀ the mean force and
 moments on flanks with the gap of the contact's face slices, all of
-:class:`coupling.gears.loaded.face_load.FaceTangent`. The gap is that under the mean load, whether the case gives it or
-the operating point found it, so y₀ is the mean slope in the machine under its mean load; the gap is none of the tilt,
-of which y₀ is 0. The static equilibrium has the same law: its tangent is this one. So the mesh is two connectors: the
-tooth contact F(δ*), whose kernel stays the scalar one and whose direction is that of the stiffness centre, and a linear
-connector over y with the stiffness K and the offset M₀ - a F₀ - K y₀.
+:class:`gearwhine.coupling.gears.loaded.face_load.FaceTangent`. The gap is that under the mean load, whether the case
+gives it or the operating point found it, so y₀ is the mean slope in the machine under its mean load; the gap is none of
+the tilt, of which y₀ is 0. The static equilibrium has the same law: its tangent is this one. So the mesh is two
+connectors: the tooth contact F(δ*), whose kernel stays the scalar one and whose direction is that of the stiffness
+centre, and a linear connector over y with the stiffness K and the offset M₀ - a F₀ - K y₀.
 
 The modes of the shafts are exact in their static response to the force in the middle of the face. What they lack of the
 response to the slope and the tilt, and to the spread of the force, is a compliance R over (δ, y) in series with the
-slices' tangent (:mod:`coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken. R has nothing from
-mesh to mesh of one gear; the shafts have ports at both ends of such a face, so that their modes lack little there.
+slices' tangent (:mod:`gearwhine.coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken. R has
+nothing from mesh to mesh of one gear; the shafts have ports at both ends of such a face, so that their modes lack
+little there.
 
 K resists as long as flanks touch. It is linear about the mean load, so it does not end where a mesh loses contact in
 motion; linear analyses leave it out where the contact has parted. Flanks without a mean load have a and K of all
 slices on the path of contact. The damping of K is that of the contact in proportion to the stiffness.
 
-What the loads do over a mesh period beside their mean is load shuttling (:mod:`coupling.machine.load_shuttling`), of
-flanks that are held at y₀; the machine's motion is their answer. a and K are those of the mean over a mesh period.
+What the loads do over a mesh period beside their mean is load shuttling
+(:mod:`gearwhine.coupling.machine.load_shuttling`), of flanks that are held at y₀; the machine's motion is their answer.
+a and K are those of the mean over a mesh period.
 """
 
 from dataclasses import dataclass, replace
@@ -34,15 +36,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearError, GearPairGeometry, ToothContact
-from coupling.gears.contact.face_slices import face_stations, mean_and_slope
-from coupling.gears.loaded.face_load import FaceContact, FaceTangent
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coordinates import MachineCoordinates
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.machine.load_shuttling import shuttling_loads
-from coupling.machine.mesh_kinematics import LineOfAction
-from coupling.machine.mounted_parts import GearMesh
+from gearwhine.coupling.gears import GearError, GearPairGeometry, ToothContact
+from gearwhine.coupling.gears.contact.face_slices import face_stations, mean_and_slope
+from gearwhine.coupling.gears.loaded.face_load import FaceContact, FaceTangent
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coordinates import MachineCoordinates
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.machine.load_shuttling import shuttling_loads
+from gearwhine.coupling.machine.mesh_kinematics import LineOfAction
+from gearwhine.coupling.machine.mounted_parts import GearMesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -169,7 +171,7 @@ class MeshFace:
         )
 
     def shuttling(self, force: float, phase: float, mesh_frequency: float) -> tuple[FloatArray, list[HarmonicLoad]]:
-        """Moments of load shuttling, see `coupling.machine.load_shuttling.shuttling_loads`."""
+        """Moments of load shuttling, see `gearwhine.coupling.machine.load_shuttling.shuttling_loads`."""
         return shuttling_loads(self.contact, self.geometry, force, self.line.axial, self.tilting, phase, mesh_frequency)
 
 
@@ -179,7 +181,8 @@ def mesh_face(
     """Face of the flanks that a driver closes by a rotation of a sense, with the contact law ``contact``.
 
     ``middle`` is the approach in the middle of the face by each coordinate, shape (n,). The stations of the face move
-    with the sections of the shafts that carry them, as in the static model (:mod:`coupling.statics.static_model`).
+    with the sections of the shafts that carry them, as in the static model
+    (:mod:`gearwhine.coupling.statics.static_model`).
     """
     line = mesh.line_of_action(sense)
     stations = face_stations(mesh.geometry.face_width)

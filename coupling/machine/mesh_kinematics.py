@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry
+from gearwhine.coupling.gears import GearPairGeometry
 
 FloatArray = npt.NDArray[np.float64]
 

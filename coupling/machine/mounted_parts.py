@@ -6,18 +6,18 @@ from math import atan2
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.gears import Gear, GearPairGeometry, ToothContact
-from coupling.gears.contact.face_slices import FaceSlices
-from coupling.gears.geometry.pair import pair_label
-from coupling.machine.bearing_laws import BearingLaw, RollingLaw
-from coupling.machine.face_compliance import FaceCompliance
-from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
-from housing.own_copies import keep_arrays
-from numerics.findings import Instance, Rule, Text, attribute_findings, refuse
-from rotors import Bearing
-from rotors.errors import require_finite
-from rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import Gear, GearPairGeometry, ToothContact
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices
+from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.machine.bearing_laws import BearingLaw, RollingLaw
+from gearwhine.coupling.machine.face_compliance import FaceCompliance
+from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
+from gearwhine.housing.own_copies import keep_arrays
+from gearwhine.numerics.findings import Instance, Rule, Text, attribute_findings, refuse
+from gearwhine.rotors import Bearing
+from gearwhine.rotors.errors import require_finite
+from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class MountedBearing:
 
     Attributes
     ----------
-    bearing : rotors.Bearing
+    bearing : gearwhine.rotors.Bearing
     rotor : str
     seat : str or None
         None for the ground.
@@ -87,13 +87,14 @@ class MountedBearing:
         seat : str or None
             None for the ground.
         rolling : RollingBearing
-            Such as that of :func:`rotors.rolling_bearings.catalogue_bearing`.
+            Such as that of :func:`gearwhine.rotors.rolling_bearings.catalogue_bearing`.
         damping : float, optional
-            Along x and y [N s/m]. By default `rotors.rolling_bearings.ROLLING_DAMPING_TIME` times the stiffness.
+            Along x and y [N s/m]. By default `gearwhine.rotors.rolling_bearings.ROLLING_DAMPING_TIME` times the
+            stiffness.
 
         Raises
         ------
-        rotors.RotorError
+        gearwhine.rotors.RotorError
             For a place or a damping that no bearing has.
         """
         across = 0.0 if damping is None else damping
@@ -163,8 +164,8 @@ class GearMesh:
     behind_rims : float
         Compliance of the rims on their hubs along the line of action [m/N], in series with the contact.
     faces : FaceSlices, optional
-        Slices by which flanks that carry evenly resist tilting, see :mod:`coupling.machine.mesh_face`. By default those
-        of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
+        Slices by which flanks that carry evenly resist tilting, see :mod:`gearwhine.coupling.machine.mesh_face`. By
+        default those of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
     """
 
     driver: MountedGear

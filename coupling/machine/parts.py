@@ -5,25 +5,25 @@ from dataclasses import dataclass, replace
 from math import hypot, pi
 from typing import Protocol
 
-from coupling.errors import CouplingError
-from coupling.gears import Gear
-from coupling.gears.geometry.blank import CoreLength, blank_around
-from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.beam import shear_modulus
-from coupling.machine.base_motion import BaseMotion
-from coupling.machine.components import HousingComponent
-from coupling.machine.gear_train import LARGEST_OFFSET, Output
-from coupling.machine.loads import AnyTorque, Drive, ShaftForce
-from coupling.machine.mounted_parts import MountedBearing
-from housing.own_copies import keep_tuples
-from numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
-from numerics.names import twin_of
-from rotors import Disc, Rotor, Segment
-from rotors import Unbalance as ShaftUnbalance
-from rotors.model.loads import Bow
-from rotors.model.profile import StiffnessDiameter
-from rotors.model.shaft import inertia_findings
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.blank import CoreLength, blank_around
+from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.beam import shear_modulus
+from gearwhine.coupling.machine.base_motion import BaseMotion
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, Output
+from gearwhine.coupling.machine.loads import AnyTorque, Drive, ShaftForce
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.names import twin_of
+from gearwhine.rotors import Disc, Rotor, Segment
+from gearwhine.rotors import Unbalance as ShaftUnbalance
+from gearwhine.rotors.model.loads import Bow
+from gearwhine.rotors.model.profile import StiffnessDiameter
+from gearwhine.rotors.model.shaft import inertia_findings
 
 LATERAL_LIMIT_HZ = 8000.0
 """Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
@@ -37,7 +37,7 @@ class Shaft:
 
     Attributes
     ----------
-    rotor : rotors.Rotor
+    rotor : gearwhine.rotors.Rotor
         Rotor, whose name is the shaft's name.
     axis : tuple of float
         x and y of the shaft's line [m].
@@ -45,8 +45,8 @@ class Shaft:
         z of the left end [m].
     damping_ratio : float
         Modal damping ratio of the shaft's own material and fits, on every mode of the free shaft.
-    unbalances : sequence of rotors.Unbalance
-    bow : rotors.Bow, optional
+    unbalances : sequence of gearwhine.rotors.Unbalance
+    bow : gearwhine.rotors.Bow, optional
     frequency_limit : float, optional
         Highest natural frequency of the retained bending modes [rad/s]; higher modes respond statically. 8 kHz by
         default.
@@ -95,7 +95,7 @@ class ShaftGear:
 
     Attributes
     ----------
-    gear : coupling.gears.Gear
+    gear : gearwhine.coupling.gears.Gear
     shaft : str
         Name of the shaft.
     at : float
@@ -106,8 +106,8 @@ class ShaftGear:
         shaft.
     stiffens_shaft : bool
         Whether the shaft bends, twists and stretches under the gear as in one piece with it
-        (`coupling.gears.geometry.toothed_section`); else the gear is a disc on one section of it. A gear with a rim is
-        one always.
+        (`gearwhine.coupling.gears.geometry.toothed_section`); else the gear is a disc on one section of it. A gear with
+        a rim is one always.
     """
 
     gear: Gear
@@ -180,7 +180,7 @@ CONSTANT = Driving()
 
 
 class MachineParts(Protocol):
-    """The lists of parts in a machine, see :class:`coupling.Machine`."""
+    """The lists of parts in a machine, see :class:`gearwhine.coupling.Machine`."""
 
     @property
     def shafts(self) -> Sequence[Shaft]:

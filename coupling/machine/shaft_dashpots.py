@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.machine.components import RotorComponent
-from coupling.machine.connectors import LinearConnector, SpeedTable
+from gearwhine.coupling.machine.components import RotorComponent
+from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,13 +11,13 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from coupling.gears import Gear
-from coupling.machine.loads import ShaftForce
-from coupling.machine.mounted_parts import MountedBearing
-from coupling.machine.parts import Shaft, ShaftGear
-from numerics.findings import Finding, Part
-from rotors import Rotor, Segment
-from rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.machine.loads import ShaftForce
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.machine.parts import Shaft, ShaftGear
+from gearwhine.numerics.findings import Finding, Part
+from gearwhine.rotors import Rotor, Segment
+from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow
 
 _SLACK = 5e-5
 """Overlap of two parts up to which they just touch [m]."""

@@ -15,7 +15,7 @@ which the coordinates move, is that of the rigid train,
     J dω/dt = T_motor(ω) - T_load(ω),
 
 J = Σ J_r (ω_r/ω)² at the first driver's rotor. Where a shaft is a little faster or slower than its nominal rotation,
-the torques change by their slope over speed: :class:`coupling.machine.loads.TorqueSlope`.
+the torques change by their slope over speed: :class:`gearwhine.coupling.machine.loads.TorqueSlope`.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError, TransientError
+from gearwhine.coupling.errors import CouplingError, TransientError
 
 FloatArray = npt.NDArray[np.float64]
 

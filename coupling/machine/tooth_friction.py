@@ -21,13 +21,13 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry
-from coupling.gears.contact.sliding_friction import SlidingFriction
-from coupling.machine.connectors import ContactConnector, Sliding
-from coupling.machine.coordinates import MachineCoordinates
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.mesh_kinematics import LineOfAction
-from coupling.machine.mounted_parts import MountedGear
+from gearwhine.coupling.gears import GearPairGeometry
+from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction
+from gearwhine.coupling.machine.connectors import ContactConnector, Sliding
+from gearwhine.coupling.machine.coordinates import MachineCoordinates
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.mesh_kinematics import LineOfAction
+from gearwhine.coupling.machine.mounted_parts import MountedGear
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def friction_of(
     """
     if contact.sliding is None:
         return np.zeros((len(force), 2))
-    from coupling.gears.contact.tooth_force_kernels import friction_history
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history
 
     friction, nominal = contact.sliding.friction, contact.sliding.nominal
     law, by_slices = contact.friction_law

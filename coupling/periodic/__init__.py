@@ -10,10 +10,10 @@
 numba is imported only when a response is computed.
 """
 
-from coupling.periodic.continuation import Bifurcation, ResponseCurve, response_curve
-from coupling.periodic.response import FloquetMultipliers, PeriodicResponse
-from coupling.periodic.shooting import common_period, periodic_response
-from coupling.periodic.superposition import (
+from gearwhine.coupling.periodic.continuation import Bifurcation, ResponseCurve, response_curve
+from gearwhine.coupling.periodic.response import FloquetMultipliers, PeriodicResponse
+from gearwhine.coupling.periodic.shooting import common_period, periodic_response
+from gearwhine.coupling.periodic.superposition import (
     LONGEST_COMMON_PERIOD,
     ExcitationGroup,
     GroupMotion,

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import PeriodicError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.orbit import Elements, PeriodMotion, integrate_period
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import Problem, problem, response_of
+from gearwhine.coupling.errors import PeriodicError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.periodic.orbit import Elements, PeriodMotion, integrate_period
+from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.shooting import Problem, problem, response_of
 
 FloatArray = npt.NDArray[np.float64]
 

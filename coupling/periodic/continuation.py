@@ -14,7 +14,7 @@ Where that does not converge, the branch is followed along its own length s (pse
     [ A    r_p ] [Δx]     [ r                                 ]
     [ x'ᵀ  p'  ] [Δp] = - [ x'ᵀ (x - x₀) + p' (p - p₀) - ds ],     r = closure errors of all segments,
 
-which is regular at folds; A is cyclic in the segments, see :mod:`coupling.periodic.orbit`. r_p is a finite
+which is regular at folds; A is cyclic in the segments, see :mod:`gearwhine.coupling.periodic.orbit`. r_p is a finite
 difference.
 
 A range of speeds that this does not cover is followed from other starts: beyond a place where the branch is lost or
@@ -33,11 +33,11 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError, PeriodicError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.periodic.branch import Branch, Point, interpolation
-from coupling.periodic.response import BranchMotion, PeriodicResponse, motion_summary
-from coupling.periodic.shooting import integrated_again, periodic_response, problem, response_near
+from gearwhine.coupling.errors import CouplingError, PeriodicError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.periodic.branch import Branch, Point, interpolation
+from gearwhine.coupling.periodic.response import BranchMotion, PeriodicResponse, motion_summary
+from gearwhine.coupling.periodic.shooting import integrated_again, periodic_response, problem, response_near
 
 FloatArray = npt.NDArray[np.float64]
 Ending = Literal["end", "start", "joined", "steep", "lost", "points", "tries"]

@@ -20,11 +20,19 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import ORDER, Steps, Trace, element_work, empty_steps, empty_trace, first_elements
-from coupling.collocation.linear_part import LinearPart, real_rows
-from coupling.connector_forces.kernel_arrays import Contacts
-from coupling.errors import PeriodicError
-from coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.collocation.arrays import (
+    ORDER,
+    Steps,
+    Trace,
+    element_work,
+    empty_steps,
+    empty_trace,
+    first_elements,
+)
+from gearwhine.coupling.collocation.linear_part import LinearPart, real_rows
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.coupling.errors import PeriodicError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -155,7 +163,7 @@ class PeriodMotion:
     ----------
     part : LinearPart
     starts, ends : ndarray, shape (K, 2 N)
-        States, see :class:`coupling.collocation.linear_part.LinearPart`.
+        States, see :class:`gearwhine.coupling.collocation.linear_part.LinearPart`.
     pieces : ndarray, shape (K, 2 N, 2 N)
         Derivative of each end by its start, both in amplitudes (:attr:`LinearPart.to_amplitudes`); shape (0, 2 N, 2 N)
         without disturbances.
@@ -206,7 +214,7 @@ class PeriodMotion:
     def correction(self, misses: FloatArray | None = None, *, least: bool = False) -> FloatArray:
         """Newton correction that closes this motion, or one nearby with other closure errors, shape (K, 2 N).
 
-        See :func:`coupling.periodic.orbit.correction`.
+        See :func:`gearwhine.coupling.periodic.orbit.correction`.
         """
         missing = (self.misses if misses is None else misses) @ self.part.to_amplitudes.T
         return np.asarray(correction(self.pieces, missing, self.turn, least=least) @ self.part.from_amplitudes.T)
@@ -214,7 +222,7 @@ class PeriodMotion:
     def bordered_correction(
         self, misses: FloatArray, by_speed: FloatArray, along: FloatArray, along_speed: float, behind: float
     ) -> tuple[FloatArray, float]:
-        """Newton correction along a direction, see :func:`coupling.periodic.orbit.bordered_correction`."""
+        """Newton correction along a direction, see :func:`gearwhine.coupling.periodic.orbit.bordered_correction`."""
         forth, back = self.part.to_amplitudes.T, self.part.from_amplitudes
         moves, change = bordered_correction(
             self.pieces, self.turn, misses @ forth, by_speed @ forth, along @ back, along_speed, behind
@@ -284,7 +292,7 @@ def _pass_within(
     part: LinearPart, contacts: Contacts, elements: Elements, start: FloatArray, room: int, *, varied: bool
 ) -> PeriodMotion | None:
     """Integrate with room for a limited number of changes of contact; None where there are more."""
-    from coupling.collocation.integration_kernels import NO_ROOM, integrate_elements
+    from gearwhine.coupling.collocation.integration_kernels import NO_ROOM, integrate_elements
 
     modes, count = len(part.eigenvalues), len(elements.nodes) - 1
     m, c = part.reference.eigenvalue.size, len(part.system.contacts)
@@ -337,7 +345,7 @@ def _pass_within(
 
 
 def _refuse(wrong: int, room: int) -> None:
-    from coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM
+    from gearwhine.coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM
 
     if wrong == NO_BALANCE:
         raise PeriodicError("the teeth's forces do not balance within an element of time; expected a law that grows")

@@ -14,12 +14,12 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import MONOMIALS, ORDER, Trace, element_work, weights_to
-from coupling.collocation.linear_part import LinearPart
-from coupling.connector_forces.kernel_arrays import Contacts
-from coupling.errors import CouplingError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.time.settings import MotionRecord, TransientOutputs
+from gearwhine.coupling.collocation.arrays import MONOMIALS, ORDER, Trace, element_work, weights_to
+from gearwhine.coupling.collocation.linear_part import LinearPart
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.time.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -223,12 +223,12 @@ class PeriodicResponse:
         return np.asarray(np.einsum("es,esc->c", weights, values) / self.period)
 
     def _amplitudes(self, times: FloatArray) -> FloatArray:
-        from coupling.collocation.integration_kernels import amplitudes_at
+        from gearwhine.coupling.collocation.integration_kernels import amplitudes_at
 
         return np.asarray(amplitudes_at(self.part.reference, self.trace, times))
 
     def _contacts(self, times: FloatArray, amplitudes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from coupling.collocation.integration_kernels import forces_at
+        from gearwhine.coupling.collocation.integration_kernels import forces_at
 
         reference = self.part.reference
         delta, rate = amplitudes @ reference.displacement.T, amplitudes @ reference.rate.T
@@ -253,9 +253,10 @@ def _near_peaks(trace: Trace) -> npt.NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False)
 class BranchMotion:
-    """Summary of a :class:`coupling.periodic.PeriodicResponse`; n coordinates, c contacts, K segments.
+    """Summary of a :class:`gearwhine.coupling.periodic.PeriodicResponse`; n coordinates, c contacts, K segments.
 
-    The whole motion takes a hundred times the memory; :meth:`coupling.periodic.ResponseCurve.motion` computes it again.
+    The whole motion takes a hundred times the memory; :meth:`gearwhine.coupling.periodic.ResponseCurve.motion` computes
+    it again.
 
     Attributes
     ----------

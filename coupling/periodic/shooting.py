@@ -1,13 +1,13 @@
 """Shooting method: periodic motion of a coupled system by Newton's method on the state after a period.
 
 A motion is periodic where the state x(T) after the period is the state x(0) at its start. With the monodromy
-M = ∂x(T)/∂x(0), which :mod:`coupling.collocation.integration_kernels` integrates exactly, switches of contact included,
-Newton's step solves
+M = ∂x(T)/∂x(0), which :mod:`gearwhine.coupling.collocation.integration_kernels` integrates exactly, switches of contact
+included, Newton's step solves
 
     (M - I) Δ = x(0) - x(T).
 
 A period of many mesh periods is integrated in segments, each from a state of its own, and all of them are corrected at
-once; see :mod:`coupling.periodic.orbit`.
+once; see :mod:`gearwhine.coupling.periodic.orbit`.
 
 While the same teeth touch the machine is linear with coefficients that vary in time, and one step is enough. Unstable
 motions are found as well as stable ones.
@@ -23,15 +23,15 @@ from math import lcm
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.linear_part import LinearPart, linear_part
-from coupling.connector_forces.kernel_arrays import Contacts
-from coupling.errors import CouplingError, PeriodicError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.driving_frequencies import driving_frequencies
-from coupling.periodic.orbit import Elements, PeriodMotion, coarsest_element, cut_period, integrate_period
-from coupling.periodic.response import BranchMotion, PeriodicResponse, multipliers
-from coupling.time.condensation import Condensed, condensed
-from coupling.time.step_matrices import contact_arrays
+from gearwhine.coupling.collocation.linear_part import LinearPart, linear_part
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.coupling.errors import CouplingError, PeriodicError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.driving_frequencies import driving_frequencies
+from gearwhine.coupling.periodic.orbit import Elements, PeriodMotion, coarsest_element, cut_period, integrate_period
+from gearwhine.coupling.periodic.response import BranchMotion, PeriodicResponse, multipliers
+from gearwhine.coupling.time.condensation import Condensed, condensed
+from gearwhine.coupling.time.step_matrices import contact_arrays
 
 _SAME = 1e-9  # relative tolerance of a frequency ratio
 _LARGEST_NUMBER = 2000  # largest number in a frequency ratio: no gear has more teeth
@@ -185,7 +185,7 @@ def _segments(system: CoupledSystem, period: float) -> int:
 
 
 def _followed(system: CoupledSystem) -> Condensed:
-    """Condense the system, as in the transient; see :mod:`coupling.time.condensation`."""
+    """Condense the system, as in the transient; see :mod:`gearwhine.coupling.time.condensation`."""
     if system.resolved.all():
         return Condensed(system, np.arange(system.size), np.eye(system.size))
     return condensed(system)

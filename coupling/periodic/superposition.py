@@ -11,8 +11,8 @@ law, contact loss included; every other mesh h is linear about its mean load,
 
     F_h = F0_h + k_h (delta_h - delta0_h) + c_h delta_h',
 
-with the mean F0 and k of :mod:`coupling.statics.mean_mesh`; q0 is the rest position of the machine with all meshes so.
-A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapters 2 and 5.
+with the mean F0 and k of :mod:`gearwhine.coupling.statics.mean_mesh`; q0 is the rest position of the machine with all
+meshes so. A. H. Nayfeh and D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapters 2 and 5.
 
 The sum satisfies every linear part of the equations of motion exactly. What it leaves is a force in each mesh,
 
@@ -29,17 +29,17 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError, PeriodicError
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.base_motion import BaseHarmonic, BaseMotion
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
-from coupling.machine.driving_frequencies import driving_frequencies
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.shooting import common_period, periodic_response
-from coupling.statics.mean_mesh import MeanMesh, mean_meshes
-from coupling.time.step_matrices import contact_arrays
+from gearwhine.coupling.errors import CouplingError, PeriodicError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseMotion
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad
+from gearwhine.coupling.machine.driving_frequencies import driving_frequencies
+from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.shooting import common_period, periodic_response
+from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_meshes
+from gearwhine.coupling.time.step_matrices import contact_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -119,8 +119,8 @@ class SuperposedResponse:
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compression, force by the law and assumed force over the phases of all groups, shape (s, c) each."""
-        from coupling.collocation.arrays import element_work
-        from coupling.collocation.integration_kernels import forces_at
+        from gearwhine.coupling.collocation.arrays import element_work
+        from gearwhine.coupling.collocation.integration_kernels import forces_at
 
         slowest = max(motion.response.period for motion in self.motions)
         times = slowest * _SPACING * np.arange(_PHASES, dtype=np.float64)
@@ -322,7 +322,7 @@ def _linear_mesh(contact: ContactConnector, mean: MeanMesh) -> ContactConnector:
 
 def _rest_position(linear: CoupledSystem) -> FloatArray:
     """Rest position q0, shape (n,), under the constant load, all meshes linear; zero in rigid-body motions."""
-    from coupling.statics.static_equilibrium import static_equilibrium
+    from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 
     still = tuple(replace(contact, errors=np.zeros((0, 3))) for contact in linear.contacts)
     return static_equilibrium(replace(linear, contacts=still))

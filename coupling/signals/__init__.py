@@ -8,10 +8,16 @@
 - :func:`housing_paths` -- contributions of bearings and housing modes to a sensor's lines.
 """
 
-from coupling.signals.line_names import LineName, line_names
-from coupling.signals.order_tracking import AngleSignal, OrderMap, order_map, order_spectrum, resample_by_angle
-from coupling.signals.sidebands import Sideband, sidebands
-from coupling.signals.spectrum import (
+from gearwhine.coupling.signals.line_names import LineName, line_names
+from gearwhine.coupling.signals.order_tracking import (
+    AngleSignal,
+    OrderMap,
+    order_map,
+    order_spectrum,
+    resample_by_angle,
+)
+from gearwhine.coupling.signals.sidebands import Sideband, sidebands
+from gearwhine.coupling.signals.spectrum import (
     ACCELERATION_REFERENCE,
     PowerDensity,
     Spectrogram,
@@ -22,7 +28,7 @@ from coupling.signals.spectrum import (
     rms_of_peak,
     spectrogram,
 )
-from coupling.signals.transfer_paths import HousingPaths, SensorPaths, housing_paths, mode_parts
+from gearwhine.coupling.signals.transfer_paths import HousingPaths, SensorPaths, housing_paths, mode_parts
 
 __all__ = [
     "ACCELERATION_REFERENCE",

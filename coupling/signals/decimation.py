@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
+from gearwhine.coupling.errors import CouplingError
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -3,9 +3,9 @@
 A line at an excitation frequency of the machine is named after its cause, the simplest one first: a mesh harmonic, a
 low order of a shaft, a harmonic torque or motion of the base, the passing of the elements of a rolling bearing whose
 law follows them, a sideband, any other whole order. Orders of a shaft and their sidebands count where something
-excites them (:func:`coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to the line.
-A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given apart from
-the cause.
+excites them (:func:`gearwhine.coupling.linear.excitation_orders.excited_shaft_orders`), and where no mode is nearer to
+the line. A line at none of these is free vibration, named after its mode. Either may be near a mode, which is given
+apart from the cause.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,10 +15,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import CouplingError
-from coupling.linear.complex_modes import CoupledModes
-from coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.linear.excitation_orders import ExcitedOrders, excitation_lines, excited_shaft_orders
 
 LineKind = Literal["mean", "mesh", "shaft", "load", "bearing", "sideband", "mode", "other"]
 

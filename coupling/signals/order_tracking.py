@@ -2,8 +2,8 @@
 
 A component that repeats with every revolution is a line at its order, whatever the speed; over time such a line is
 smeared across all frequencies that it passes. A tachometer would have to be interpolated for this (Potter 1990); here
-:class:`coupling.SpeedProfile` gives the angle exactly. Only the signal is interpolated, by splines of the fifth degree,
-whose error falls with the sixth power of the sampling interval.
+:class:`gearwhine.coupling.SpeedProfile` gives the angle exactly. Only the signal is interpolated, by splines of the
+fifth degree, whose error falls with the sixth power of the sampling interval.
 
 An order cut is the amplitude of one order along the run. With φ the angle in revolutions and u = φ - φ₀ that from the
 middle of a window, the complex amplitudes of the orders o change slowly within the window, so that
@@ -23,10 +23,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import make_interp_spline
 
-from coupling.errors import CouplingError
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.signals.decimation import decimation
-from coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, cut_spectra
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.signals.decimation import decimation
+from gearwhine.coupling.signals.spectrum import Spectrum, Window, amplitude_spectrum, cut_spectra
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -81,8 +81,8 @@ def resample_by_angle(
         Nominal speed of the leading shaft [Hz], positive.
     per_turn : int, optional
         Samples per revolution, by default as many as in time at the lowest speed. With fewer, an anti-aliasing filter
-        (:mod:`coupling.signals.decimation`) leaves orders up to 0.4 of them as they are and takes away those that
-        would fold onto them. Half its length, some twenty samples, is made up at both ends of the record by odd
+        (:mod:`gearwhine.coupling.signals.decimation`) leaves orders up to 0.4 of them as they are and takes away those
+        that would fold onto them. Half its length, some twenty samples, is made up at both ends of the record by odd
         reflection.
     whole_turns : bool
         Whether parts of a revolution at the record's ends are left out.
@@ -205,7 +205,8 @@ def order_map(
     """Order spectra of windows along a signal of shape (s,), and the cuts of some orders.
 
     The middles of the windows reach from the first sample to the last: a run-up from 1000 to 6000 rpm has its orders at
-    1000 and at 6000 rpm. Towards the ends windows are shorter, see :func:`coupling.signals.spectrum.cut_spectra`.
+    1000 and at 6000 rpm. Towards the ends windows are shorter, see
+    :func:`gearwhine.coupling.signals.spectrum.cut_spectra`.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 r"""Spectral peaks: the highest lines of a spectrum, under Hann's window those of the tones between the lines.
 
 Under Hann's window a tone between two lines is up to 1.4 dB higher than either. A peak whose four lines are those of a
-tone, h(x) of :mod:`coupling.signals.tones` at their distances from it, is that tone, by least squares over its two
-highest lines; any other, such as one of two tones closer than that or of a ring-down, is its own line. A tone is a
-linear function of the lines, so what other signals have of it follows from their lines in the same way, and parts of a
-signal add up to the whole in its tones as they do in its lines.
+tone, h(x) of :mod:`gearwhine.coupling.signals.tones` at their distances from it, is that tone, by least squares over
+its two highest lines; any other, such as one of two tones closer than that or of a ring-down, is its own line. A tone
+is a linear function of the lines, so what other signals have of it follows from their lines in the same way, and parts
+of a signal add up to the whole in its tones as they do in its lines.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.signals.spectrum import Spectrum
-from coupling.signals.tones import hann_line, tone_offset, tone_weights
+from gearwhine.coupling.signals.spectrum import Spectrum
+from gearwhine.coupling.signals.tones import hann_line, tone_offset, tone_weights
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

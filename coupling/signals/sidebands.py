@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.signals.spectrum import Window, lines_at
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.signals.spectrum import Window, lines_at
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
+from gearwhine.coupling.errors import CouplingError
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.signals.spectrum import Spectrum, line_height
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.signals.spectrum import Spectrum, line_height
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -1,7 +1,7 @@
 """Transfer path analysis: contributions of bearings and housing modes to a sensor's spectral lines.
 
 The rotors act on the housing by the bearing forces alone. With the force f of a connector on its other side, by the
-convention of :mod:`coupling.machine.connectors`, a line of frequency w has
+convention of :mod:`gearwhine.coupling.machine.connectors`, a line of frequency w has
 
     a(w) = - w² (K - w² + iwC)⁻¹ Σ_b (-D_b f_b(w)),
 
@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.errors import CouplingError
-from coupling.machine.components import HousingComponent
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.components import HousingComponent
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

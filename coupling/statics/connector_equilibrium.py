@@ -27,8 +27,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from coupling.statics.static_model import ConnectorLaw, LinearLaw
-from rotors.numerics.trust_region import Local, minimise
+from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw
+from gearwhine.rotors.numerics.trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 

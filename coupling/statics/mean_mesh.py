@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.gears import GearError, ToothContact, loaded_transmission_error
-from coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import GearError, ToothContact, loaded_transmission_error
+from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, mesh_period_phases, period_mean
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.statics.static_equilibrium import load_balances, static_equilibrium, tangent_offset
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -188,9 +188,9 @@ def contact_at(system: CoupledSystem, time: float) -> ContactState:
     Raises
     ------
     CouplingError, TransientError
-        As :func:`coupling.static_equilibrium`.
+        As :func:`gearwhine.coupling.static_equilibrium`.
     """
-    from coupling.gears.contact.tooth_force_kernels import tooth_force
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
     q = static_equilibrium(system, time)
     tangents = []

@@ -1,12 +1,12 @@
 """Operating point: static equilibrium of the whole machine under its torques, weight and preloads.
 
 Shafts are exact Timoshenko beams between the stations of bearings, gears and torques, within the face of a solid gear
-as stiff as its section with the teeth (:mod:`rotors.analyses.static_stiffness`,
-:mod:`coupling.gears.geometry.toothed_section`). The housing is its modes with the residual ones, whose static
+as stiff as its section with the teeth (:mod:`gearwhine.rotors.analyses.static_stiffness`,
+:mod:`gearwhine.coupling.gears.geometry.toothed_section`). The housing is its modes with the residual ones, whose static
 compliance at the seats is exact. Rolling bearings act by each of their elements, gear pairs by slices of their faces,
-averaged over a mesh period (:mod:`coupling.gears.loaded.face_load`). Bearings, gear pairs and pedestals are the
-connectors of this linear structure; their equilibrium with it is that of
-:mod:`coupling.statics.connector_equilibrium`.
+averaged over a mesh period (:mod:`gearwhine.coupling.gears.loaded.face_load`). Bearings, gear pairs and pedestals are
+the connectors of this linear structure; their equilibrium with it is that of
+:mod:`gearwhine.coupling.statics.connector_equilibrium`.
 
 Rigid motions that nothing holds, such as the rotation of the train, must carry no load; they stay at zero.
 
@@ -22,18 +22,18 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
-from coupling.gears.loaded.contact_pressure import mesh_pressure
-from coupling.gears.loaded.face_load import FaceLoad, face_load_factor
-from coupling.gears.loaded.transmission_error import LoadedMesh
-from coupling.machine.bearing_laws import RollingLaw
-from coupling.machine.mounted_parts import MountedBearing
-from coupling.statics.static_model import (
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.gears.loaded.face_load import FaceLoad, face_load_factor
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.machine.bearing_laws import RollingLaw
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.statics.static_model import (
     FaceContactLaw,
     StaticPair,
     StaticShaftPart,
 )
-from rotors.rolling_bearings import RollingState, linearised_bearing
+from gearwhine.rotors.rolling_bearings import RollingState, linearised_bearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -107,7 +107,7 @@ class BearingLoad:
 
         Raises
         ------
-        rotors.EquilibriumError
+        gearwhine.rotors.EquilibriumError
             Where clearance leaves the shaft loose in x or y.
         """
         if not self.mounted.needs_load or self.rolling is None:
@@ -285,13 +285,13 @@ class OperatingPoint:
         The housing's modal coordinates.
     residual : float
         Largest force out of balance over the largest load; moments over that load times the longest shaft. Beyond the
-        rounding of the elastic forces it is at most `coupling.statics.operating_point_search.RESIDUAL_BOUND`.
+        rounding of the elastic forces it is at most `gearwhine.coupling.statics.operating_point_search.RESIDUAL_BOUND`.
     iterations : int
         Number of steps of the trust region and Newton's method.
     free : tuple of str
         Motions that nothing holds and no load drives, in words.
     tangent : StaticTangent
-        For its sensitivities (:mod:`coupling.statics.sensitivity`).
+        For its sensitivities (:mod:`gearwhine.coupling.statics.sensitivity`).
     """
 
     shafts: tuple[ShaftDeflection, ...]

@@ -1,7 +1,8 @@
 """Search for the operating point: coordinates, stiffness, loads and connectors of the static machine, solved.
 
-The model of :mod:`coupling.statics.operating_point` in coordinates: six at each node of a shaft, the housing's modes,
-and two of each pedestal. Connectors are bearings, gear pairs and pedestals (:mod:`coupling.statics.static_model`).
+The model of :mod:`gearwhine.coupling.statics.operating_point` in coordinates: six at each node of a shaft, the
+housing's modes, and two of each pedestal. Connectors are bearings, gear pairs and pedestals
+(:mod:`gearwhine.coupling.statics.static_model`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,20 +13,20 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.machine.components import HousingComponent
-from coupling.machine.gear_bodies import GearBody
-from coupling.machine.loads import ShaftForce, Torque
-from coupling.machine.mounted_parts import MountedBearing
-from coupling.statics.connector_equilibrium import ConnectedStructure
-from coupling.statics.operating_point import (
+from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.gear_bodies import GearBody
+from gearwhine.coupling.machine.loads import ShaftForce, Torque
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
+from gearwhine.coupling.statics.operating_point import (
     BearingLoad,
     OperatingPoint,
     PairLoad,
     ShaftDeflection,
     StaticTangent,
 )
-from coupling.statics.static_model import (
+from gearwhine.coupling.statics.static_model import (
     ConnectorLaw,
     FaceContactLaw,
     LinearLaw,
@@ -34,7 +35,7 @@ from coupling.statics.static_model import (
     StaticPair,
     StaticShaftPart,
 )
-from rotors.rolling_bearings import RollingState, rolling_state
+from gearwhine.rotors.rolling_bearings import RollingState, rolling_state
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -64,7 +65,7 @@ def solve_operating_point(
     Parameters
     ----------
     shafts, bearings, pairs
-        The static model; :meth:`coupling.Machine.operating_point` makes it.
+        The static model; :meth:`gearwhine.coupling.Machine.operating_point` makes it.
     housing : HousingComponent or None
         Housing with its residual modes.
     torques : sequence of Torque

@@ -1,7 +1,7 @@
 r"""Sensitivity of the operating point: gradients of misalignment, K_Hβ and transmission error by the adjoint method.
 
-Let R(x, p) = 0 be the equilibrium of the static machine (:mod:`coupling.statics.operating_point`) and K_T = ∂R/∂x its
-tangent, bearings and flanks included. For an outcome y(x) with the gradient c = ∂y/∂x, one adjoint solve
+Let R(x, p) = 0 be the equilibrium of the static machine (:mod:`gearwhine.coupling.statics.operating_point`) and K_T =
+∂R/∂x its tangent, bearings and flanks included. For an outcome y(x) with the gradient c = ∂y/∂x, one adjoint solve
 
     K_Tᵀ λ = c      gives      dy/dp = -λᵀ ∂R/∂p
 
@@ -11,7 +11,8 @@ for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Str
 - Bearing moved along its shaft by p, its seat staying: with w' the slope of the shaft's motions along z less that of
   the seat's rigid motion, and t = ∂f/∂δ, dy/dp = -w'(λ) · f - (Eᵀ λ) · t w'(x). Strains of the shaft jump at a bearing;
   the mean of both sides is exact, as the jumps of the two fields are alike.
-- Housing: :mod:`housing.updating.static_sensitivity`, by the fields of λ and x in it and the forces of the bearings.
+- Housing: :mod:`gearwhine.housing.updating.static_sensitivity`, by the fields of λ and x in it and the forces of the
+  bearings.
 
 Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
 """
@@ -22,8 +23,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from coupling.gears.loaded.face_load import face_load_factor
-from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from gearwhine.coupling.gears.loaded.face_load import face_load_factor
+from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.kernel_arrays import bearing_arrays
-from coupling.errors import CouplingError, TransientError
-from coupling.machine.connectors import ContactConnector, NonlinearConnector
-from coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
+from gearwhine.coupling.errors import CouplingError, TransientError
+from gearwhine.coupling.machine.connectors import ContactConnector, NonlinearConnector
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -120,7 +120,7 @@ def _out_of_balance(
     system: CoupledSystem, penalty: FloatArray, q: FloatArray, time: float
 ) -> tuple[FloatArray, FloatArray]:
     """Residual F - K q - Σ d f(dᵀ q), shape (n,), and tangent stiffness, shape (n, n)."""
-    from coupling.gears.contact.tooth_force_kernels import tooth_force
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
     residual = system.load - system.stiffness @ q - penalty @ q
     tangent = system.stiffness + penalty
@@ -149,7 +149,7 @@ def friction_push(
 
     ``force`` and ``slope`` are those of the contact.
     """
-    from coupling.gears.contact.tooth_force_kernels import friction_shares
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_shares
 
     assert contact.sliding is not None
     if force <= 0.0:
@@ -165,7 +165,7 @@ def friction_push(
 
 def _bearing(connector: NonlinearConnector, deflection: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
     """Force and tangent of a nonlinear bearing at its deflections, over its directions."""
-    from coupling.connector_forces.bearing_kernels import bearing_force
+    from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
 
     q, force, tangent = connector.law.reference.copy(), np.zeros(5), np.zeros((5, 5))
     q[connector.axes] = deflection

@@ -2,7 +2,7 @@
 
 Each bearing is a law of five deflections of the shaft against its seat, each gear pair one of the approach of its
 flanks over the face. A law gives energy, force and tangent at any deflection; the nominal stiffness is a first guess
-of the tangent, from which the search for equilibrium starts (:mod:`coupling.statics.operating_point`).
+of the tangent, from which the search for equilibrium starts (:mod:`gearwhine.coupling.statics.operating_point`).
 """
 
 from dataclasses import dataclass, replace
@@ -11,17 +11,17 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry, tooth_contact
-from coupling.gears.contact.contact_law import law_between_rims
-from coupling.gears.contact.face_slices import face_slices, face_stations
-from coupling.gears.loaded.face_load import FaceContact
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.machine.bearing_laws import GapLaw
-from coupling.machine.mesh_kinematics import LineOfAction, line_of_action
-from coupling.machine.mounted_parts import MountedBearing
-from rotors.analyses.static_stiffness import StaticShaft
-from rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
+from gearwhine.coupling.gears import GearPairGeometry, tooth_contact
+from gearwhine.coupling.gears.contact.contact_law import law_between_rims
+from gearwhine.coupling.gears.contact.face_slices import face_slices, face_stations
+from gearwhine.coupling.gears.loaded.face_load import FaceContact
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
+from gearwhine.coupling.machine.bearing_laws import GapLaw
+from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.rotors.analyses.static_stiffness import StaticShaft
+from gearwhine.rotors.rolling_bearings import RollingBearing, RollingElements, rolling_equilibrium, static_rating
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class RollingElementLaw:
 
 @dataclass(frozen=True, eq=False)
 class RadialGapLaw:
-    """A ring around the shaft, touched beyond a gap, see :class:`coupling.machine.bearing_laws.GapLaw`."""
+    """A ring around the shaft, touched beyond a gap, see :class:`gearwhine.coupling.machine.bearing_laws.GapLaw`."""
 
     law: GapLaw
 

@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 

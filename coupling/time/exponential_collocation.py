@@ -4,8 +4,8 @@ The machine with its mean mesh stiffness is linear and time-invariant, so its mo
 their exponentials, gyroscopic and damped as they are; harmonic loads and runout errors by the steady response of the
 reference; rigid-body motions by uniform acceleration. The difference of the tooth forces from their mean law, one force
 for each contact, is all that is approximated: over an element of time by the polynomial through its values at Gauss
-points, see :mod:`coupling.collocation.integration_kernels`, whose elements the search of periodic motions shares.
-Elements end at every tooth event, and where a contact law changes its branch by itself.
+points, see :mod:`gearwhine.coupling.collocation.integration_kernels`, whose elements the search of periodic motions
+shares. Elements end at every tooth event, and where a contact law changes its branch by itself.
 
 The local error is that of the polynomial. It has no defect at the Gauss points, so between them the defect has the
 shape of the polynomial that vanishes there, and two evaluations of the law just inside the element's ends give its
@@ -25,7 +25,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.collocation.arrays import (
+from gearwhine.coupling.collocation.arrays import (
     ORDER,
     FreeMotion,
     Powers,
@@ -37,15 +37,15 @@ from coupling.collocation.arrays import (
     first_elements,
     powers_room,
 )
-from coupling.collocation.linear_part import LinearPart, linear_part
-from coupling.connector_forces.kernel_arrays import LOAD_WORK, Contacts, Samples
-from coupling.errors import PeriodicError, TransientError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.time.condensation import condensed
-from coupling.time.integration import Attempt, Checkpoint, coarsest_step, sample_times
-from coupling.time.settings import TransientOutputs, TransientSettings
-from coupling.time.step_matrices import kernel_arrays
+from gearwhine.coupling.collocation.linear_part import LinearPart, linear_part
+from gearwhine.coupling.connector_forces.kernel_arrays import LOAD_WORK, Contacts, Samples
+from gearwhine.coupling.errors import PeriodicError, TransientError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.time.condensation import condensed
+from gearwhine.coupling.time.integration import Attempt, Checkpoint, coarsest_step, sample_times
+from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
+from gearwhine.coupling.time.step_matrices import kernel_arrays
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -114,7 +114,7 @@ class CollocationRecord:
 
     def write(self, trace: Trace, free: FreeMotion, times: FloatArray, samples: Samples, first: int) -> None:
         """Write the samples at ascending times of a trace, from number ``first`` on."""
-        from coupling.collocation.integration_kernels import amplitudes_at, forces_at
+        from gearwhine.coupling.collocation.integration_kernels import amplitudes_at, forces_at
 
         reference = self.part.reference
         rows = slice(first - samples.offset, first - samples.offset + len(times))
@@ -130,7 +130,7 @@ class CollocationRecord:
 
     def add(self, state: Checkpoint, trace: Trace, steps: Steps, free: FreeMotion, displaced: FloatArray) -> Checkpoint:
         """Add the work, the losses and the contact figures of a trace that displaces the coordinates to the state."""
-        from coupling.collocation.integration_kernels import add_contacts, add_powers
+        from gearwhine.coupling.collocation.integration_kernels import add_contacts, add_powers
 
         totals, figures = state.totals.copy(), state.contact_totals.copy()
         totals[LOAD_WORK] += self._constant @ displaced
@@ -141,7 +141,7 @@ class CollocationRecord:
 
     def contact_figures(self, before: Checkpoint, trace: Trace) -> FloatArray:
         """Impulse, time apart, largest force and last touch, shape (c, 4), with those of a trace added."""
-        from coupling.collocation.integration_kernels import add_contacts
+        from gearwhine.coupling.collocation.integration_kernels import add_contacts
 
         figures = before.contact_totals.copy()
         add_contacts(trace, self.contacts, before.stored, self._room.weights[0], before.totals.copy(), figures)
@@ -275,7 +275,7 @@ class CollocationStepper:
 
         The trace holds until the next call.
         """
-        from coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM, integrate_elements
+        from gearwhine.coupling.collocation.integration_kernels import NO_BALANCE, NO_ROOM, integrate_elements
 
         reference, modes = self._part.reference, len(self._part.eigenvalues)
         lengths = np.diff(stretches) / pieces

@@ -9,8 +9,8 @@ shaft. Both span the same motions. With the component's lateral coordinates q, w
 
     A = V q,    V = `RotorComponent.plane_basis`, orthogonal,
 
-so a row of V, at the position of the rotor's coordinates, is a row of :class:`coupling.TransientOutputs`. The housing's
-coordinates are those of its modes.
+so a row of V, at the position of the rotor's coordinates, is a row of :class:`gearwhine.coupling.TransientOutputs`. The
+housing's coordinates are those of its modes.
 """
 
 import math
@@ -21,14 +21,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.connector_forces.kernel_arrays import bearing_arrays
-from coupling.errors import CouplingError
-from coupling.machine.connectors import LinearConnector, NonlinearConnector
-from coupling.machine.mounted_parts import MountedGear
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.machine.tooth_friction import friction_of
-from coupling.time.settings import MotionRecord, TransientOutputs
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.machine.connectors import LinearConnector, NonlinearConnector
+from gearwhine.coupling.machine.mounted_parts import MountedGear
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.machine.tooth_friction import friction_of
+from gearwhine.coupling.time.settings import MotionRecord, TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class Histories:
         Compression of each mesh [m].
     mesh_friction : dict of str to ndarray, shape (s, 2)
         Friction of each contact: force across the line of action [N], and power loss from the nominal
-        rotation [W]; see :func:`coupling.machine.tooth_friction.friction_of`.
+        rotation [W]; see :func:`gearwhine.coupling.machine.tooth_friction.friction_of`.
     bearing_axes : dict of str to tuple of int
         Axes of the columns of each ``bearing_reaction``: x, y, z and the rotations about x and y, 0 to 4.
     """
@@ -291,7 +291,7 @@ def _beside_linear(
     linear: LinearConnector, connector: NonlinearConnector, deflection: FloatArray, nominal_time: FloatArray
 ) -> FloatArray:
     """Nonlinear part of a bearing's force, less that of its tangent, shape (s, d)."""
-    from coupling.connector_forces.bearing_kernels import bearing_history
+    from gearwhine.coupling.connector_forces.bearing_kernels import bearing_history
 
     # Directions in which nothing can move have no part in it.
     moving = np.flatnonzero(np.any(linear.directions != 0.0, axis=0))

@@ -2,9 +2,9 @@
 
 Time is cut at every event (a pair of teeth entering or leaving contact, a load or speed changing its slope), so no step
 crosses a jump of the mesh stiffness. The stretches between events are cut into equal steps by a stepper: Newmark's
-method (:mod:`coupling.time.newmark_stepper`) or exponential collocation (:mod:`coupling.time.exponential_collocation`).
-The driver takes a chunk of stretches at a time, accepts it where the stepper's local error is below the tolerance, and
-repeats it with finer steps otherwise.
+method (:mod:`gearwhine.coupling.time.newmark_stepper`) or exponential collocation
+(:mod:`gearwhine.coupling.time.exponential_collocation`). The driver takes a chunk of stretches at a time, accepts it
+where the stepper's local error is below the tolerance, and repeats it with finer steps otherwise.
 """
 
 import time
@@ -15,14 +15,14 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.kernel_arrays import LAST_TOUCH, PEAK, Samples
-from coupling.errors import DeflectionError, TransientError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.driving_frequencies import harmonic_frequencies
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
-from coupling.time.settings import TransientSettings
-from coupling.time.step_matrices import KernelArrays, stored_energy
+from gearwhine.coupling.connector_forces.kernel_arrays import LAST_TOUCH, PEAK, Samples
+from gearwhine.coupling.errors import DeflectionError, TransientError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.driving_frequencies import harmonic_frequencies
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.statics.static_equilibrium import coasting_velocity, static_equilibrium
+from gearwhine.coupling.time.settings import TransientSettings
+from gearwhine.coupling.time.step_matrices import KernelArrays, stored_energy
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,15 +6,16 @@ One step of size h from (q, v, a), with the mass the identity and the contacts' 
     S a₁ = F(t₁) - K q* - (C + s' G) v* - s'' G q* - D f,
     q₁ = q* + β h² a₁,                        v₁ = v* + γ h a₁,
 
-S as in :mod:`coupling.time.step_kernels`, where K and C are diagonal but for the connectors' directions U. With W =
-S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unknown: their deflections
+S as in :mod:`gearwhine.coupling.time.step_kernels`, where K and C are diagonal but for the connectors' directions U.
+With W = S⁻¹ D and H = Dᵀ W only the few forces f of teeth and nonlinear bearings remain unknown: their deflections
 
     δ = δ* - β h² H f(δ, δ'),    δ' = δ'* - γ h H f(δ, δ'),
 
 δ* and δ'* being those without them, are found by Newton's method on a system as small as their number. Friction acts
 along directions of its own, columns of D whose deflections no law needs. The projections Uᵀq and Dᵀq follow the same
-recurrence as q. s is the nominal time of :class:`coupling.SpeedProfile`, α = s'' the angular acceleration. With β =
-1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear system.
+recurrence as q. s is the nominal time of :class:`gearwhine.coupling.SpeedProfile`, α = s'' the angular acceleration.
+With β = 1/4, γ = 1/2 the step is of second order, unconditionally stable, and keeps the energy of an undamped linear
+system.
 
 The step evaluates the loads at its end, adds to the energy balance (powers of loads, losses and rotation, and stored
 energy) and interpolates the output rows at the samples within it.
@@ -27,7 +28,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.contact_kernels import (
+from gearwhine.coupling.connector_forces.contact_kernels import (
     DAMPING,
     ENERGY,
     FORCE,
@@ -37,8 +38,8 @@ from coupling.connector_forces.contact_kernels import (
     flank_gap,
     solve_contact_forces,
 )
-from coupling.connector_forces.dense_kernels import SUMS, add_rows, project
-from coupling.connector_forces.kernel_arrays import (
+from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, project
+from gearwhine.coupling.connector_forces.kernel_arrays import (
     APART,
     BEARING_ENERGY,
     BEARING_POWER,
@@ -66,8 +67,8 @@ from coupling.connector_forces.kernel_arrays import (
     Segments,
     StepMatrices,
 )
-from coupling.time.step_kernels import add_gyroscopic, apply_base
-from rotors.numerics.compiled import inner, uncounted
+from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base
+from gearwhine.rotors.numerics.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,7 +7,8 @@ acceleration,
     error = |a₁ - 2 a₀ + a₋₁| / (12 |a|).
 
 Residual coordinates of the housing have no part in this measure: they stand for static compliance, and their own
-frequencies are not meant to be followed. The stiffest of them are condensed, see :mod:`coupling.time.condensation`.
+frequencies are not meant to be followed. The stiffest of them are condensed, see
+:mod:`gearwhine.coupling.time.condensation`.
 """
 
 from dataclasses import replace
@@ -15,12 +16,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.kernel_arrays import LAST_TOUCH, Samples, Segments
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.time.integration import Attempt, Checkpoint, timed_amplitude
-from coupling.time.settings import TransientOutputs, TransientSettings
-from coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
+from gearwhine.coupling.connector_forces.kernel_arrays import LAST_TOUCH, Samples, Segments
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.time.integration import Attempt, Checkpoint, timed_amplitude
+from gearwhine.coupling.time.settings import TransientOutputs, TransientSettings
+from gearwhine.coupling.time.step_matrices import StepCache, cut, kernel_arrays, scratch_room
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,7 +29,7 @@ _SEGMENTS_PER_CHUNK = 48  # number of stretches between two checks of the error
 
 
 class NewmarkStepper:
-    """Newmark's method; see :class:`coupling.time.integration.Stepper` and :mod:`coupling.time.newmark`."""
+    """Newmark's method; see :class:`coupling.time.integration.Stepper` and :mod:`gearwhine.coupling.time.newmark`."""
 
     steps_in_one = 1
     order = 2.0
@@ -75,7 +76,7 @@ class NewmarkStepper:
 
     def _run(self, state: Checkpoint, segments: Segments, samples: Samples) -> tuple[Checkpoint, float, float]:
         """Run the kernel on copies of the arrays that it changes."""
-        from coupling.time.newmark import newmark_steps
+        from gearwhine.coupling.time.newmark import newmark_steps
 
         q, v, totals, contacts = (part.copy() for part in (state.q, state.v, state.totals, state.contact_totals))
         arrays = self.arrays

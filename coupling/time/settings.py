@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from coupling.errors import CouplingError
+from gearwhine.coupling.errors import CouplingError
 
 FloatArray = npt.NDArray[np.float64]
 Method = Literal["newmark", "exact", "auto"]
@@ -27,12 +27,12 @@ class TransientSettings:
     largest_step : float
         Largest step [s].
     tolerance : float
-        Largest local error of a step, relative; see :mod:`coupling.time.integration`.
+        Largest local error of a step, relative; see :mod:`gearwhine.coupling.time.integration`.
     beta, gamma : float
         Newmark's parameters; only with 1/4 and 1/2 the method neither gains nor loses energy.
     method : "newmark", "exact" or "auto"
-        Newmark's method; exponential collocation of :mod:`coupling.time.exponential_collocation`, for constant speeds
-        and loads without tables over time; or the exact method where it applies, else Newmark's.
+        Newmark's method; exponential collocation of :mod:`gearwhine.coupling.time.exponential_collocation`, for
+        constant speeds and loads without tables over time; or the exact method where it applies, else Newmark's.
     """
 
     duration: float

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.connector_forces.kernel_arrays import (
+from gearwhine.coupling.connector_forces.kernel_arrays import (
     BEARING_ENERGY,
     BY_TIME,
     BY_TURNING,
@@ -23,11 +23,11 @@ from coupling.connector_forces.kernel_arrays import (
     StepMatrices,
     bearing_arrays,
 )
-from coupling.machine.connectors import SpeedTable
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.time.condensation import common_span
-from coupling.time.settings import TransientOutputs
+from gearwhine.coupling.machine.connectors import SpeedTable
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.time.condensation import common_span
+from gearwhine.coupling.time.settings import TransientOutputs
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -102,7 +102,7 @@ def scratch_room(arrays: KernelArrays) -> Scratch:
 
 
 class StepCache:
-    """Cache of the matrices of each step size, see :mod:`coupling.time.step_kernels`.
+    """Cache of the matrices of each step size, see :mod:`gearwhine.coupling.time.step_kernels`.
 
     At steady speed few sizes occur: the stretches between events repeat with the mesh period. Sizes that agree to nine
     digits are one. Where the speed varies no size occurs twice, and each stretch has its own. Mesh periods without a
@@ -137,7 +137,7 @@ class StepCache:
         return np.array([self._kinds[key] for key in keys], dtype=np.int64)
 
     def _build(self, slots: range, sizes: FloatArray, speeds: FloatArray, accelerations: FloatArray) -> None:
-        from coupling.time.step_kernels import build_steps
+        from gearwhine.coupling.time.step_kernels import build_steps
 
         room = len(self.matrices.size)
         if slots.stop > room:
@@ -326,7 +326,7 @@ def _of_connectors(dynamics: Dynamics, q: FloatArray, rate: float) -> float:
 
 
 def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, nominal_time: float) -> float:
-    from coupling.gears.contact.tooth_force_kernels import tooth_force
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
     energy = 0.0
     for k, at in enumerate(contacts.law_at):
@@ -337,7 +337,7 @@ def _of_teeth(contacts: Contacts, delta: FloatArray, moved: FloatArray, nominal_
 
 def _of_bearings(bearings: Bearings, first: int, delta: FloatArray, nominal_time: float) -> float:
     """Energy of the nonlinear part of the bearings' forces."""
-    from coupling.connector_forces.bearing_kernels import evaluate_bearings
+    from gearwhine.coupling.connector_forces.bearing_kernels import evaluate_bearings
 
     tangents, room = np.zeros((bearings.preload.size, 5, 5)), np.zeros((8, 5))
     evaluate_bearings(bearings, first, nominal_time, delta, np.zeros_like(delta), tangents, room)

@@ -4,8 +4,8 @@
 checkpoint from which the next one continues. `fingerprint` is the digest of the inputs of a computation, equal only
 where all of them are equal bit for bit. `Motion` holds the simulated motion of a machine as a labelled dataset.
 
-The driver is in :mod:`coupling.time.integration`; its steppers are in :mod:`coupling.time.newmark_stepper` and
-:mod:`coupling.time.exponential_collocation`.
+The driver is in :mod:`gearwhine.coupling.time.integration`; its steppers are in
+:mod:`gearwhine.coupling.time.newmark_stepper` and :mod:`gearwhine.coupling.time.exponential_collocation`.
 """
 
 import hashlib
@@ -19,20 +19,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.assembly import CoupledMachine
-from coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
-from coupling.errors import CouplingError, TransientError
-from coupling.machine.coupled_system import CoupledSystem
-from coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.signals.spectrum import Spectrum, amplitude_spectrum, whole_period_samples
-from coupling.time.condensation import condensed
-from coupling.time.exponential_collocation import CollocationStepper, exact_part
-from coupling.time.histories import HISTORY_QUANTITIES, Histories
-from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, Integration, sample_times
-from coupling.time.newmark_stepper import NewmarkStepper
-from coupling.time.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
-from coupling.time.step_matrices import empty_samples
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.connector_forces.kernel_arrays import APART, IMPULSE, PEAK
+from gearwhine.coupling.errors import CouplingError, TransientError
+from gearwhine.coupling.machine.coupled_system import CoupledSystem
+from gearwhine.coupling.machine.driving_frequencies import driving_frequencies, element_passes, varies_within
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum, whole_period_samples
+from gearwhine.coupling.time.condensation import condensed
+from gearwhine.coupling.time.exponential_collocation import CollocationStepper, exact_part
+from gearwhine.coupling.time.histories import HISTORY_QUANTITIES, Histories
+from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint, Integration, sample_times
+from gearwhine.coupling.time.newmark_stepper import NewmarkStepper
+from gearwhine.coupling.time.settings import RECORDED, MotionRecord, TransientOutputs, TransientSettings
+from gearwhine.coupling.time.step_matrices import empty_samples
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,7 +120,7 @@ def integrate_blocks(
     samples_per_block : int
         Approximate length of a block. Time is cut where blocks end, so the last digits of a result depend on it.
 
-    Other parameters and errors are those of :func:`coupling.simulate`.
+    Other parameters and errors are those of :func:`gearwhine.coupling.simulate`.
     """
     run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
     state = after or run.start(initial)
@@ -297,7 +297,7 @@ def simulate(
 
     See Also
     --------
-    coupling.time.transient.integrate_blocks : The same in blocks, for runs that are long or continued later.
+    gearwhine.coupling.time.transient.integrate_blocks : The same in blocks, for runs that are long or continued later.
     """
     integrated = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
     blocks = list(integrated)

@@ -1,7 +1,7 @@
 """Pages of the Python reference: one for each public name of the packages, and one for each package with its names.
 
 What a package's ``__init__`` imports or defines without an underscore is public. A name that stands in several packages
-has its page where it comes from: ``gearwhine.Housing`` is ``housing.Housing``.
+has its page where it comes from: ``gearwhine.Housing`` is ``gearwhine.housing.Housing``.
 """
 
 import ast
@@ -12,7 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
-ROOMS = ("gearwhine", "meshes", "housing", "rotors", "coupling")
+ROOMS = ("gearwhine", "gearwhine.meshes", "gearwhine.housing", "gearwhine.rotors", "gearwhine.coupling")
 """In the order of the reference: the front door, then as the physics goes."""
 
 _INSIDE = ("analyses", "case", "cases", "cli", "from_case", "output", "results", "solve", "sweep")
@@ -23,9 +23,10 @@ def packages(root: Path) -> list[str]:
     """Every package that has public names, rooms first, each followed by the packages in it."""
     found = []
     for room in ROOMS:
-        for init in sorted((root / room).rglob("__init__.py"), key=lambda path: path.parent.as_posix()):
+        folder = root / room.replace(".", "/")
+        for init in sorted(folder.rglob("__init__.py"), key=lambda path: path.parent.as_posix()):
             parts = init.parent.relative_to(root).parts
-            if parts[0] == "gearwhine" and parts[1:2] and parts[1] in _INSIDE:
+            if parts[1:2] and parts[1] in _INSIDE:
                 continue
             name = ".".join(parts)
             if public_names(name):
@@ -46,7 +47,7 @@ def _is_ours(module: ModuleType, name: str) -> bool:
     if name.startswith("_") or isinstance(value, ModuleType):
         return False
     # Constants do not know where they come from: those in capitals are meant.
-    return value.__module__.split(".")[0] in ROOMS if callable(value) else name.isupper()
+    return value.__module__.split(".")[0] == "gearwhine" if callable(value) else name.isupper()
 
 
 @cache

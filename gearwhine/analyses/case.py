@@ -34,7 +34,7 @@ def check(case: Case, *, progress: Progress = silent) -> Result[CheckedCase]:
 
     Raises
     ------
-    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+    CaseError, gearwhine.housing.HousingError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
         Where something in the case cannot be built.
     """
     from gearwhine.analyses.result import Result

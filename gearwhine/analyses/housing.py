@@ -8,6 +8,9 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, require
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.housing import HousingError
+from gearwhine.housing.correlation.comparison import Comparison
+from gearwhine.meshes import Mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.output.quantity import add_warnings, joined, warning
@@ -31,9 +34,6 @@ from gearwhine.solve.comparison import (
     write_plan,
 )
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from housing import HousingError
-from housing.correlation.comparison import Comparison
-from meshes import Mesh
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,8 +57,8 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     CaseError
         Where the housing cannot be meshed.
     """
+    from gearwhine.meshes import write_mesh
     from gearwhine.results.mesh import mesh_document
-    from meshes import write_mesh
 
     progress("meshing the housing")
     remarks: list[str] = []
@@ -98,9 +98,9 @@ def modes(
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         Where the case cannot be solved as it stands.
-    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+    gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
         Where the modes fail their proofs.
     """
     solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
@@ -138,7 +138,7 @@ def compare(
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         Where the case has nothing measured, or its modes are not known as high as the measured ones.
     """
     require(case, "housing", "measured", command="compare")
@@ -233,7 +233,7 @@ def update(
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         Where the case has nothing to fit, or its housing cannot be solved.
     """
     from gearwhine.results.update import update_arrays, update_document
@@ -279,7 +279,8 @@ def render(
     modes : str, optional
         ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
     view : str
-        One of :data:`housing.pictures.views.VIEWS`; "auto" is for each shape the corner that shows most of its motion.
+        One of :data:`gearwhine.housing.pictures.views.VIEWS`; "auto" is for each shape the corner that shows most of
+        its motion.
     mode_format : {"png", "glb", "gif", "mp4"}
         Pictures, models that move, or films; the result writes them.
     lines : sequence of float
@@ -293,7 +294,7 @@ def render(
     ------
     CaseError
         Where something is asked for that cannot be drawn.
-    housing.errors.RendererUnavailableError, housing.errors.EncoderUnavailableError
+    gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
         Where no renderer or encoder is available.
     """
     modes = modes or (None if lines or measured else "dominant")

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coupling import CoupledMachine
-from coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.output.dataset import labelled
@@ -62,9 +62,9 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
 
     Raises
     ------
-    CaseError, rotors.RotorError
+    CaseError, gearwhine.rotors.RotorError
         Where the case has no rotors, or one cannot be solved as it stands.
-    rotors.IncompleteModesError
+    gearwhine.rotors.IncompleteModesError
         Where modes fail their certificate.
     """
     solved = solve_rotors(case, progress)
@@ -117,7 +117,7 @@ def gears(
 
     Raises
     ------
-    CaseError, coupling.gears.GearError, coupling.CouplingError
+    CaseError, gearwhine.coupling.gears.GearError, gearwhine.coupling.CouplingError
         Where the case has no gear pairs, or one cannot be solved as it stands, or in the machine where a tip relief
         aims at a sensor.
     """
@@ -190,9 +190,9 @@ def operating_point(
 
     Raises
     ------
-    CaseError, coupling.CouplingError
+    CaseError, gearwhine.coupling.CouplingError
         Where the parts do not make a machine, nothing loads it, or a load drives a motion that nothing holds.
-    coupling.EquilibriumNotFoundError
+    gearwhine.coupling.EquilibriumNotFoundError
         Where no equilibrium is found.
     """
     require_load(case)
@@ -333,9 +333,9 @@ def system(
 
     Raises
     ------
-    CaseError, coupling.CouplingError
+    CaseError, gearwhine.coupling.CouplingError
         Where the parts do not make a machine.
-    coupling.ModesError
+    gearwhine.coupling.ModesError
         Where the modes fail their certificate.
     """
     require(case, "rotor", "operation", command="system")
@@ -405,9 +405,9 @@ def steady(
 
     Raises
     ------
-    CaseError, coupling.CouplingError
+    CaseError, gearwhine.coupling.CouplingError
         Where the parts do not make a machine.
-    coupling.PeriodicError
+    gearwhine.coupling.PeriodicError
         Where no periodic motion is found.
     """
     require(case, "rotor", "operation", command="steady")
@@ -465,9 +465,9 @@ def sound(
 
     Raises
     ------
-    CaseError, coupling.CouplingError, coupling.PeriodicError
+    CaseError, gearwhine.coupling.CouplingError, gearwhine.coupling.PeriodicError
         Where the parts do not make a machine, no periodic motion is found, or the housing cannot be wrapped.
-    housing.HousingError
+    gearwhine.housing.HousingError
         Where the power through the surface and in the far field differ by more than 10 %, or a known source inside is
         lost at a vertex of the surface.
     """

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.failures import DamagedResultsError
+from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 from gearwhine.output import COMMANDS, finite, json_text, staging
 from gearwhine.output.files import finish_moves
 from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings, warning
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
 from gearwhine.progress import Progress, silent
-from housing.storage.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr

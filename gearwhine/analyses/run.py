@@ -10,10 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coupling.errors import TransientError
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, mesh_frequencies, require
 from gearwhine.case.checks.plausible import overload
+from gearwhine.coupling.errors import TransientError
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.output import staging
@@ -67,6 +67,7 @@ from gearwhine.solve.transient_record import stored_record
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.housing.correlation import Comparison
     from gearwhine.solve.coupled_system import SolvedSystem
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
@@ -76,7 +77,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.signature import SolvedSignature
     from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.transient import SolvedTransient
-    from housing.correlation import Comparison
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -111,9 +111,9 @@ def run(
 
     Raises
     ------
-    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+    CaseError, gearwhine.housing.HousingError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
         Where the case cannot be solved as it stands.
-    housing.errors.RendererUnavailableError
+    gearwhine.housing.errors.RendererUnavailableError
         Where modes are to be drawn and no renderer is available.
     """
     if case.transient is not None:
@@ -287,9 +287,9 @@ def simulate(
 
     Raises
     ------
-    CaseError, housing.HousingError, rotors.RotorError, coupling.CouplingError
+    CaseError, gearwhine.housing.HousingError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
         Where the case cannot be solved as it stands.
-    coupling.TransientError
+    gearwhine.coupling.TransientError
         Where the motion cannot be followed or its energies do not balance.
     """
     require(case, "rotor", "operation", "transient", command="simulate")
@@ -326,8 +326,8 @@ def run_into(
 
 
 def _require_renderer() -> None:
-    from housing.errors import RendererUnavailableError
-    from housing.pictures.scene import find_renderer
+    from gearwhine.housing.errors import RendererUnavailableError
+    from gearwhine.housing.pictures.scene import find_renderer
 
     try:
         find_renderer()

@@ -42,13 +42,13 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from coupling import GapLaw
-    from rotors import Pedestal as BuiltPedestal
-    from rotors.rolling_bearings import RollingBearing, Row
+    from gearwhine.coupling import GapLaw
+    from gearwhine.rotors import Pedestal as BuiltPedestal
+    from gearwhine.rotors.rolling_bearings import RollingBearing, Row
 
 Arrangement = Literal["single", "back to back", "face to face", "tandem"]
-# The types of `rotors.rolling_bearings.catalogue`, as a test verifies: a case is read without numpy, which that room
-# imports.
+# The types of `gearwhine.rotors.rolling_bearings.catalogue`, as a test verifies: a case is read without numpy, which
+# that room imports.
 CatalogueType = Literal[
     "deep-groove",
     "angular-contact",
@@ -89,7 +89,7 @@ class Stop(Table):
 
     def build(self) -> GapLaw:
         """Build the force law of the stop."""
-        from coupling import GapLaw
+        from gearwhine.coupling import GapLaw
 
         return GapLaw(self.force, self.depth, self.exponent, self.gap)
 
@@ -131,7 +131,7 @@ class Mounting(Table):
 
     def operating_clearance(self, row: Row, clearance: float, bore: float, outer_diameter: float) -> float:
         """Diametral clearance in operation of a row in a bearing of these diameters [m]."""
-        from rotors.rolling_bearings import RingFit, operating_clearance
+        from gearwhine.rotors.rolling_bearings import RingFit, operating_clearance
 
         inner_rise, outer_rise = self.inner_rise, self.outer_rise
         height = row.element_diameter * math.cos(row.contact_angle)
@@ -265,10 +265,10 @@ class _Mounted(Table):
 
         Raises
         ------
-        rotors.RotorError
+        gearwhine.rotors.RotorError
             Where there is no such bearing.
         """
-        from rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
+        from gearwhine.rotors.rolling_bearings import RollerRow, RollingBearing, preload_offset
 
         row, sense, label = self.build_row(), 1 if self.carries == "+z" else -1, f"bearing {name!r}"
         changes: dict[str, Any] = {}
@@ -292,7 +292,7 @@ class _Mounted(Table):
 
     def _rows(self, row: Row) -> tuple[Row, ...]:
         """All rows in their places, from one of them."""
-        from rotors.rolling_bearings import paired, standing_rows
+        from gearwhine.rotors.rolling_bearings import paired, standing_rows
 
         if self.arrangement == "single":
             return standing_rows(self.kind, row, self.width)
@@ -379,7 +379,7 @@ class RollingGeometry(_Mounted):
 
     def build_row(self) -> Row:
         """One row of balls or rollers."""
-        from rotors.rolling_bearings import (
+        from gearwhine.rotors.rolling_bearings import (
             BallRow,
             FourPointRow,
             RollerRow,
@@ -481,7 +481,7 @@ class RollingCatalogue(_Mounted):
 
     def build_row(self) -> Row:
         """One row, its inside estimated from the main dimensions and ratings."""
-        from rotors.rolling_bearings import catalogue_row
+        from gearwhine.rotors.rolling_bearings import catalogue_row
 
         size = self.catalogue
         return catalogue_row(
@@ -594,7 +594,7 @@ class Pedestal(Table):
 
     def build(self) -> BuiltPedestal:
         """Build the pedestal."""
-        from rotors import Pedestal as BuiltPedestal
+        from gearwhine.rotors import Pedestal as BuiltPedestal
 
         return BuiltPedestal(self.stiffness.build(), self.damping.build(), self.mass)
 
@@ -756,7 +756,7 @@ class Bearing(Table):
     @property
     def damping_time(self) -> float:
         """Damping over stiffness [s]; 0 where the damping is given by itself, and of typed stiffness without any."""
-        from rotors.rolling_bearings import ROLLING_DAMPING_TIME
+        from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME
 
         if isinstance(self.damping, StiffnessDamping):
             return self.damping.over_stiffness

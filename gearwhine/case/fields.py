@@ -28,10 +28,10 @@ from pydantic_core import PydanticCustomError, core_schema
 from gearwhine.case import units
 from gearwhine.case.input_files import files_of
 from gearwhine.case.units import Dimension, QuantityError, format_quantity, parse_quantity
-from numerics.names import has_hidden_characters
+from gearwhine.numerics.names import has_hidden_characters
 
 if TYPE_CHECKING:
-    from housing import Patch as BuiltPatch
+    from gearwhine.housing import Patch as BuiltPatch
 
 MOST_ENTRIES = 10_000
 """Most entries a list may hold; beyond it a case is a mistake, not a gearbox."""
@@ -383,6 +383,6 @@ class Patch(Table):
 
     def build_patch(self) -> BuiltPatch:
         """Build the patch of the mesh's surface."""
-        from housing import Patch as BuiltPatch
+        from gearwhine.housing import Patch as BuiltPatch
 
         return BuiltPatch(self.surface, self.corners, self.point_and_normal)

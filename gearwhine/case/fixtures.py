@@ -29,10 +29,10 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
-    from housing import Bushing as BuiltBushing
-    from housing import Joint as BuiltJoint
-    from housing import LumpedMass as BuiltMass
-    from housing import Mount as BuiltMount
+    from gearwhine.housing import Bushing as BuiltBushing
+    from gearwhine.housing import Joint as BuiltJoint
+    from gearwhine.housing import LumpedMass as BuiltMass
+    from gearwhine.housing import Mount as BuiltMount
 
 TiltStiffness = Annotated[float, Quantity(units.TILT_STIFFNESS, at_least=0.0)]
 TiltDamping = Annotated[float, Quantity(units.TILT_DAMPING, at_least=0.0)]
@@ -184,8 +184,8 @@ class Bushing(Table):
 
     def build_bushing(self) -> BuiltBushing:
         """Build the bushing: springs and dashpots along its axes."""
-        from housing import Bushing as BuiltBushing
-        from housing.model.bushings import GLOBAL_AXES, Axial, axes_along
+        from gearwhine.housing import Bushing as BuiltBushing
+        from gearwhine.housing.model.bushings import GLOBAL_AXES, Axial, axes_along
 
         tables = self.stiffness, self.damping
         if self.axis is not None:
@@ -219,7 +219,7 @@ class Mount(Patch, Bushing):
 
     def build(self) -> BuiltMount:
         """Build the mount."""
-        from housing import Mount as BuiltMount
+        from gearwhine.housing import Mount as BuiltMount
 
         return BuiltMount(self.name, self.build_patch(), self.build_bushing(), self.center)
 
@@ -250,8 +250,8 @@ class Joint(Bushing):
 
     def build(self) -> BuiltJoint:
         """Build the joint of two surfaces, or of circles on the faces that look along its axis and against it."""
-        from housing import Joint as BuiltJoint
-        from housing import Patch as BuiltPatch
+        from gearwhine.housing import Joint as BuiltJoint
+        from gearwhine.housing import Patch as BuiltPatch
 
         if self.surfaces is not None:
             first, second = (BuiltPatch(surface) for surface in self.surfaces)
@@ -332,8 +332,8 @@ class LumpedMass(Patch):
 
     def build(self) -> BuiltMass:
         """Build the lumped mass."""
-        from housing import LumpedMass as BuiltMass
-        from housing.model.fixtures import NO_INERTIA
+        from gearwhine.housing import LumpedMass as BuiltMass
+        from gearwhine.housing.model.fixtures import NO_INERTIA
 
         return BuiltMass(
             name=self.name,

@@ -1,7 +1,7 @@
 """Gears and gear pairs of a case, `[[gear]]` and `[[gear_pair]]`, and the gear train that the pairs form.
 
-Flank modifications, manufacturing errors and faults of a gear each build their object of `coupling.gears`. The train
-lists pairs of shafts with their tooth numbers. Attributes are named as the keys and are in SI.
+Flank modifications, manufacturing errors and faults of a gear each build their object of `gearwhine.coupling.gears`.
+The train lists pairs of shafts with their tooth numbers. Attributes are named as the keys and are in SI.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
-    from coupling.gears import Gear as BuiltGear
-    from coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
-    from coupling.gears.geometry.gear import Fault as BuiltFault
-    from coupling.machine.gear_train import GearTrain
     from gearwhine.case.housing import Material
+    from gearwhine.coupling.gears import Gear as BuiltGear
+    from gearwhine.coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
+    from gearwhine.coupling.gears.geometry.gear import Fault as BuiltFault
+    from gearwhine.coupling.machine.gear_train import GearTrain
 
 Deviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * math.pi)]
@@ -68,13 +68,13 @@ class Relief(Table):
 
     def build_tip_relief(self) -> TipRelief:
         """Build the relief as a tip relief."""
-        from coupling.gears import TipRelief
+        from gearwhine.coupling.gears import TipRelief
 
         return TipRelief(**self.model_dump())
 
     def build_root_relief(self) -> RootRelief:
         """Build the relief as a root relief."""
-        from coupling.gears import RootRelief
+        from gearwhine.coupling.gears import RootRelief
 
         return RootRelief(**self.model_dump())
 
@@ -104,7 +104,7 @@ class ProfileErrors(Table):
 
     def build(self) -> ProfileDeviation:
         """Build the profile deviation."""
-        from coupling.gears import ProfileDeviation
+        from gearwhine.coupling.gears import ProfileDeviation
 
         return ProfileDeviation(**self.model_dump())
 
@@ -129,7 +129,7 @@ class HelixErrors(Table):
 
     def build(self) -> HelixDeviation:
         """Build the helix deviation across the face."""
-        from coupling.gears import HelixDeviation
+        from gearwhine.coupling.gears import HelixDeviation
 
         return HelixDeviation(**self.model_dump())
 
@@ -228,7 +228,7 @@ class Fault(Table):
 
     def build(self) -> BuiltFault:
         """Build the gear fault of this kind."""
-        from coupling.gears import MissingTooth, Spall, ToothCrack, Wear
+        from gearwhine.coupling.gears import MissingTooth, Spall, ToothCrack, Wear
 
         kinds = {"wear": Wear, "spall": Spall, "crack": ToothCrack, "missing-tooth": MissingTooth}
         needed, optional = _KEYS_OF_FAULTS[self.kind]
@@ -390,7 +390,7 @@ class Gear(Table):
         """Normal module [m], also where the gear is given by its diametral pitch or its base radius."""
         if self.module is not None:
             return self.module
-        from coupling.gears.geometry.involute import module_from_base_radius, module_from_diametral_pitch
+        from gearwhine.coupling.gears.geometry.involute import module_from_base_radius, module_from_diametral_pitch
 
         if self.diametral_pitch is not None:
             return module_from_diametral_pitch(self.diametral_pitch)
@@ -402,7 +402,7 @@ class Gear(Table):
         """Radius of the base circle [m]."""
         if self.base_radius is not None:
             return self.base_radius
-        from coupling.gears.geometry.involute import module_from_base_radius
+        from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
 
         # The module is proportional to the base radius.
         return self.tooth_module / module_from_base_radius(1.0, self.teeth, self.pressure_angle, self.helix_angle)
@@ -414,10 +414,10 @@ class Gear(Table):
 
         Raises
         ------
-        coupling.gears.GearError
+        gearwhine.coupling.gears.GearError
             Where there is no such gear.
         """
-        from coupling.gears import Gear as BuiltGear
+        from gearwhine.coupling.gears import Gear as BuiltGear
 
         module, errors = self.tooth_module, self.errors
         gear = BuiltGear(
@@ -593,7 +593,7 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
 def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
     """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
     # The package brings numpy and scipy: only a case that turns waits for them.
-    from coupling.machine.gear_train import GearedShafts, gear_train
+    from gearwhine.coupling.machine.gear_train import GearedShafts, gear_train
 
     geared = [
         GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs

@@ -35,12 +35,12 @@ from gearwhine.case.fields import (
 )
 from gearwhine.case.fixtures import Dashpots, Joint, LumpedMass, Mount, Springs
 from gearwhine.case.units import QuantityError, parse_quantity
-from numerics.materials import STRUCTURAL_DAMPING
+from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 
 if TYPE_CHECKING:
-    from housing import Seat as BuiltSeat
-    from housing import Sensor as BuiltSensor
-    from housing import Support as BuiltSupport
+    from gearwhine.housing import Seat as BuiltSeat
+    from gearwhine.housing import Sensor as BuiltSensor
+    from gearwhine.housing import Support as BuiltSupport
 
 
 class Region(Table):
@@ -228,7 +228,7 @@ class Seat(Table):
 
     def build(self) -> BuiltSeat:
         """Build the bearing seat, by its surface in the mesh."""
-        from housing import Seat as BuiltSeat
+        from gearwhine.housing import Seat as BuiltSeat
 
         return BuiltSeat(self.name, self.center)
 
@@ -273,7 +273,7 @@ class Support(Patch):
 
     def build(self) -> BuiltSupport:
         """Build the support."""
-        from housing import Support as BuiltSupport
+        from gearwhine.housing import Support as BuiltSupport
 
         springs, dashpots, fixed = self.stiffness or Springs(), self.damping or Dashpots(), self.fixed or ()
         return BuiltSupport(
@@ -304,7 +304,7 @@ class Sensor(Table):
 
     def build(self) -> BuiltSensor:
         """Build the sensor."""
-        from housing import Sensor as BuiltSensor
+        from gearwhine.housing import Sensor as BuiltSensor
 
         return BuiltSensor(self.name, self.position, self.unit_vector)
 

@@ -129,7 +129,7 @@ def paths_in(value: Any) -> set[Path]:
 
 def _file_content(path: Path) -> dict[str, Any]:
     # Imported here: commands without files need no meshes.
-    from meshes.formats.companions import companion_files
+    from gearwhine.meshes.formats.companions import companion_files
 
     content: dict[str, Any] = {"sha256": _file_digest(path), "ending": path.suffix.lower()}
     if companions := [_file_digest(companion) for companion in companion_files(path)]:

@@ -233,7 +233,7 @@ class CaseSource:
     @property
     def input_paths(self) -> list[Path]:
         """Every file that is read: the case, the files that it names, and those that are read with them."""
-        from meshes.formats.companions import companion_files
+        from gearwhine.meshes.formats.companions import companion_files
 
         named = [Path(path) for path in self.files.contents]
         companions = [companion for path in named for companion in companion_files(path)]

@@ -39,7 +39,7 @@ from gearwhine.case.input_files import ChangedFileError, InputFiles, files_of
 from gearwhine.case.overrides import parse_key_path
 
 if TYPE_CHECKING:
-    from housing.measured import SurveyData
+    from gearwhine.housing.measured import SurveyData
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Align(Table):
 class Pairing(Table):
     """`[measured.pairing]`: pairing by shapes, with conditions for a pair of a measured shape and a model's.
 
-    See `housing.correlation.pairing.PairingRule`.
+    See `gearwhine.housing.correlation.pairing.PairingRule`.
     """
 
     least_mac: Annotated[float, Quantity(units.RATIO, above=0.0, at_most=1.0)] = 0.5
@@ -115,7 +115,7 @@ _OF_A_FILE = ("unit", "shape_frame", "align", "tolerance")
 class Measured(Table):
     """`[measured]`: frequencies of measured modes [Hz], ascending, and their damping ratios; or a `file` of them.
 
-    The file is a universal file or a table, see `housing.measured`.
+    The file is a universal file or a table, see `gearwhine.housing.measured`.
     """
 
     frequencies: tuple[PositiveFrequency, ...] | None = Field(default=None, min_length=1, max_length=MOST_ENTRIES)
@@ -174,8 +174,8 @@ class Measured(Table):
         return self
 
     def _read(self, files: InputFiles) -> Measured:
-        from housing import HousingError
-        from housing.measured import read_survey
+        from gearwhine.housing import HousingError
+        from gearwhine.housing.measured import read_survey
 
         assert self.file is not None
         try:

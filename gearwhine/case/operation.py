@@ -30,11 +30,11 @@ from gearwhine.case.fields import (
 )
 
 if TYPE_CHECKING:
-    from coupling import BaseMotion
-    from coupling.machine.gear_train import Output as BuiltOutput
-    from coupling.machine.loads import ShaftForce as BuiltForce
-    from coupling.machine.loads import TorqueHistory as BuiltHistory
-    from coupling.machine.loads import TorqueRipple as BuiltRipple
+    from gearwhine.coupling import BaseMotion
+    from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
+    from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
+    from gearwhine.coupling.machine.loads import TorqueHistory as BuiltHistory
+    from gearwhine.coupling.machine.loads import TorqueRipple as BuiltRipple
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -73,7 +73,7 @@ class TorqueHistory(Table):
         """Build the torque history, times a factor, on a rotor at a station [m]."""
         from numpy import array
 
-        from coupling.machine.loads import TorqueHistory as BuiltHistory
+        from gearwhine.coupling.machine.loads import TorqueHistory as BuiltHistory
 
         return BuiltHistory(rotor, at, array(self.time), factor * array(self.torque))
 
@@ -98,7 +98,7 @@ class TorqueRipple(Table):
 
     def build(self, rotor: str, at: float, sense: float) -> BuiltRipple:
         """Build the torque ripple on a rotor at a station [m], positive in the sense of a positive torque there."""
-        from coupling.machine.loads import TorqueRipple as BuiltRipple
+        from gearwhine.coupling.machine.loads import TorqueRipple as BuiltRipple
 
         frequency = None if self.frequency is None else 2.0 * math.pi * self.frequency
         amplitude = math.copysign(self.amplitude, sense * self.amplitude)
@@ -275,9 +275,9 @@ class Base(Table):
         """Build the base motion, the acceleration of the ground."""
         import numpy as np
 
-        from coupling import BaseMotion
-        from coupling.machine.base_motion import BaseHarmonic as BuiltHarmonic
-        from coupling.machine.base_motion import BaseHistory as BuiltHistory
+        from gearwhine.coupling import BaseMotion
+        from gearwhine.coupling.machine.base_motion import BaseHarmonic as BuiltHarmonic
+        from gearwhine.coupling.machine.base_motion import BaseHistory as BuiltHistory
 
         parts: list[BuiltHarmonic | BuiltHistory] = [
             BuiltHarmonic(
@@ -306,7 +306,7 @@ class Output(Table):
 
     def build(self) -> BuiltOutput:
         """Build the output torque of the gear train."""
-        from coupling.machine.gear_train import Output as BuiltOutput
+        from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
 
         return BuiltOutput(self.rotor, self.torque, self.at)
 
@@ -327,7 +327,7 @@ class ShaftForce(Table):
 
     def build(self) -> BuiltForce:
         """Build the force on the shaft."""
-        from coupling.machine.loads import ShaftForce as BuiltForce
+        from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
 
         return BuiltForce(self.rotor, self.at, (self.x, self.y, self.z))
 

@@ -54,13 +54,13 @@ from gearwhine.case.operation import Acceleration, Speeds
 
 if TYPE_CHECKING:
     from gearwhine.case.housing import Material
-    from rotors import Coupling as BuiltCoupling
-    from rotors import Disc as BuiltDisc
-    from rotors import Rotor as BuiltRotor
-    from rotors import Segment as BuiltSegment
-    from rotors import Unbalance as BuiltUnbalance
-    from rotors.model.loads import Bow as BuiltBow
-    from rotors.ross.reading import RossModel
+    from gearwhine.rotors import Coupling as BuiltCoupling
+    from gearwhine.rotors import Disc as BuiltDisc
+    from gearwhine.rotors import Rotor as BuiltRotor
+    from gearwhine.rotors import Segment as BuiltSegment
+    from gearwhine.rotors import Unbalance as BuiltUnbalance
+    from gearwhine.rotors.model.loads import Bow as BuiltBow
+    from gearwhine.rotors.ross.reading import RossModel
 
 _MOST_SHEAR = 1.5
 """Largest shear coefficient: sections that bend softer than they shear have little more than 1; for a larger one its
@@ -135,8 +135,8 @@ class Segment(Table):
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltSegment:
         """Build the shaft segment, with its rotor's properties where it has none of its own."""
-        from rotors import Segment as BuiltSegment
-        from rotors import ShaftMaterial
+        from gearwhine.rotors import Segment as BuiltSegment
+        from gearwhine.rotors import ShaftMaterial
 
         steel = materials[_named(self.material, rotor)]
         return BuiltSegment(
@@ -194,7 +194,7 @@ class CouplingSegment(Table):
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltCoupling:
         """Build the coupling, with its rotor's axial force where it has none of its own."""
-        from rotors import Coupling as BuiltCoupling
+        from gearwhine.rotors import Coupling as BuiltCoupling
 
         force = rotor.axial_force if self.axial_force is None else self.axial_force
         return BuiltCoupling(self.length, **self.coupling.model_dump(), axial_force=force)
@@ -214,7 +214,7 @@ class Disc(Table):
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltDisc:
         """Build the disc; it takes no property from its rotor."""
-        from rotors import Disc as BuiltDisc
+        from gearwhine.rotors import Disc as BuiltDisc
 
         return BuiltDisc(**self.model_dump())
 
@@ -245,7 +245,7 @@ class RoundDisc(Table):
 
     def build(self, rotor: Rotor, materials: Mapping[str, Material]) -> BuiltDisc:
         """Build the disc by its dimensions and density."""
-        from rotors import Disc as BuiltDisc
+        from gearwhine.rotors import Disc as BuiltDisc
 
         density = self.density
         if density is None:
@@ -358,7 +358,7 @@ class Rotor(Table):
         for key in _OF_THE_SHAFT:
             if key in self.model_fields_set:
                 raise wrong("no such key beside file, which holds the shaft", key)
-        from rotors import RotorError, read_ross
+        from gearwhine.rotors import RotorError, read_ross
 
         try:
             self._saved = files_of(info).read(self.file, read_ross)
@@ -406,7 +406,7 @@ class Rotor(Table):
 
     def build(self, materials: Mapping[str, Material]) -> BuiltRotor:
         """Build the shaft with its discs, without the gears on it; the discs of the rotor's own file stand first."""
-        from rotors import Rotor as BuiltRotor
+        from gearwhine.rotors import Rotor as BuiltRotor
 
         discs = [disc.build(self, materials) for disc in self.discs]
         if self._saved is not None:
@@ -415,7 +415,7 @@ class Rotor(Table):
         return BuiltRotor(self.name, self._build_segments(materials), discs, self.mass)
 
     def _build_segments(self, materials: Mapping[str, Material]) -> list[BuiltSegment | BuiltCoupling]:
-        from rotors.model.segment import forces_beside
+        from gearwhine.rotors.model.segment import forces_beside
 
         segments = [segment.build(self, materials) for segment in self.segments]
         for number, table in enumerate(self.segments):
@@ -427,7 +427,7 @@ class Rotor(Table):
 
     def build_unbalance(self) -> list[BuiltUnbalance]:
         """Build the unbalances."""
-        from rotors import Unbalance as BuiltUnbalance
+        from gearwhine.rotors import Unbalance as BuiltUnbalance
 
         return [BuiltUnbalance(entry.at, entry.moment, entry.phase) for entry in self.unbalance]
 
@@ -437,7 +437,7 @@ class Rotor(Table):
             return None
         from numpy import array
 
-        from rotors.model.loads import Bow as BuiltBow
+        from gearwhine.rotors.model.loads import Bow as BuiltBow
 
         return BuiltBow(*array([(point.at, point.amplitude, point.phase) for point in self.bow]).T)
 
@@ -448,7 +448,7 @@ _ROUNDING = 1e-9  # part of a shaft's length within which a station stands at th
 def _shaft_material(shaft: BuiltRotor, at: float) -> Material | None:
     """Return the one material of the segments that a station [m] touches; None where there is not one."""
     from gearwhine.case.housing import Material
-    from rotors import Segment as BuiltSegment
+    from gearwhine.rotors import Segment as BuiltSegment
 
     ends, rounding = shaft.joints.tolist(), _ROUNDING * shaft.length
     touched = {

@@ -2,7 +2,7 @@
 
 The physics of ``run``: :func:`gearwhine.analyses.run.run` solves housing, rotors and gear pairs in turn, the coupled
 motion by :func:`gearwhine.solve.transient.solve_transient`, which integrates in time with
-:func:`coupling.time.transient.integrate_blocks`.
+:func:`gearwhine.coupling.time.transient.integrate_blocks`.
 """
 
 import sys

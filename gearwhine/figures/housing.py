@@ -49,9 +49,9 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
+from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
+from gearwhine.housing.measured import MeasuredGeometry
 from gearwhine.results.comparison import coordinate_names
-from housing.correlation.comparison import Comparison, ShapeCorrelation
-from housing.measured import MeasuredGeometry
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coupling.signals.spectrum import Spectrum, decibels
+from gearwhine.coupling.signals.spectrum import Spectrum, decibels
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

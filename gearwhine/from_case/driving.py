@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling import SpeedProfile, Torque
-from coupling.machine.components import RotorComponent
-from coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
-from coupling.machine.parts import Driving
-from coupling.machine.speed_profile import free_speed
 from gearwhine.case import Case, TorqueLine, applied_torques, speed_ratios
 from gearwhine.case.speeds_and_torques import gear_train_of
+from gearwhine.coupling import SpeedProfile, Torque
+from gearwhine.coupling.machine.components import RotorComponent
+from gearwhine.coupling.machine.loads import AnyTorque, Drive, TorqueHistory, TorqueSlope
+from gearwhine.coupling.machine.parts import Driving
+from gearwhine.coupling.machine.speed_profile import free_speed
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def driving(case: Case, rotors: Sequence[RotorComponent]) -> CaseDriving:
 
     Raises
     ------
-    coupling.TransientError
+    gearwhine.coupling.TransientError
         Where a free speed cannot start or stalls.
     """
     operation = case.operation

@@ -8,12 +8,12 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, one_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.mesh import cover_joints
-from housing import HousingError
-from housing import Support as HousingSupport
-from housing.fem.matrices import Additions, Matrices
-from housing.model.fixtures import Fixture
-from housing.model.seats import sensor_port
-from meshes import GeometryError, Mesh
+from gearwhine.housing import HousingError
+from gearwhine.housing import Support as HousingSupport
+from gearwhine.housing.fem.matrices import Additions, Matrices
+from gearwhine.housing.model.fixtures import Fixture
+from gearwhine.housing.model.seats import sensor_port
+from gearwhine.meshes import GeometryError, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

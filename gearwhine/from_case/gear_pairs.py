@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
-from coupling.gears.errors import ThinTipError
-from coupling.gears.geometry.gear import require_tip_thickness
-from coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
-from coupling.machine.gear_train import LARGEST_OFFSET
-from coupling.machine.parts import inertia_with_discs
-from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case, CaseError, Problem, pair_torques, require, rotor_speeds, shaft_of
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.input_files import ChangedFileError
+from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from gearwhine.coupling.gears.errors import ThinTipError
+from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
+from gearwhine.coupling.machine.parts import inertia_with_discs
+from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.rotors import build_gear, shaft_gears
 from gearwhine.progress import Progress, silent
 
@@ -34,7 +34,7 @@ def solve_gears(
 
     Raises
     ------
-    CaseError, coupling.gears.GearError
+    CaseError, gearwhine.coupling.gears.GearError
         Where the case has no gear pairs, or one cannot be solved as it stands.
     """
     require(case, "gear_pair", command="gears")

@@ -3,14 +3,14 @@
 import numpy as np
 import numpy.typing as npt
 
-from coupling import BaseMotion, Machine, MountedBearing, Shaft
-from coupling.machine.components import HousingComponent
-from coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.case import Case, Rotor, require
+from gearwhine.coupling import BaseMotion, Machine, MountedBearing, Shaft
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.from_case.gear_pairs import build_pair
 from gearwhine.from_case.rotors import bearing_law, build_bearings, rolling_elements, rolling_states, shaft_gears
-from rotors import Bearing
-from rotors.rolling_bearings import RollingState
+from gearwhine.rotors import Bearing
+from gearwhine.rotors.rolling_bearings import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def require_machine(case: Case) -> None:
 
     Raises
     ------
-    CaseError, rotors.RotorError, coupling.CouplingError, coupling.gears.GearError
+    CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
         As :func:`describe_machine`; thrust that nothing carries is among the reasons.
     """
     if case.gear_pair and case.rotor and case.operation is not None:
@@ -40,7 +40,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
 
     Raises
     ------
-    CaseError, rotors.RotorError, coupling.CouplingError, coupling.gears.GearError
+    CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
         Where the parts do not make a machine.
     """
     require(case, "rotor", "operation", command="system")
@@ -101,7 +101,8 @@ def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str,
 
     Raises
     ------
-    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+    CaseError, gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError,
+    gearwhine.rotors.EquilibriumError
         Where a bearing cannot exist with its load or geometry, or the machine has no operating point.
     """
     built = {rotor.name: (build_bearings(case, rotor.name), rolling_states(case, rotor.name)) for rotor in case.rotor}

@@ -13,15 +13,15 @@ from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID, one_of
 from gearwhine.case.housing import Region
 from gearwhine.case.input_files import ChangedFileError
-from housing import Joint, Material
-from housing.fem.nearest_point import NearestOnSurface
-from housing.fem.surface import flat_faces
-from housing.housing import cover_joint
-from meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
-from meshes.bores import CylindricalBore
-from meshes.errors import MeshSizeError
-from meshes.lengths import UNITS, length_text
-from meshes.quality import WaveCarrier
+from gearwhine.housing import Joint, Material
+from gearwhine.housing.fem.nearest_point import NearestOnSurface
+from gearwhine.housing.fem.surface import flat_faces
+from gearwhine.housing.housing import cover_joint
+from gearwhine.meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
+from gearwhine.meshes.bores import CylindricalBore
+from gearwhine.meshes.errors import MeshSizeError
+from gearwhine.meshes.lengths import UNITS, length_text
+from gearwhine.meshes.quality import WaveCarrier
 
 
 def ignore_warning(warning: str) -> None:

@@ -14,15 +14,15 @@ from gearwhine.case.checks.housing import wall_volume
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.fixtures import check_places
 from gearwhine.from_case.mesh import box_mesh_size, build_mesh, cover_joints, materials_of
+from gearwhine.housing import HousingError, Joint, ModeSet
+from gearwhine.housing.model.seats import sensor_port
+from gearwhine.housing.modes.health import DISCRETISATION_BOUND
+from gearwhine.meshes import GeometryError, Mesh, MeshDefect, diagnose, resolution_defects
+from gearwhine.meshes.gmsh_meshing import expected_elements
+from gearwhine.meshes.lengths import UNITS, length_text
+from gearwhine.meshes.quality import WaveCarrier, resolving_size, wall_thickness
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
-from housing import HousingError, Joint, ModeSet
-from housing.model.seats import sensor_port
-from housing.modes.health import DISCRETISATION_BOUND
-from meshes import GeometryError, Mesh, MeshDefect, diagnose, resolution_defects
-from meshes.gmsh_meshing import expected_elements
-from meshes.lengths import UNITS, length_text
-from meshes.quality import WaveCarrier, resolving_size, wall_thickness
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -131,7 +131,7 @@ class MeshPreview:
         Size of the housing along x, y and z [m].
     mesh_size : float or None
         Length of the elements, where the housing is meshed and not read [m].
-    bolts : list of housing.Joint, or None
+    bolts : list of gearwhine.housing.Joint, or None
         Bolts of a box's cover.
     mesh : Mesh or None
         Mesh of a file; that of a CAD file has straight elements, which show its bores as well and are made sooner.

@@ -21,15 +21,22 @@ from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import amount, si_amount
 from gearwhine.from_case.fixtures import attach_all, build_attachments
 from gearwhine.from_case.mesh import build_mesh, materials_of
+from gearwhine.housing import HousingError, assemble, solve_modes
+from gearwhine.housing.fem.matrices import Additions
+from gearwhine.housing.material import element_constants
+from gearwhine.housing.measured.survey_planning import survey_grid
+from gearwhine.housing.model.seats import seat_matrix
+from gearwhine.housing.updating import (
+    ModalState,
+    ModelSensitivity,
+    Parameter,
+    Surrogate,
+    modal_sensitivities,
+    values_at,
+)
+from gearwhine.meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
+from gearwhine.meshes.box.morph import MorphError
 from gearwhine.progress import Progress, silent
-from housing import HousingError, assemble, solve_modes
-from housing.fem.matrices import Additions
-from housing.material import element_constants
-from housing.measured.survey_planning import survey_grid
-from housing.model.seats import seat_matrix
-from housing.updating import ModalState, ModelSensitivity, Parameter, Surrogate, modal_sensitivities, values_at
-from meshes import BoxGeometry, BoxMorph, GeometryError, Mesh, mesh_quality
-from meshes.box.morph import MorphError
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
 _SAME = 1e-9  # relative difference of numbers written in different units
@@ -48,7 +55,7 @@ class FittedNumber:
     Attributes
     ----------
     given : UpdateParameter
-    parameter : housing.updating.Parameter
+    parameter : gearwhine.housing.updating.Parameter
         Parameter with its range and prior [SI].
     places : tuple of locations
     own : tuple of float
@@ -325,7 +332,7 @@ class ParametricHousing:
     threads : int
     progress : callable
     draft : bool
-        Whether modes are solved without proof, as within a search (:func:`housing.solve_modes`).
+        Whether modes are solved without proof, as within a search (:func:`gearwhine.housing.solve_modes`).
     as_written : bool
         Whether values are rounded as an updated case has them, so that the solved design is the written one: other last
         digits may lead to another mesh, and change frequencies by some 0.03 %.
@@ -361,7 +368,7 @@ class ParametricHousing:
 
         Raises
         ------
-        housing.HousingError
+        gearwhine.housing.HousingError
             Where the values make no valid housing.
         """
         try:
@@ -412,7 +419,7 @@ class HousingAtParameters:
     coordinates : ndarray, shape (n_parameters,)
     case : Case
     mesh : Mesh
-    state : housing.updating.ModalState
+    state : gearwhine.housing.updating.ModalState
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
         Mass-normalised shapes of the state's modes [1/√kg]; None once they are dropped.
     known : Surrogate or None

@@ -6,18 +6,18 @@ Rolling bearings are linearised about their equilibrium under load.
 import numpy as np
 import numpy.typing as npt
 
-from coupling import RollingLaw, ShaftGear
-from coupling.gears import Gear
-from coupling.machine.bearing_laws import BearingLaw
-from coupling.machine.parts import rotor_with_gears
 from gearwhine.case import Bearing, Case, CaseError, Problem, RollingStiffness, StopStiffness
 from gearwhine.case import Gear as GivenGear
 from gearwhine.case import Rotor as GivenRotor
 from gearwhine.case.bearings import MatrixDamping, RadialDamping
 from gearwhine.case.errors import UNSAID
-from rotors import Bearing as RotorBearing
-from rotors import EquilibriumError, Rotor, RotorError
-from rotors import rolling_bearings as rolling
+from gearwhine.coupling import RollingLaw, ShaftGear
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.machine.bearing_laws import BearingLaw
+from gearwhine.coupling.machine.parts import rotor_with_gears
+from gearwhine.rotors import Bearing as RotorBearing
+from gearwhine.rotors import EquilibriumError, Rotor, RotorError
+from gearwhine.rotors import rolling_bearings as rolling
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
+from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 from gearwhine.output.quantity import ABSENT, RPM, Field, Fields, Part, Quantity
-from housing.storage.netcdf import Variables, write_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -32,7 +32,7 @@ from gearwhine.output.store import DATA, stored_results
 if TYPE_CHECKING:
     import xarray as xr
 
-    from housing.measured.universal_writing import UniversalFunction
+    from gearwhine.housing.measured.universal_writing import UniversalFunction
 
 FloatArray = npt.NDArray[np.float64]
 Chapters = Callable[[Document], Iterable[Section]]
@@ -192,7 +192,7 @@ def write_universal_files(folder: Path, place: Path, signals: Signals = "sensors
     list of dict
         File and number of functions of each, and the sensors whose points the result does not hold.
     """
-    from housing.measured.universal_writing import write_functions
+    from gearwhine.housing.measured.universal_writing import write_functions
 
     written: list[Document] = []
     for command, _, data in _datasets(folder):
@@ -280,7 +280,7 @@ def _microphone_places(data: xr.Dataset, before: int) -> tuple[_Places, list[tup
 
 def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunction]:
     """Yield the lines of the sound at each microphone as a spectrum."""
-    from housing.measured.universal_writing import UniversalFunction
+    from gearwhine.housing.measured.universal_writing import UniversalFunction
 
     if "sound_pressure" not in data:
         return
@@ -300,7 +300,7 @@ def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunctio
 
 def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[UniversalFunction]:
     """Yield every real history and every complex or real spectrum along an axis in s or Hz."""
-    from housing.measured.universal_writing import UniversalFunction
+    from gearwhine.housing.measured.universal_writing import UniversalFunction
 
     for name, variable in data.data_vars.items():
         axis = next((dimension for dimension in variable.dims if _axis_unit(data, dimension) in _KINDS), None)

@@ -112,9 +112,12 @@ PRESENTATION = (
     "gearwhine.output.export",
     "gearwhine.output.report",
     "gearwhine.output.terminal",
-    "housing.pictures",
+    "gearwhine.housing.pictures",
 )
 """Code that shows numbers and makes none."""
+
+ROOMS = ("gearwhine.numerics", "gearwhine.meshes", "gearwhine.housing", "gearwhine.rotors", "gearwhine.coupling")
+"""Packages of the physics, links in the front door's folder of a checkout."""
 
 
 @cache

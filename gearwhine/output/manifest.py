@@ -7,7 +7,8 @@ A file *is ours* where the manifest lists it (:func:`listed_digests`), whatever 
 written* where its bytes have the listed digest (:func:`is_as_written`), so that one that a user has edited is not.
 Folders of versions without manifests have none: there the summary of each command lists its files under ``files``
 (:func:`gearwhine.output.files.listed_files`). Points of sweeps, in ``points``, are not listed: each file ends with a
-checksum of its own, as ``modes.nc`` does; :func:`housing.storage.atomic_file.checksum_holds` is None for a foreign one.
+checksum of its own, as ``modes.nc`` does; :func:`gearwhine.housing.storage.atomic_file.checksum_holds` is None for a
+foreign one.
 """
 
 import hashlib
@@ -18,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.failures import DamagedResultsError
-from housing.storage.netcdf import content_key
+from gearwhine.housing.storage.netcdf import content_key
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwhine.case import Case, dump_case
+from gearwhine.housing.storage.netcdf import Variables, read_netcdf
 from gearwhine.output.files import (
     COMMANDS,
     MODE_CACHE_FILE,
@@ -25,7 +26,6 @@ from gearwhine.output.files import (
     read_summary,
     staging,
 )
-from housing.storage.netcdf import Variables, read_netcdf
 
 DATA = "results.nc"
 """Name of the file of a result's labelled arrays."""

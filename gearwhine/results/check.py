@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coupling.machine.axial_location import ARRANGEMENTS
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
+from gearwhine.coupling.machine.axial_location import ARRANGEMENTS
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted
 from gearwhine.progress import Progress, silent
@@ -21,10 +21,10 @@ from gearwhine.solve.damping import damping_document
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
-    from coupling.machine.loads import Torque
     from gearwhine.case import Joint, Mount
     from gearwhine.case.rotors import Rotor as CaseRotor
-    from housing import Joint as BuiltJoint
+    from gearwhine.coupling.machine.loads import Torque
+    from gearwhine.housing import Joint as BuiltJoint
 
 
 def _optional(key: str, of: Any) -> Quantity:

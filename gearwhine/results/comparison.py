@@ -17,10 +17,10 @@ from gearwhine.results.housing import shape_places
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
+    from gearwhine.housing.measured import MappedSurvey, MeasuredGeometry
     from gearwhine.solve.comparison import ResponseCorrelation
     from gearwhine.solve.housing_modes import SolvedHousing
-    from housing.correlation.comparison import Comparison, ShapeCorrelation
-    from housing.measured import MappedSurvey, MeasuredGeometry
 
 PAIR = (
     Quantity(

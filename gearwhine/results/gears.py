@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
-from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
-from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
+from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
+from gearwhine.coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of

@@ -240,7 +240,7 @@ def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
 
 def write_shapes(path: Path, housing: "SolvedHousing") -> None:
     """Write the mesh with every mode shape as a point array, for ParaView and its like."""
-    from meshes.formats.meshio_formats import load_meshio
+    from gearwhine.meshes.formats.meshio_formats import load_meshio
 
     meshio = load_meshio()
     shapes = {

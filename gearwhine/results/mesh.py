@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from gearwhine.from_case.mesh import bores_along_axes
+from gearwhine.meshes import Mesh, mesh_quality
+from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section
 from gearwhine.results.housing import MESH_SIZE
-from meshes import Mesh, mesh_quality
-from meshes.bores import CylindricalBore
 
 
 class BoreAlongAxis(NamedTuple):

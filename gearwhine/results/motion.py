@@ -9,11 +9,11 @@ from gearwhine.results.housing import shape_places
 from gearwhine.results.line_columns import LINE_NAME, MECHANISMS, line_frequency
 
 if TYPE_CHECKING:
-    from coupling.machine.mounted_parts import GearMesh
-    from coupling.periodic.response import PeriodicResponse
-    from coupling.periodic.superposition import SuperposedResponse
-    from coupling.signals.spectrum import SignalParts
-    from coupling.time.transient import TransientFigures
+    from gearwhine.coupling.machine.mounted_parts import GearMesh
+    from gearwhine.coupling.periodic.response import PeriodicResponse
+    from gearwhine.coupling.periodic.superposition import SuperposedResponse
+    from gearwhine.coupling.signals.spectrum import SignalParts
+    from gearwhine.coupling.time.transient import TransientFigures
 
 _LEAST_ERROR = 0.03  # smallest error of a line that is shown
 _LINES_OF_A_SENSOR = 6  # lines of a sensor in the report

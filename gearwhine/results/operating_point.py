@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.case import EQUAL_MESHES
+from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
+from gearwhine.housing.acoustics.sound_levels import power_level
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import (
     Column,
@@ -23,11 +24,10 @@ from gearwhine.output.sections import (
 )
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.bearing_lives import life_quantities
-from housing.acoustics.sound_levels import power_level
 
 if TYPE_CHECKING:
-    from coupling.linear.line_sensitivity import Line
-    from coupling.statics.operating_point import OperatingPoint
+    from gearwhine.coupling.linear.line_sensitivity import Line
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
     from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity

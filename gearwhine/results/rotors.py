@@ -16,11 +16,11 @@ from gearwhine.results.housing import COUNT_CERTIFICATE
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from gearwhine.rotors.analyses.campbell import Crossing
+    from gearwhine.rotors.rolling_bearings import RollingState
+    from gearwhine.rotors.whirl.whirl_modes import WhirlModes
     from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.rotors import Crossings, ProbeReading, SolvedResponse, SolvedRotor
-    from rotors.analyses.campbell import Crossing
-    from rotors.rolling_bearings import RollingState
-    from rotors.whirl.whirl_modes import WhirlModes
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
@@ -219,7 +219,7 @@ def _rated(row: _Rolling) -> "BearingLife":
 
 def _frequencies(row: _Rolling) -> dict[str, float] | None:
     """Characteristic frequencies of the first row at the speed of operation [Hz]."""
-    from rotors.rolling_bearings import characteristic_frequencies
+    from gearwhine.rotors.rolling_bearings import characteristic_frequencies
 
     operation = row.solved.operation
     if not operation:

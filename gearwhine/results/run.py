@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import h5netcdf
 import numpy as np
 
-from coupling.signals.peaks import Peak
-from coupling.signals.spectrum import at_time_zero
-from coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
+from gearwhine.coupling.signals.peaks import Peak
+from gearwhine.coupling.signals.spectrum import at_time_zero
+from gearwhine.coupling.time.histories import HISTORY_QUANTITIES, HistoryQuantity
+from gearwhine.housing.storage.netcdf import Variables, reserve_space
 from gearwhine.output.quantity import ABSENT, RPM, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.results import comparison, operating_point, sound
@@ -33,16 +34,15 @@ from gearwhine.results.motion import (
     path_place,
     shape_column,
 )
-from housing.storage.netcdf import Variables, reserve_space
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from coupling.linear.complex_modes import CoupledModes
-    from coupling.signals import LineName
-    from coupling.signals.sidebands import Sideband
-    from coupling.signals.spectrum import Spectrum
-    from coupling.time.transient import TransientFigures
+    from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.signals import LineName
+    from gearwhine.coupling.signals.sidebands import Sideband
+    from gearwhine.coupling.signals.spectrum import Spectrum
+    from gearwhine.coupling.time.transient import TransientFigures
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
     from gearwhine.solve.transient import SolvedTransient

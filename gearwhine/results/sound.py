@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import (
     Column,
@@ -20,11 +21,10 @@ from gearwhine.output.sections import (
     table_of,
 )
 from gearwhine.results.line_columns import MECHANISMS, line_frequency
-from housing.acoustics.sound_levels import BOX_MICROPHONES, power_level, pressure_level
 
 if TYPE_CHECKING:
+    from gearwhine.housing.acoustics.known_source import SourceError
     from gearwhine.solve.sound.solution import SolvedSound, SoundLine
-    from housing.acoustics.known_source import SourceError
 
 _METHODS = {
     "boundary-elements": "boundary elements over the whole surface",

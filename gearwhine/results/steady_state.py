@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coupling.signals.line_names import line_names
+from gearwhine.coupling.signals.line_names import line_names
 from gearwhine.output.quantity import ABSENT, RPM, Part, Quantity, Rows, add_warnings, document_of
 from gearwhine.output.sections import Document, Picture, Section, Table, columns_of, counted, percent, table_of
 from gearwhine.output.store import Option, kept_sentence
@@ -25,11 +25,11 @@ from gearwhine.results.motion import (
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
-    from coupling.assembly import CoupledMachine
-    from coupling.machine.mounted_parts import GearMesh
-    from coupling.periodic.continuation import ResponseCurve
-    from coupling.periodic.response import PeriodicResponse
-    from coupling.periodic.superposition import SuperposedResponse
+    from gearwhine.coupling.assembly import CoupledMachine
+    from gearwhine.coupling.machine.mounted_parts import GearMesh
+    from gearwhine.coupling.periodic.continuation import ResponseCurve
+    from gearwhine.coupling.periodic.response import PeriodicResponse
+    from gearwhine.coupling.periodic.superposition import SuperposedResponse
     from gearwhine.solve.steady_state import SolvedSteady, SteadyMotion
 
 _TILTS = ("about x", "about y")

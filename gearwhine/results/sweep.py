@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from coupling.signals.spectrum import from_decibels, rms_of_peak
+from gearwhine.coupling.signals.spectrum import from_decibels, rms_of_peak
 from gearwhine.output.quantity import ABSENT, Quantity
 from gearwhine.output.sections import (
     Column,

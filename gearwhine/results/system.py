@@ -17,9 +17,9 @@ from gearwhine.results.operating_point import brief
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from coupling.linear.campbell import SystemCampbell, SystemCrossing
-    from coupling.linear.frequency_response import FrequencyResponse
-    from coupling.linear.mesh_harmonics import ResponseParts
+    from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
+    from gearwhine.coupling.linear.frequency_response import FrequencyResponse
+    from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
     from gearwhine.solve.coupled_system import SolvedSystem
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gearwhine.case import Case, RollingStiffness
-from rotors.rolling_bearings import RollingState, dynamic_rating
-from rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from gearwhine.rotors.rolling_bearings import RollingState, dynamic_rating
+from gearwhine.rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
 
 _HOUR = 3600.0
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from coupling.gears import GearPairGeometry
-from coupling.machine.axial_location import AxialLocation
 from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
+from gearwhine.coupling.gears import GearPairGeometry
+from gearwhine.coupling.machine.axial_location import AxialLocation
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
     TakenMisalignment,
@@ -23,11 +23,11 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 from gearwhine.solve.sound import check_before_modes
-from rotors import Rotor as BuiltRotor
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class CheckedRotor:
     ----------
     given : Rotor
         Table of the rotor in the case.
-    built : rotors.Rotor
+    built : gearwhine.rotors.Rotor
     speed : float or None
         Speed in operation [rad/s]; None without an operation.
     """
@@ -55,7 +55,7 @@ class CheckedPair:
     Attributes
     ----------
     given : GearPair
-    geometry : coupling.gears.GearPairGeometry
+    geometry : gearwhine.coupling.gears.GearPairGeometry
     misalignment : TakenMisalignment
     mesh_frequency : float or None
         Mesh frequency [Hz]; None without an operation.
@@ -89,7 +89,7 @@ class CheckedCase:
         Mesh of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
-    locations : tuple of coupling.machine.axial_location.AxialLocation
+    locations : tuple of gearwhine.coupling.machine.axial_location.AxialLocation
         Axial location of each rotor.
     warnings : list of dict
         Warnings, as in the documents.

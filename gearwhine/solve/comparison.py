@@ -17,12 +17,9 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.case.measured import Measured
 from gearwhine.case.measured import Pairing as PairingTable
 from gearwhine.from_case.fixtures import build_supports
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing
-from housing import HousingError, ModeSet
-from housing.correlation import frac, synthesised_responses
-from housing.correlation.comparison import (
+from gearwhine.housing import HousingError, ModeSet
+from gearwhine.housing.correlation import frac, synthesised_responses
+from gearwhine.housing.correlation.comparison import (
     Comparison,
     Pairing,
     compare_by_dominance,
@@ -30,8 +27,8 @@ from housing.correlation.comparison import (
     compare_by_shapes,
     with_shapes,
 )
-from housing.correlation.pairing import PairingRule
-from housing.measured import (
+from gearwhine.housing.correlation.pairing import PairingRule
+from gearwhine.housing.measured import (
     Alignment,
     MappedSurvey,
     MeasuredGeometry,
@@ -49,7 +46,10 @@ from housing.measured import (
     write_table,
     write_universal,
 )
-from meshes import Mesh
+from gearwhine.meshes import Mesh
+from gearwhine.output.quantity import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -172,7 +172,7 @@ def compare_with_survey(
     ------
     CaseError
         Where nothing is measured, the survey does not fit the housing, or the modes cannot be compared.
-    housing.HousingError
+    gearwhine.housing.HousingError
         Where the model has too few modes in the band.
     """
     measured = read_measured(case, progress)
@@ -237,7 +237,7 @@ def _mesh_dependence(comparison: Comparison, modes: ModeSet) -> list[dict[str, A
 
 @dataclass(frozen=True)
 class ResponseCorrelation:
-    """FRAC of every measured response; see :func:`housing.correlation.frac`.
+    """FRAC of every measured response; see :func:`gearwhine.housing.correlation.frac`.
 
     Attributes
     ----------
@@ -285,7 +285,7 @@ def compare_responses(
 
     Raises
     ------
-    housing.HousingError
+    gearwhine.housing.HousingError
         Where no two lines are left, a force was applied off the surface, or a mode has no damping at its own frequency.
     """
     limit = solved.modes.certificate.limit
@@ -354,7 +354,7 @@ def pair_modes(
     CaseError
         Where the model's modes are not known as high as the measured ones, or the housing lacks the seats between
         which and the skin modes are dominant.
-    housing.HousingError
+    gearwhine.housing.HousingError
         Where the model has too few modes in the band, or its shapes do not fit the measured ones.
     """
     pairing = pairing or ("nearest" if measured.shapes is None or shapes is None else "shapes")

@@ -5,23 +5,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, ModesError, coupled_modes, system_campbell
-from coupling import stability as coupled_stability
-from coupling.linear.campbell import SystemCampbell
-from coupling.linear.complex_modes import CoupledModes, Stability
-from coupling.linear.excitation_orders import excitation_lines
-from coupling.linear.frequency_response import (
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
+from gearwhine.case.errors import NOTHING
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, range_of_tables, with_sense_of_operation
+from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes, system_campbell
+from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.linear.campbell import SystemCampbell
+from gearwhine.coupling.linear.complex_modes import CoupledModes, Stability
+from gearwhine.coupling.linear.excitation_orders import excitation_lines
+from gearwhine.coupling.linear.frequency_response import (
     FrequencyResponse,
     mesh_error_response,
     resonance_grid,
     touching_meshes,
     unbalance_response,
 )
-from coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
-from coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
-from gearwhine.case.errors import NOTHING
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, CAMPBELL_STEPS, range_of_tables, with_sense_of_operation
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
+from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 
@@ -45,7 +45,7 @@ class SolvedSystem:
 
     Attributes
     ----------
-    machine : coupling.CoupledMachine
+    machine : gearwhine.coupling.CoupledMachine
     speed : float
         Speed of operation [rad/s].
     housing : SolvedHousing or None
@@ -125,7 +125,7 @@ def solve_system(
     ------
     CaseError
         Where a phase is asked for without gears that turn, or a diagram without a speed.
-    coupling.ModesError
+    gearwhine.coupling.ModesError
         Where modes fail their proof.
     """
     progress("modes of the coupled system")

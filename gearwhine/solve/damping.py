@@ -3,7 +3,7 @@
 Damping decides the height of resonances and does not follow from drawings. Defaults, and measured ranges beside them:
 
 - housing: 1 % of critical in every mode, between those of welded or bolted and of cast ones, see
-  :data:`numerics.materials.STRUCTURAL_DAMPING`.
+  :data:`gearwhine.numerics.materials.STRUCTURAL_DAMPING`.
 - shafts: 0.5 % of critical in bending and twisting (Lin, Huston and Coy 1988, *On dynamic loads in parallel shaft
   transmissions*, have 0.5 to 0.75 %).
 - meshes: ratio of the two gears against each other; 3 to 17 % was measured (Kasuba and Evans 1981; Wang and Cheng
@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearwhine.case import Case
+from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 from gearwhine.output.quantity import warning
-from numerics.materials import STRUCTURAL_DAMPING
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from coupling.machine.gear_bodies import KEPT_BELOW, body_out_of_plane
-from coupling.machine.parts import gear_inertia_on_shaft
 from gearwhine.case import Case
+from gearwhine.coupling.machine.gear_bodies import KEPT_BELOW, body_out_of_plane
+from gearwhine.coupling.machine.parts import gear_inertia_on_shaft
 from gearwhine.from_case.machine import build_shaft
 from gearwhine.from_case.rotors import shaft_gears
 

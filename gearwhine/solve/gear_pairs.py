@@ -12,7 +12,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import (
+from gearwhine.case import Case, CaseError, Problem, force_origins, require
+from gearwhine.case import GearPair as GivenPair
+from gearwhine.case.errors import NOTHING
+from gearwhine.case.gears import ReliefAim as GivenAim
+from gearwhine.coupling.gears import (
     GearPairGeometry,
     LoadedMesh,
     ToothContact,
@@ -22,11 +26,11 @@ from coupling.gears import (
     optimal_tip_relief,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import FaceSlices
-from coupling.gears.contact.tooth_pair import flank_gap
-from coupling.gears.loaded.contact_pressure import mesh_pressure
-from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.gears.loaded.optimal_relief import (
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices
+from gearwhine.coupling.gears.contact.tooth_pair import flank_gap
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.gears.loaded.optimal_relief import (
     HarrisMap,
     PeakToPeak,
     ReliefAim,
@@ -34,14 +38,10 @@ from coupling.gears.loaded.optimal_relief import (
     WeightedHarmonics,
     transmission_error_harmonics,
 )
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.linear.mesh_harmonics import MeshHarmonicModel
-from coupling.linear.sensor_level import SensorLevel
-from coupling.statics.operating_point import OperatingPoint
-from gearwhine.case import Case, CaseError, Problem, force_origins, require
-from gearwhine.case import GearPair as GivenPair
-from gearwhine.case.errors import NOTHING
-from gearwhine.case.gears import ReliefAim as GivenAim
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
+from gearwhine.coupling.linear.sensor_level import SensorLevel
+from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
@@ -106,8 +106,8 @@ class PairAnalysis:
         Transmission error without load at the phases of ``solved.static`` [m]: where the first teeth just touch.
     pressure : ndarray, shape (n, m) or (n, m, s), or None
         Hertzian pressure of every pair at every phase [Pa], see
-        `coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or face widths in the
-        case.
+        `gearwhine.coupling.gears.loaded.contact_pressure.mesh_pressure`. None without load, single pairs or face widths
+        in the case.
     pitch_pressure : float or None
         Largest pressure at the pitch point [Pa]; None also where that is not on the path of contact.
     harris : HarrisMap or None
@@ -376,9 +376,9 @@ def relief_aims(
 
     The aim at a sensor is the root mean square of its acceleration over the multiples n of the mesh frequency,
     √(½ Σ (w_n a_n)²), with a_n the linear response to transmission error and load shuttling together about the case's
-    mean load, see :class:`coupling.linear.sensor_level.SensorLevel`. By default it is the sensor at which the given
-    flanks are loudest, where ``housing`` is given and the machine turns, else the peak-to-peak transmission error.
-    Where the case names a sensor, the housing is solved for it if it is not given.
+    mean load, see :class:`gearwhine.coupling.linear.sensor_level.SensorLevel`. By default it is the sensor at which the
+    given flanks are loudest, where ``housing`` is given and the machine turns, else the peak-to-peak transmission
+    error. Where the case names a sensor, the housing is solved for it if it is not given.
 
     Raises
     ------

@@ -30,11 +30,7 @@ from gearwhine.from_case.mesh_health import (
     require_meshable,
     surface_point_warnings,
 )
-from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
-from gearwhine.solve.mesh_refinement import RefinementStep, next_size
-from housing import (
+from gearwhine.housing import (
     HealthReport,
     Housing,
     HousingError,
@@ -44,20 +40,24 @@ from housing import (
     read_modes,
     write_modes,
 )
-from housing.errors import ModeFileError
-from housing.housing import RESPONSE_ORDERS, bearing_port, certified_modes
-from housing.material import mass_properties
-from housing.measured.survey_planning import Survey, survey_grid
-from housing.model.seats import SensorPort
-from housing.modes.dominance import Dominance, dominance
-from housing.modes.effective_mass import EffectiveMass
-from housing.modes.effective_mass import damping_ratios as housing_damping_ratios
-from housing.modes.receptance import Selection, select_modes
-from housing.storage.mesh_arrays import mesh_digest
-from housing.storage.mode_file import ModeRecord, with_sensors
-from housing.storage.netcdf import LabelledArray, content_key
-from meshes import Mesh, mesh_quality
-from meshes.lengths import length_text
+from gearwhine.housing.errors import ModeFileError
+from gearwhine.housing.housing import RESPONSE_ORDERS, bearing_port, certified_modes
+from gearwhine.housing.material import mass_properties
+from gearwhine.housing.measured.survey_planning import Survey, survey_grid
+from gearwhine.housing.model.seats import SensorPort
+from gearwhine.housing.modes.dominance import Dominance, dominance
+from gearwhine.housing.modes.effective_mass import EffectiveMass
+from gearwhine.housing.modes.effective_mass import damping_ratios as housing_damping_ratios
+from gearwhine.housing.modes.receptance import Selection, select_modes
+from gearwhine.housing.storage.mesh_arrays import mesh_digest
+from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
+from gearwhine.housing.storage.netcdf import LabelledArray, content_key
+from gearwhine.meshes import Mesh, mesh_quality
+from gearwhine.meshes.lengths import length_text
+from gearwhine.output.files import MODE_CACHE_FILE, installed, source_digest, texts_in, with_contents
+from gearwhine.output.quantity import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -65,15 +65,15 @@ FloatArray = npt.NDArray[np.float64]
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
 MODES_CODE = (
-    "meshes",
-    "housing.errors",
-    "housing.housing",
-    "housing.material",
-    "housing.fem",
-    "housing.model",
-    "housing.modes",
-    "housing.own_copies",
-    "housing.storage",
+    "gearwhine.meshes",
+    "gearwhine.housing.errors",
+    "gearwhine.housing.housing",
+    "gearwhine.housing.material",
+    "gearwhine.housing.fem",
+    "gearwhine.housing.model",
+    "gearwhine.housing.modes",
+    "gearwhine.housing.own_copies",
+    "gearwhine.housing.storage",
     "gearwhine.case",
     "gearwhine.from_case.fixtures",
     "gearwhine.from_case.mesh",
@@ -165,7 +165,7 @@ class SolvedHousing:
         Mass with the attached masses [kg].
     attached_mass : float
         Sum of the attached masses [kg].
-    modes : housing.ModeSet
+    modes : gearwhine.housing.ModeSet
     damping_ratios : ndarray, shape (n_modes,)
         Damping ratios that the case gives; see :attr:`total_damping_ratios`.
     damping_matrix : ndarray, shape (n_modes, n_modes), or None
@@ -176,7 +176,7 @@ class SolvedHousing:
         The seats' motions from the nodes'.
     loaded : dict of str to sparse array, shape (5, 3 n_nodes)
         Motions of each place where the machine bears on the housing, see
-        :func:`housing.housing.bearing_port`: the modes' attachments are for these.
+        :func:`gearwhine.housing.housing.bearing_port`: the modes' attachments are for these.
     sensors : dict of str to SensorPort
     survey : Survey
     strengths : Dominance or None
@@ -292,9 +292,9 @@ def solve_housing(
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         Where the case cannot be solved as it stands.
-    housing.IncompleteModesError, housing.ReductionError, housing.HealthError
+    gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
         Where the modes fail their certificate, their static compliance its proof, or the model its checks.
     """
     require(case, "housing", command=command)
@@ -442,7 +442,7 @@ def kept_housing(case: Case, folder: Path | None, progress: Progress = silent) -
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         As :func:`solve_housing`.
     """
     if folder is None or case.housing is None or not (folder / MODE_CACHE_FILE).exists():
@@ -501,8 +501,8 @@ def describe_housing(case: Case, mesh: Mesh) -> Housing:
     ------
     CaseError
         Where a region has no elements of its own.
-    housing.HousingError
-        As :class:`housing.Housing`.
+    gearwhine.housing.HousingError
+        As :class:`gearwhine.housing.Housing`.
     """
     parted, material, materials = materials_of(case, mesh)
     fixtures = [fixture for _, _, fixture in build_attachments(case)]
@@ -521,7 +521,7 @@ def write_mode_cache(place: Path, solved: SolvedHousing) -> None:
 def base_participation(case: Case, mesh: Mesh, modes: ModeSet) -> FloatArray:
     """Participation of modes and attachments in the motions of the ground, about the origin, shape (n, 6) [√kg, √kg m].
 
-    See :meth:`housing.Housing.participation`.
+    See :meth:`gearwhine.housing.Housing.participation`.
     """
     described = describe_housing(case, mesh)
     return described.participation(described.matrices(), modes)

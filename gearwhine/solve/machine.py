@@ -9,27 +9,27 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from coupling import CoupledMachine
-from coupling.errors import CouplingError, EquilibriumNotFoundError
-from coupling.gears import GearError
-from coupling.gears.geometry.pair import pair_label
-from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.linear.frequency_response import BasisError
-from coupling.linear.line_mechanisms import LineMechanisms
-from coupling.machine.base_motion import BaseMotion
-from coupling.machine.components import HousingComponent, housing_component
-from coupling.statics.operating_point import OperatingPoint
-from coupling.time.histories import Histories
 from gearwhine.case import Case, require
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
+from gearwhine.coupling.gears import GearError
+from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.linear.frequency_response import BasisError
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.machine.base_motion import BaseMotion
+from gearwhine.coupling.machine.components import HousingComponent, housing_component
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.time.histories import Histories
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine, gravity, require_machine
+from gearwhine.housing import ModeSet
+from gearwhine.housing.housing import RESPONSE_ORDERS
+from gearwhine.housing.modes.residual_modes import leading_residual_modes
 from gearwhine.progress import Progress, silent
+from gearwhine.rotors import EquilibriumError, RotorError
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation, solve_housing
-from housing import ModeSet
-from housing.housing import RESPONSE_ORDERS
-from housing.modes.residual_modes import leading_residual_modes
-from rotors import EquilibriumError, RotorError
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -102,9 +102,9 @@ def build_machine(
 
     Raises
     ------
-    CaseError, rotors.RotorError, coupling.CouplingError
+    CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
         Where the parts do not make a machine.
-    coupling.TransientError
+    gearwhine.coupling.TransientError
         Where a free speed cannot start or stalls.
     """
     if isinstance(housing, SolvedHousing):
@@ -154,7 +154,8 @@ def solve_pairs(
 
     Raises
     ------
-    CaseError, coupling.gears.GearError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+    CaseError, gearwhine.coupling.gears.GearError, gearwhine.coupling.CouplingError,
+    gearwhine.coupling.EquilibriumNotFoundError
         Where a pair cannot be solved as it stands, or the machine has no operating point.
     """
     if not case.gear_pair:
@@ -174,7 +175,7 @@ def point_of_pairs(
 
     Raises
     ------
-    CaseError, coupling.CouplingError, coupling.EquilibriumNotFoundError
+    CaseError, gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
         Where the machine has no operating point, and bearings or flanks are left to it explicitly.
     """
     if not any(case.finds_misalignment(pair) for pair in case.gear_pair):

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from gearwhine.case import CaseError, Problem
-from meshes.lengths import length_text
+from gearwhine.meshes.lengths import length_text
 
 MOST_UNKNOWNS = 1.5e6
 """Degrees of freedom beyond which no mesh is tried: their modes take tens of gigabytes of memory, and hours."""

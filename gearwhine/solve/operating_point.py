@@ -1,8 +1,8 @@
 """Operating point of a case: static equilibrium of the whole machine under its mean load, and its plausibility.
 
-The equilibrium is that of :meth:`coupling.Machine.operating_point`. This module adds the lives of its bearings, and
-warnings: bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that differ from
-those of the equilibrium.
+The equilibrium is that of :meth:`gearwhine.coupling.Machine.operating_point`. This module adds the lives of its
+bearings, and warnings: bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that
+differ from those of the equilibrium.
 """
 
 import math
@@ -14,23 +14,23 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import Machine
-from coupling.gears.geometry.pair import pair_label
-from coupling.gears.loaded.gear_pair import load_gear_pair
-from coupling.gears.loaded.transmission_error import LoadedMesh
-from coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
+from gearwhine.coupling import Machine
+from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.from_case.machine import describe_machine, require_machine
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, silent
+from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.machine import NO_OPERATING_POINT, ReducedHousing, reduce_housing
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
-from rotors.rolling_bearings import BallRow, RollerRow, Row
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -218,9 +218,9 @@ def solve_load(
     ------
     CaseError
         Where the case has no rotors or nothing loads them.
-    coupling.CouplingError
+    gearwhine.coupling.CouplingError
         Where the parts make no machine, or a load drives a motion that nothing holds.
-    coupling.EquilibriumNotFoundError
+    gearwhine.coupling.EquilibriumNotFoundError
         Where no equilibrium is found.
     """
     require_load(case)
@@ -300,7 +300,7 @@ def find_load(
 
     Raises
     ------
-    coupling.CouplingError, coupling.EquilibriumNotFoundError, rotors.EquilibriumError
+    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
         Where bearings or flanks are left to an operating point that is not found.
     """
     if not case.is_loaded:
@@ -345,7 +345,7 @@ def require_load(case: Case) -> None:
 
     Raises
     ------
-    CaseError, coupling.CouplingError
+    CaseError, gearwhine.coupling.CouplingError
         As :func:`solve_load`.
     """
     require(case, "rotor", "bearing", "operation", command="load")

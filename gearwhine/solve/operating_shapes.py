@@ -9,18 +9,18 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-from coupling.signals.spectrum import at_time_zero
-from coupling.signals.tones import tones_at
 from gearwhine.case import CaseError, Problem
+from gearwhine.coupling.signals.spectrum import at_time_zero
+from gearwhine.coupling.signals.tones import tones_at
+from gearwhine.housing import HousingError
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.modes.receptance import OperatingShape
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
+from gearwhine.housing.storage.mode_file import ModeRecord
+from gearwhine.housing.storage.netcdf import read_netcdf
 from gearwhine.output.manifest import opened_dataset, require_as_written
 from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
-from housing import HousingError
-from housing.modes.natural_modes import ModeSet
-from housing.modes.receptance import OperatingShape
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
-from housing.storage.mode_file import ModeRecord
-from housing.storage.netcdf import read_netcdf
 
 if TYPE_CHECKING:
     from gearwhine.solve.signature import SolvedSignature
@@ -164,7 +164,7 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     ----------
     folder : path
         A results folder.
-    record : housing.storage.mode_file.ModeRecord
+    record : gearwhine.housing.storage.mode_file.ModeRecord
         The housing's modes.
     most : int
         Number of lines, as :func:`highest_lines` chooses them.

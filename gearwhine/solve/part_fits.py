@@ -12,10 +12,10 @@ from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.housing import Seat
 from gearwhine.from_case.mesh_health import surface_point_warnings
+from gearwhine.meshes import Mesh, find_bores
+from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.output.quantity import warning
-from meshes import Mesh, find_bores
-from meshes.bores import CylindricalBore
-from rotors import Rotor, Segment
+from gearwhine.rotors import Rotor, Segment
 
 _FIT = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]
 _TOUCHING = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
@@ -27,7 +27,7 @@ def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = No
     Parameters
     ----------
     case : Case
-    rotors : mapping of str to rotors.Rotor
+    rotors : mapping of str to gearwhine.rotors.Rotor
         Built rotors by name.
     mesh : Mesh or None
         Mesh of a housing from a CAD or mesh file, in which the bores of the seats are found.

@@ -12,20 +12,20 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, coupled_modes
-from coupling import stability as coupled_stability
-from coupling.gears.geometry.pair import pair_label
-from coupling.linear.complex_modes import Stability
-from coupling.linear.damping_band import DampingBand
-from coupling.linear.frequency_response import BasisError
-from coupling.linear.line_mechanisms import LineMechanisms
-from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
+from gearwhine.coupling import CoupledMachine, coupled_modes
+from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.linear.complex_modes import Stability
+from gearwhine.coupling.linear.damping_band import DampingBand
+from gearwhine.coupling.linear.frequency_response import BasisError
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.from_case.driving import unbalanced_torque
 from gearwhine.output.quantity import warning
+from gearwhine.rotors.rolling_bearings import RollingBearing
 from gearwhine.solve.signature import SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
-from rotors.rolling_bearings import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -308,7 +308,7 @@ def machine_warnings(machine: CoupledMachine) -> list[dict[str, Any]]:
 
     Raises
     ------
-    coupling.ModesError
+    gearwhine.coupling.ModesError
         Where modes fail their proof.
     """
     system = machine.system

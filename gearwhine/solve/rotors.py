@@ -28,8 +28,7 @@ from gearwhine.from_case.machine import rotor_bearings
 from gearwhine.from_case.rotors import build_rotor
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
-from gearwhine.solve.bearing_lives import BearingLife, given_ratings
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Bearing,
     Campbell,
@@ -49,18 +48,19 @@ from rotors import (
     unbalance_response,
     write_ross,
 )
-from rotors import campbell as rotor_campbell
-from rotors.analyses.campbell import Crossing
-from rotors.analyses.critical_speeds import CriticalSpeedMap, CriticalSpeeds, critical_speed_map
-from rotors.analyses.harmonic_response import at_positive_frequency, orbit_of
-from rotors.analyses.rest_frequencies import RestFrequencies
-from rotors.analyses.statics import StaticDeflection, StaticForce
-from rotors.analyses.torsional_response import Torque, TorsionalDashpot, TorsionalResponse
-from rotors.analyses.unbalance import SynchronousResponse
-from rotors.modes.lateral import LateralModes
-from rotors.modes.torsional_and_axial import TorsionalModes
-from rotors.rolling_bearings import RollingState
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+from gearwhine.rotors import campbell as rotor_campbell
+from gearwhine.rotors.analyses.campbell import Crossing
+from gearwhine.rotors.analyses.critical_speeds import CriticalSpeedMap, CriticalSpeeds, critical_speed_map
+from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency, orbit_of
+from gearwhine.rotors.analyses.rest_frequencies import RestFrequencies
+from gearwhine.rotors.analyses.statics import StaticDeflection, StaticForce
+from gearwhine.rotors.analyses.torsional_response import Torque, TorsionalDashpot, TorsionalResponse
+from gearwhine.rotors.analyses.unbalance import SynchronousResponse
+from gearwhine.rotors.modes.lateral import LateralModes
+from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes
+from gearwhine.rotors.rolling_bearings import RollingState
+from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
+from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -346,9 +346,9 @@ class SolvedRotor:
 
     Attributes
     ----------
-    rotor : rotors.Rotor
+    rotor : gearwhine.rotors.Rotor
         Rotor with its gears as discs.
-    bearings, resting : tuple of rotors.Bearing
+    bearings, resting : tuple of gearwhine.rotors.Bearing
         Bearings with their tables over speed, and as they hold the rotor at rest.
     rest_speed : float or None
         Speed that stands for rest, the lowest that all their tables hold [rad/s]; None without tables.
@@ -358,9 +358,9 @@ class SolvedRotor:
     lateral : LateralModes
         Modes in one plane at averaged support stiffness.
     torsional : TorsionalModes
-    whirl : tuple of rotors.WhirlModes
+    whirl : tuple of gearwhine.rotors.WhirlModes
         Whirl modes at the speed of operation, then at those of the sweep.
-    campbell : rotors.Campbell or None
+    campbell : gearwhine.rotors.Campbell or None
         Campbell diagram; None without speeds.
     crossings : tuple of Crossing or str
         Damped critical speeds of whirl within the Campbell diagram, of once a revolution; or why they are not known.
@@ -378,7 +378,7 @@ class SolvedRotor:
         Response to alternating torques; None without any.
     stiffness_map : CriticalSpeedMap or None
         Critical-speed map, where the case asks for it.
-    rolling : mapping of str to rotors.rolling_bearings.RollingState
+    rolling : mapping of str to gearwhine.rotors.rolling_bearings.RollingState
         States of its rolling bearings under load, by name.
     lives : mapping of str to BearingLife
         Ratings and lives of its rolling bearings, by name.
@@ -446,7 +446,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
 
     Raises
     ------
-    CaseError, rotors.RotorError
+    CaseError, gearwhine.rotors.RotorError
         Where the case has no rotors, or one cannot be solved as it stands.
     """
     require(case, "rotor", command="rotors")

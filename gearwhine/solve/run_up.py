@@ -1,9 +1,9 @@
 """Signature of a run-up or run-down: spectra along the run, order cuts and overall level over the speed.
 
 Spectra are those of windows in time, order cuts those of windows in revolutions, see
-:mod:`coupling.signals.order_tracking`. Both reach from the first speed of the run to the last. A line of order o whose
-shaft gains n' revolutions a second each second moves by o n' T over a window of the duration T, whose own lines are
-1 / T apart: T = 2 / √(o n') balances both.
+:mod:`gearwhine.coupling.signals.order_tracking`. Both reach from the first speed of the run to the last. A line of
+order o whose shaft gains n' revolutions a second each second moves by o n' T over a window of the duration T, whose own
+lines are 1 / T apart: T = 2 / √(o n') balances both.
 """
 
 import math
@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import signals as signature
-from coupling.linear.excitation_orders import excitation_lines
-from coupling.signals import decibels, peak_of_rms
 from gearwhine.case import Case, OrderTracking, mesh_frequencies, speed_ratios
+from gearwhine.coupling import signals as signature
+from gearwhine.coupling.linear.excitation_orders import excitation_lines
+from gearwhine.coupling.signals import decibels, peak_of_rms
 from gearwhine.output.quantity import warning
 from gearwhine.solve.transient import SolvedTransient
 
@@ -44,13 +44,13 @@ class RunSignature:
     Attributes
     ----------
     units : dict of str to str
-    spectra : dict of str to coupling.signals.Spectrogram
+    spectra : dict of str to gearwhine.coupling.signals.Spectrogram
         Spectra of stretches along the run, up to the trusted limit.
     speeds_rpm : ndarray, shape (t,)
         Speed of the leading shaft in the middle of each stretch [rpm], of the sign of the speed of operation.
     overall : dict of str to ndarray, shape (t,)
         Overall level: rms over the lines of each spectrum, without the mean, in the signal's unit.
-    orders : dict of str to coupling.signals.OrderMap
+    orders : dict of str to gearwhine.coupling.signals.OrderMap
         Orders, in cycles each turn of the leading shaft, over its speeds of that sign; NaN of a sensor where an order's
         frequency is beyond the trusted limit.
     named : dict of str to float

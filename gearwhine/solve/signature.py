@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling import signals as signature
-from coupling.linear.complex_modes import CoupledModes
-from coupling.signals.peaks import SpectralPeaks
-from coupling.signals.spectrum import Spectrum, Window, at_time_zero
+from gearwhine.coupling import signals as signature
+from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.signals.peaks import SpectralPeaks
+from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
 from gearwhine.solve.transient import SolvedTransient
 from gearwhine.solve.transient_record import Signals
 
@@ -54,7 +54,7 @@ class TracedLine:
     value : complex
         Amplitude [m/s²] and phase of the cosine at t = 0. Of a long record the root mean square over its stretches,
         as its parts are averaged over them.
-    named : coupling.signals.LineName
+    named : gearwhine.coupling.signals.LineName
     modes : tuple of Contribution
         Contributions of every housing mode and of the local compliance, largest share first; they add up to the line.
     bearings : tuple of Contribution
@@ -133,7 +133,7 @@ class SolvedSignature:
     ----------
     lines : dict of str to tuple of TracedLine
         Lines of each sensor, highest first.
-    force_lines : dict of str to tuple of coupling.signals.LineName
+    force_lines : dict of str to tuple of gearwhine.coupling.signals.LineName
         Names of the lines of each mesh's force on its loaded flanks, by pair, in the order of its peaks.
     sidebands : dict of str to tuple of ShaftSidebands
         Sidebands of each sensor, of a long record in its last stretch.

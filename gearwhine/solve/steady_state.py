@@ -8,26 +8,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
-from coupling.gears.geometry.pair import pair_label
-from coupling.machine.base_motion import BaseMotion
-from coupling.machine.driving_frequencies import least_sampling_rate
-from coupling.periodic.continuation import ResponseCurve
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.superposition import (
+from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
+from gearwhine.case.errors import UNSAID
+from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
+from gearwhine.coupling import CoupledMachine, amplitude_spectrum, periodic_response, response_curve
+from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.coupling.machine.base_motion import BaseMotion
+from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
+from gearwhine.coupling.periodic.continuation import ResponseCurve
+from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.superposition import (
     ExcitationGroup,
     SuperposedResponse,
     common_cycles,
     excitation_groups,
     superposed_response,
 )
-from coupling.signals.line_names import line_names
-from coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
-from coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
-from coupling.time.histories import histories as coupled_histories
-from gearwhine.case import Case, CaseError, Problem, mesh_frequencies, require
-from gearwhine.case.errors import UNSAID
-from gearwhine.case.speeds_and_torques import BEYOND_OPERATION, range_of_tables, with_sense_of_operation
+from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
+from gearwhine.coupling.time.histories import Histories, modal_record, transient_outputs, with_modal_rows
+from gearwhine.coupling.time.histories import histories as coupled_histories
 from gearwhine.from_case.machine import base_motion
 from gearwhine.output.quantity import RPM, warning
 from gearwhine.progress import Progress, silent
@@ -155,7 +155,7 @@ class SolvedSteady:
 
     Attributes
     ----------
-    machine : coupling.CoupledMachine
+    machine : gearwhine.coupling.CoupledMachine
         Machine at the speed of operation.
     motions : tuple of SteadyMotion
         Motions at the speed of operation: one, or all that a branch has there; where they are superposed, one of each
@@ -265,7 +265,7 @@ def solve_steady(
     """Find the motion that repeats at the speed of operation, and where asked follow it over speed.
 
     If the common period of all excitations is long, such as that of hunting teeth, each group of excitations has its
-    own motion and these are superposed, see :mod:`coupling.periodic.superposition`.
+    own motion and these are superposed, see :mod:`gearwhine.coupling.periodic.superposition`.
 
     Parameters
     ----------
@@ -289,9 +289,9 @@ def solve_steady(
     CaseError
         Where the range holds one speed only, or a branch is asked for of motions that are
         superposed.
-    coupling.CouplingError
+    gearwhine.coupling.CouplingError
         Where the excitation does not repeat.
-    coupling.PeriodicError
+    gearwhine.coupling.PeriodicError
         Where no motion is found. A branch that is lost on its way is given as far as it was followed.
     """
     require(case, "rotor", "operation", command="steady")

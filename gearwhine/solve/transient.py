@@ -7,11 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 import gearwhine
-from coupling import CoupledMachine, SpeedProfile
-from coupling.signals.peaks import SpectralPeaks, spectral_peaks
-from coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
-from coupling.time.exponential_collocation import integration_method
-from coupling.time.histories import (
+from gearwhine.case import Case, require
+from gearwhine.coupling import CoupledMachine, SpeedProfile
+from gearwhine.coupling.signals.peaks import SpectralPeaks, spectral_peaks
+from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
+from gearwhine.coupling.time.exponential_collocation import integration_method
+from gearwhine.coupling.time.histories import (
     Histories,
     ModalRecord,
     empty_record,
@@ -19,13 +20,19 @@ from coupling.time.histories import (
     transient_outputs,
     with_modal_rows,
 )
-from coupling.time.histories import histories as coupled_histories
-from coupling.time.integration import Checkpoint
-from coupling.time.settings import MotionRecord
-from coupling.time.transient import TransientFigures, fingerprint, integrate_blocks, integration_key, transient_figures
-from gearwhine.case import Case, require
+from gearwhine.coupling.time.histories import histories as coupled_histories
+from gearwhine.coupling.time.integration import Checkpoint
+from gearwhine.coupling.time.settings import MotionRecord
+from gearwhine.coupling.time.transient import (
+    TransientFigures,
+    fingerprint,
+    integrate_blocks,
+    integration_key,
+    transient_figures,
+)
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.machine import base_motion
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.output.files import PRESENTATION, installed, source_digest
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -41,7 +48,6 @@ from gearwhine.solve.transient_record import (
     record_spectra,
     sampling,
 )
-from housing.storage.netcdf import content_key
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,7 +61,7 @@ class SolvedTransient:
 
     Attributes
     ----------
-    machine : coupling.CoupledMachine
+    machine : gearwhine.coupling.CoupledMachine
     speed : float
         Speed of the first driver's rotor at operation [rad/s].
     method : str
@@ -216,7 +222,7 @@ def solve_transient(
 
     Raises
     ------
-    coupling.TransientError
+    gearwhine.coupling.TransientError
         Where the motion cannot be followed or its energies do not balance.
     """
     require(case, "operation", "transient", command="run")
@@ -280,7 +286,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
             "integration": key,
             "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
             "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
-            "source": source_digest("coupling", "gearwhine", without=PRESENTATION),
+            "source": source_digest("gearwhine.coupling", "gearwhine", without=PRESENTATION),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }
     )

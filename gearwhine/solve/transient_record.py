@@ -8,11 +8,12 @@ before any damage. A run of anything else clears them away.
 
 Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
 the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. They are
-closer together where an excitation of a higher frequency asks for it, see :mod:`coupling.machine.driving_frequencies`:
-an inverter's ripple above half the sampling rate would be a false line. A record
-that fits in memory stays like that, and its spectra are those of the whole. A longer one is filtered as it comes and
-stored at four times that frequency: its histories and spectra are right up to there, which is also as far as the
-model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the record.
+closer together where an excitation of a higher frequency asks for it, see
+:mod:`gearwhine.coupling.machine.driving_frequencies`: an inverter's ripple above half the sampling rate would be a
+false line. A record that fits in memory stays like that, and its spectra are those of the whole. A longer one is
+filtered as it comes and stored at four times that frequency: its histories and spectra are right up to there, which is
+also as far as the model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the
+record.
 
 Window: lines are exact where every shaft turns whole times and every excitation makes whole periods. Spectra are
 therefore taken over the last such stretch of the record. Where the record holds none, and where a load varies over
@@ -37,19 +38,19 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledSystem, SpeedProfile, TransientSettings, amplitude_spectrum
-from coupling.machine.driving_frequencies import (
+from gearwhine.case import Case, CaseError, Problem, speed_ratios
+from gearwhine.coupling import CoupledSystem, SpeedProfile, TransientSettings, amplitude_spectrum
+from gearwhine.coupling.machine.driving_frequencies import (
     driving_frequencies,
     element_passes,
     least_sampling_rate,
     varies_within,
 )
-from coupling.signals.decimation import Decimation
-from coupling.signals.decimation import decimation as coupled_decimation
-from coupling.signals.spectrum import Spectrum, Window, averaged_spectrum, whole_period_samples
-from coupling.time.histories import Histories, ModalRecord
-from coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
-from gearwhine.case import Case, CaseError, Problem, speed_ratios
+from gearwhine.coupling.signals.decimation import Decimation
+from gearwhine.coupling.signals.decimation import decimation as coupled_decimation
+from gearwhine.coupling.signals.spectrum import Spectrum, Window, averaged_spectrum, whole_period_samples
+from gearwhine.coupling.time.histories import Histories, ModalRecord
+from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"
@@ -216,7 +217,7 @@ class Sampling:
 
     Attributes
     ----------
-    settings : coupling.TransientSettings
+    settings : gearwhine.coupling.TransientSettings
         Settings of the integration.
     samples_per_block : int
         Approximate number of the integration's samples in a block.

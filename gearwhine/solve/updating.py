@@ -42,13 +42,9 @@ from gearwhine.from_case.parametric_housing import (
     unit_in_si,
     with_entry,
 )
-from gearwhine.interruption import each_from_thread, in_thread
-from gearwhine.output.quantity import warning
-from gearwhine.progress import Progress, silent
-from gearwhine.solve.comparison import map_measured, read_measured
-from housing.correlation import dominance_band, real_shapes
-from housing.measured import MeasuredModes, map_survey
-from housing.updating import (
+from gearwhine.housing.correlation import dominance_band, real_shapes
+from gearwhine.housing.measured import MeasuredModes, map_survey
+from gearwhine.housing.updating import (
     UNPAIRED,
     Each,
     Effort,
@@ -71,7 +67,11 @@ from housing.updating import (
     posterior,
     serial_map,
 )
-from meshes import Mesh
+from gearwhine.interruption import each_from_thread, in_thread
+from gearwhine.meshes import Mesh
+from gearwhine.output.quantity import warning
+from gearwhine.progress import Progress, silent
+from gearwhine.solve.comparison import map_measured, read_measured
 
 _TWO_PI = 2.0 * np.pi
 FloatArray = npt.NDArray[np.float64]
@@ -224,7 +224,7 @@ def full_update_search(start: HousingAtParameters, effort: Effort, count: int) -
 def leave_one_out_modes(
     procedure: Procedure[HousingAtParameters], target: Target, each: Each, progress: Progress
 ) -> list[LeftOutMode]:
-    """Each mode predicted by a fit to the others; see :func:`housing.updating.leave_one_out`."""
+    """Each mode predicted by a fit to the others; see :func:`gearwhine.housing.updating.leave_one_out`."""
     progress(f"holding back {len(target.noise)} modes, one at a time")
     return leave_one_out(procedure, target, each, progress)
 
@@ -232,7 +232,7 @@ def leave_one_out_modes(
 def random_frequency_sets(
     procedure: Procedure[HousingAtParameters], target: Target, count: int, each: Each, progress: Progress
 ) -> NullTest:
-    """Random sets fitted, and the measured one; see :func:`housing.updating.null_fits`."""
+    """Random sets fitted, and the measured one; see :func:`gearwhine.housing.updating.null_fits`."""
     progress(f"fitting the measured and {count} random sets of {len(target.noise)} frequencies")
     return NullTest(*null_fits(procedure, target, count, each=each, progress=progress))
 
@@ -498,7 +498,7 @@ def update_housing(
     CaseError
         Where the case has no parameters or nothing measured, a key leads to no number, or random sets are asked for
         beside measured shapes.
-    housing.HousingError
+    gearwhine.housing.HousingError
         Where the model cannot be solved as it stands.
     """
     require(case, "housing", "measured", "update", command="update")

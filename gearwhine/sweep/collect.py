@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
+from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.output.dataset import PHASE_CONVENTION
 from gearwhine.output.quantity import document_of
 from gearwhine.results.sound import SWEPT_LINE, SweptLine

@@ -8,11 +8,11 @@ from itertools import product
 
 import gearwhine
 from gearwhine.case import SPEED_KEY, Case, CaseError, CaseSource, Problem, SweptKey, case_document, require
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.output import file_stems
-from gearwhine.output.files import PRESENTATION, installed, source_digest, with_contents
+from gearwhine.output.files import PRESENTATION, ROOMS, installed, source_digest, with_contents
 from gearwhine.solve.housing_modes import housing_key, mode_cache_inputs
 from gearwhine.solve.transient_record import transient_duration
-from housing.storage.netcdf import content_key
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -99,7 +99,7 @@ def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, .
 
 def code_digest() -> str:
     """SHA-256 of all our code that makes numbers: points and workers of other code are not used."""
-    return source_digest("meshes", "housing", "rotors", "coupling", "gearwhine", without=PRESENTATION)
+    return source_digest(*ROOMS, "gearwhine", without=PRESENTATION)
 
 
 def axis_name(key: str) -> str:

@@ -20,9 +20,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
 from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
+from gearwhine.coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
 from gearwhine.output.quantity import warning
 from gearwhine.sweep.resonances import NEAR, SOUND, Resonances
 from gearwhine.sweep.run import SweptPoint

@@ -2,8 +2,8 @@
 
 Between two speeds of a sweep a mesh harmonic changes as its linear response does: it is driven by the loaded
 transmission errors and the load shuttling of all meshes of its order together, with their phases
-(:mod:`coupling.linear.mesh_harmonics`), which stay what they are as long as the load does. So the response at other
-frequencies than that of the point has the peaks that the points pass by (:mod:`gearwhine.sweep.resolution`).
+(:mod:`gearwhine.coupling.linear.mesh_harmonics`), which stay what they are as long as the load does. So the response at
+other frequencies than that of the point has the peaks that the points pass by (:mod:`gearwhine.sweep.resolution`).
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, ModesError, coupled_modes
-from coupling.gears import GearError
-from coupling.linear.complex_modes import CoupledModes
-from coupling.linear.frequency_response import superposed
-from coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
-from coupling.signals.spectrum import decibels
 from gearwhine.case import Case
+from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes
+from gearwhine.coupling.gears import GearError
+from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.linear.frequency_response import superposed
+from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
+from gearwhine.coupling.signals.spectrum import decibels
 from gearwhine.solve.sound.motion_lines import pulsating_efficiency
 
 FloatArray = npt.NDArray[np.float64]

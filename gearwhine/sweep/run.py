@@ -70,7 +70,7 @@ def run_sweep(
 
     Raises
     ------
-    CaseError, WorkersError, housing.HousingError, housing.IncompleteModesError, ...
+    CaseError, WorkersError, gearwhine.housing.HousingError, gearwhine.housing.IncompleteModesError, ...
         Where the housing that all points share cannot be solved, or there are no workers.
     """
     outcomes: dict[int, Outcome] = {}

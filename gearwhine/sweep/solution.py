@@ -16,11 +16,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling.signals.line_names import LineName
-from coupling.signals.spectrum import Window
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case, mesh_frequencies
+from gearwhine.coupling.signals.line_names import LineName
+from gearwhine.coupling.signals.spectrum import Window
 from gearwhine.failures import explain
+from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
+from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
@@ -39,8 +41,6 @@ from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearin
 from gearwhine.solve.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.resonances import Resonances, find_resonances
-from housing.storage.atomic_file import checksum_holds, write_checksum
-from housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class PointResult:
     line_rates : ndarray, shape (l, n, 2)
         Rates of the housing's coordinates there, real and imaginary part.
     line_names, line_kinds : tuple of str
-        Names and causes of these lines, see :class:`coupling.signals.line_names.LineName`.
+        Names and causes of these lines, see :class:`gearwhine.coupling.signals.line_names.LineName`.
     resonances : Resonances or None
         Resonances of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
     """

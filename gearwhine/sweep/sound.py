@@ -2,7 +2,8 @@
 
 A point stores the rates of the housing's coordinates at its strongest lines. Modes and acoustics have to be the same at
 all points: the radiating surface is then made once. Where there are many lines their powers are interpolated over
-frequency (:mod:`housing.acoustics.modal_radiation`); lines whose interpolation or proofs are doubtful are solved.
+frequency (:mod:`gearwhine.housing.acoustics.modal_radiation`); lines whose interpolation or proofs are doubtful are
+solved.
 """
 
 from __future__ import annotations
@@ -16,6 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case.speeds_and_torques import mesh_frequencies
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics.modal_radiation import POINTS, ModalRadiation
+from gearwhine.housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
+from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 from gearwhine.output.quantity import document_of, warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
@@ -30,17 +35,13 @@ from gearwhine.solve.sound.proofs import (
 )
 from gearwhine.sweep.resolution import RadiatedLevel
 from gearwhine.sweep.solution import PointResult
-from housing import HousingError
-from housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
-from housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
+    from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.sweep.points import Point
     from gearwhine.sweep.run import SweptPoint
-    from housing.acoustics.radiation import HousingRadiation, RadiatedSound
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -83,7 +84,7 @@ def add_sound(
 
     Raises
     ------
-    CaseError, housing.HousingError
+    CaseError, gearwhine.housing.HousingError
         As :func:`gearwhine.solve.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
         point. A single point is left without sound, with a warning.
     """

@@ -27,7 +27,7 @@ The equation of Burton and Miller, which couples the normal derivative, needs a 
 spoils weak radiators at low frequencies; on a sphere and on boxes CHIEF was the more accurate.
 
 Every solution of a closed surface includes the field of known sources inside, which proves it at every vertex, see
-:mod:`housing.acoustics.known_source`.
+:mod:`gearwhine.housing.acoustics.known_source`.
 """
 
 from dataclasses import dataclass
@@ -38,11 +38,16 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.linalg import lapack
 
-from housing.acoustics.boundary_integrals import SourcePoints, far_field_amplitudes, solid_angles, surface_integrals
-from housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE, KnownField, KnownSources, SourceError
-from housing.acoustics.medium import AIR, HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.errors import HousingError, TriangleSizeError
+from gearwhine.housing.acoustics.boundary_integrals import (
+    SourcePoints,
+    far_field_amplitudes,
+    solid_angles,
+    surface_integrals,
+)
+from gearwhine.housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE, KnownField, KnownSources, SourceError
+from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.errors import HousingError, TriangleSizeError
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -26,9 +26,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.boundary_integrals import linear_projection
-from housing.acoustics.medium import HardPlane
-from housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.boundary_integrals import linear_projection
+from gearwhine.housing.acoustics.medium import HardPlane
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

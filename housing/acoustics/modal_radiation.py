@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from housing.acoustics.boundary_elements import surface_product
-from housing.acoustics.radiation import EquivalentField, HousingRadiation
-from housing.errors import HousingError
-from housing.storage.netcdf import LabelledArray
+from gearwhine.housing.acoustics.boundary_elements import surface_product
+from gearwhine.housing.acoustics.radiation import EquivalentField, HousingRadiation
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.storage.netcdf import LabelledArray
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -84,10 +84,10 @@ class ModalRadiation:
     delays : ndarray, shape (m,)
         Delays of the air, from the middle of the housing [s].
     interior_residual : ndarray, shape (f,)
-        Largest pressure inside, see :attr:`housing.acoustics.boundary_elements.SoundField.interior_residual`.
+        Largest pressure inside, see :attr:`gearwhine.housing.acoustics.boundary_elements.SoundField.interior_residual`.
     source_error, source_rms : ndarray, shape (f,)
         Largest error of known sources inside and its root mean square over the vertices, see
-        :class:`housing.acoustics.known_source.SourceError`.
+        :class:`gearwhine.housing.acoustics.known_source.SourceError`.
     point_source_error : ndarray, shape (f, m)
         Error of known sources at the points, relative to their amplitude there.
     """

@@ -5,8 +5,9 @@ radiating surface, v = iω T u with the transfer T from the displacements u of t
 
     W = ½ q̇ᴴ R q̇ = ½ Re ∫ v* Z v dS.
 
-R, real and symmetric, is that of the far field (:attr:`housing.acoustics.boundary_elements.SoundField.resistance`).
-By reciprocity ∫ v₁ Z v₂ dS = ∫ v₂ Z v₁ dS, so Re Z alone has power, and the part of the pressure that has it is
+R, real and symmetric, is that of the far field
+(:attr:`gearwhine.housing.acoustics.boundary_elements.SoundField.resistance`). By reciprocity ∫ v₁ Z v₂ dS = ∫ v₂ Z v₁
+dS, so Re Z alone has power, and the part of the pressure that has it is
 
     p_R = Re(Z) v = Σ q̇_j Re p_j,
 
@@ -19,7 +20,7 @@ by
 P. Gardonio, *Sound and Structural Vibration*, 2nd ed., 2007, section 2.4, on Re Z; Choi and Kim, *Structural
 Sensitivity Analysis and Optimization 1*, 2005, section 5.4, on the adjoint load). For the equivalent radiated power
 Z = ρc, and g is exact; for boundary elements it is as good as their reciprocity,
-:attr:`~housing.acoustics.boundary_elements.SoundField.reciprocity_error`.
+:attr:`~gearwhine.housing.acoustics.boundary_elements.SoundField.reciprocity_error`.
 
 The radiating surface stays. Where the mesh slides along it, as on a wall beside one that gets thicker, it moves with
 other points of the housing, and the power changes by their motion too. The change of the surface itself is left out: to
@@ -32,8 +33,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.boundary_elements import SoundField, surface_load
-from housing.acoustics.radiation import EquivalentField, Field, HousingRadiation, RadiatedSound
+from gearwhine.housing.acoustics.boundary_elements import SoundField, surface_load
+from gearwhine.housing.acoustics.radiation import EquivalentField, Field, HousingRadiation, RadiatedSound
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.fem.nearest_point import closest_on_triangles
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.nearest_point import closest_on_triangles
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -16,16 +16,16 @@ from typing import Literal, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.boundary_elements import BoundaryElements, SoundField, surface_product
-from housing.acoustics.known_source import NOTHING_TO_PROVE, SourceError
-from housing.acoustics.medium import AIR, HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.skin_points import SkinPoints
-from housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
-from housing.acoustics.wrapping import wrap
-from housing.errors import HousingError
-from housing.fem.surface import FlatFace
-from meshes import Mesh
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField, surface_product
+from gearwhine.housing.acoustics.known_source import NOTHING_TO_PROVE, SourceError
+from gearwhine.housing.acoustics.medium import AIR, HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.skin_points import SkinPoints
+from gearwhine.housing.acoustics.surface_velocity import face_surface, surface_velocity, transfer_error
+from gearwhine.housing.acoustics.wrapping import wrap
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.surface import FlatFace
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -82,7 +82,7 @@ class Field(Protocol):
 class EquivalentField:
     """Field of the equivalent radiated power: the pressure ρ c v of a plane wave at every point.
 
-    The attributes are those of :class:`housing.acoustics.boundary_elements.SoundField`.
+    The attributes are those of :class:`gearwhine.housing.acoustics.boundary_elements.SoundField`.
     """
 
     surface: RadiatingSurface
@@ -302,8 +302,8 @@ class RadiatedSound:
         Raises
         ------
         HousingError
-            Where a point is not in the air, see :func:`housing.acoustics.boundary_elements.require_in_air`, or the
-            method gives no pressure: the ERP, or Rayleigh's integral of several faces.
+            Where a point is not in the air, see :func:`gearwhine.housing.acoustics.boundary_elements.require_in_air`,
+            or the method gives no pressure: the ERP, or Rayleigh's integral of several faces.
         """
         return np.asarray(self._only_field.pressure_at(points).sum(axis=1))
 
@@ -411,7 +411,7 @@ def wrapped(mesh: Mesh, edge: float, close_holes: float, floor: HardPlane | None
     Raises
     ------
     TriangleSizeError, HousingError
-        As :func:`housing.acoustics.wrapping.wrap`.
+        As :func:`gearwhine.housing.acoustics.wrapping.wrap`.
     """
     edge = min(edge, coarsest_edge(mesh))
     surface = wrap(mesh, edge, close_holes)
@@ -526,7 +526,7 @@ class HousingRadiation:
         ----------
         mesh : Mesh
         shapes : ndarray, shape (n_modes, n_nodes, 3)
-        faces : dict of str to housing.fem.surface.FlatFace
+        faces : dict of str to gearwhine.housing.fem.surface.FlatFace
         medium : Medium
         """
         elements, modal, labels, skins = [], [], [], []

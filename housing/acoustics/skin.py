@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from housing.errors import HousingError
-from housing.fem.nearest_point import closest_on_triangles
-from housing.fem.outer_facets import triangle_middles
-from meshes import Mesh
-from meshes.elements import KINDS, Facets
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.nearest_point import closest_on_triangles
+from gearwhine.housing.fem.outer_facets import triangle_middles
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import KINDS, Facets
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -14,15 +14,15 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.spatial import cKDTree
 
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.skin import NearestSkin, Skin, skin_of
-from housing.acoustics.skin_points import FacetPoints, SkinPoints
-from housing.errors import TriangleSizeError
-from housing.fem.outer_facets import triangle_middles
-from housing.fem.surface import boundary_members, flat_face_names, flat_face_numbers, nearest_axis
-from meshes import Mesh
-from meshes.elements import Facets, facet_centers, facet_normals
-from meshes.shape_functions import quadrature, shape_functions
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.skin import NearestSkin, Skin, skin_of
+from gearwhine.housing.acoustics.skin_points import FacetPoints, SkinPoints
+from gearwhine.housing.errors import TriangleSizeError
+from gearwhine.housing.fem.outer_facets import triangle_middles
+from gearwhine.housing.fem.surface import boundary_members, flat_face_names, flat_face_numbers, nearest_axis
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import Facets, facet_centers, facet_normals
+from gearwhine.meshes.shape_functions import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -171,7 +171,7 @@ class SurfaceVelocity:
 
         Raises
         ------
-        meshes.GeometryError
+        gearwhine.meshes.GeometryError
             Where the mesh has no surface of a name.
         """
         return self.points(without).transfer

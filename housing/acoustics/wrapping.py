@@ -21,10 +21,10 @@ import numpy.typing as npt
 from scipy import ndimage, sparse
 from scipy.spatial import cKDTree
 
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.skin import skin_of
-from housing.errors import HousingError, TriangleSizeError
-from meshes import Mesh
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.skin import skin_of
+from gearwhine.housing.errors import HousingError, TriangleSizeError
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

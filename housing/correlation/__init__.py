@@ -17,34 +17,36 @@ Shapes are rows, degrees of freedom columns; NaN where not measured; complex whe
   :func:`synthesised_responses` -- likeness of frequency responses.
 """
 
-from housing.correlation.comparison import Comparison as Comparison
-from housing.correlation.comparison import LookAlikes as LookAlikes
-from housing.correlation.comparison import ModePair as ModePair
-from housing.correlation.comparison import ShapeCorrelation as ShapeCorrelation
-from housing.correlation.comparison import compare_by_dominance as compare_by_dominance
-from housing.correlation.comparison import compare_by_frequency as compare_by_frequency
-from housing.correlation.comparison import compare_by_shapes as compare_by_shapes
-from housing.correlation.comparison import dominance_band as dominance_band
-from housing.correlation.frequency_responses import amplitude_correlation as amplitude_correlation
-from housing.correlation.frequency_responses import fdac as fdac
-from housing.correlation.frequency_responses import frac as frac
-from housing.correlation.frequency_responses import response_vector_assurance as response_vector_assurance
-from housing.correlation.frequency_responses import synthesised_responses as synthesised_responses
-from housing.correlation.modal_assurance_criterion import auto_mac as auto_mac
-from housing.correlation.modal_assurance_criterion import comac as comac
-from housing.correlation.modal_assurance_criterion import complexity_factor as complexity_factor
-from housing.correlation.modal_assurance_criterion import enhanced_comac as enhanced_comac
-from housing.correlation.modal_assurance_criterion import largest_off_diagonal as largest_off_diagonal
-from housing.correlation.modal_assurance_criterion import modal_assurance_criterion as modal_assurance_criterion
-from housing.correlation.modal_assurance_criterion import modal_scale_factor as modal_scale_factor
-from housing.correlation.modal_assurance_criterion import phase_collinearity as phase_collinearity
-from housing.correlation.modal_assurance_criterion import phase_deviation as phase_deviation
-from housing.correlation.modal_assurance_criterion import pole_weighted_mac as pole_weighted_mac
-from housing.correlation.modal_assurance_criterion import real_shapes as real_shapes
-from housing.correlation.orthogonality import cross_orthogonality as cross_orthogonality
-from housing.correlation.orthogonality import outside_span as outside_span
-from housing.correlation.orthogonality import self_orthogonality as self_orthogonality
-from housing.correlation.pairing import PairingRule as PairingRule
-from housing.correlation.pairing import pair_modes as pair_modes
-from housing.correlation.subspaces import principal_angles as principal_angles
-from housing.correlation.subspaces import span_mac as span_mac
+from gearwhine.housing.correlation.comparison import Comparison as Comparison
+from gearwhine.housing.correlation.comparison import LookAlikes as LookAlikes
+from gearwhine.housing.correlation.comparison import ModePair as ModePair
+from gearwhine.housing.correlation.comparison import ShapeCorrelation as ShapeCorrelation
+from gearwhine.housing.correlation.comparison import compare_by_dominance as compare_by_dominance
+from gearwhine.housing.correlation.comparison import compare_by_frequency as compare_by_frequency
+from gearwhine.housing.correlation.comparison import compare_by_shapes as compare_by_shapes
+from gearwhine.housing.correlation.comparison import dominance_band as dominance_band
+from gearwhine.housing.correlation.frequency_responses import amplitude_correlation as amplitude_correlation
+from gearwhine.housing.correlation.frequency_responses import fdac as fdac
+from gearwhine.housing.correlation.frequency_responses import frac as frac
+from gearwhine.housing.correlation.frequency_responses import response_vector_assurance as response_vector_assurance
+from gearwhine.housing.correlation.frequency_responses import synthesised_responses as synthesised_responses
+from gearwhine.housing.correlation.modal_assurance_criterion import auto_mac as auto_mac
+from gearwhine.housing.correlation.modal_assurance_criterion import comac as comac
+from gearwhine.housing.correlation.modal_assurance_criterion import complexity_factor as complexity_factor
+from gearwhine.housing.correlation.modal_assurance_criterion import enhanced_comac as enhanced_comac
+from gearwhine.housing.correlation.modal_assurance_criterion import largest_off_diagonal as largest_off_diagonal
+from gearwhine.housing.correlation.modal_assurance_criterion import (
+    modal_assurance_criterion as modal_assurance_criterion,
+)
+from gearwhine.housing.correlation.modal_assurance_criterion import modal_scale_factor as modal_scale_factor
+from gearwhine.housing.correlation.modal_assurance_criterion import phase_collinearity as phase_collinearity
+from gearwhine.housing.correlation.modal_assurance_criterion import phase_deviation as phase_deviation
+from gearwhine.housing.correlation.modal_assurance_criterion import pole_weighted_mac as pole_weighted_mac
+from gearwhine.housing.correlation.modal_assurance_criterion import real_shapes as real_shapes
+from gearwhine.housing.correlation.orthogonality import cross_orthogonality as cross_orthogonality
+from gearwhine.housing.correlation.orthogonality import outside_span as outside_span
+from gearwhine.housing.correlation.orthogonality import self_orthogonality as self_orthogonality
+from gearwhine.housing.correlation.pairing import PairingRule as PairingRule
+from gearwhine.housing.correlation.pairing import pair_modes as pair_modes
+from gearwhine.housing.correlation.subspaces import principal_angles as principal_angles
+from gearwhine.housing.correlation.subspaces import span_mac as span_mac

@@ -2,11 +2,11 @@
 
 Three comparisons:
 
-- by shapes (:func:`compare_by_shapes`): measured and model shapes are paired by :mod:`housing.correlation.pairing` and
-  judged by all criteria of shape correlation: the MAC of every pair, unpaired modes, modes that are alike, close modes,
-  orthogonality, quality of the survey;
+- by shapes (:func:`compare_by_shapes`): measured and model shapes are paired by
+  :mod:`gearwhine.housing.correlation.pairing` and judged by all criteria of shape correlation: the MAC of every pair,
+  unpaired modes, modes that are alike, close modes, orthogonality, quality of the survey;
 - by dominance (:func:`compare_by_dominance`): measured frequencies without shapes are paired with the model's dominant
-  modes (:mod:`housing.modes.dominance`);
+  modes (:mod:`gearwhine.housing.modes.dominance`);
 - by frequency (:func:`compare_by_frequency`): measured frequencies are paired in their order, the first with the first
   or the nearest ones.
 
@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.modal_assurance_criterion import (
+from gearwhine.housing.correlation.modal_assurance_criterion import (
     ComplexArray,
     ShapeArray,
     auto_mac,
@@ -33,12 +33,12 @@ from housing.correlation.modal_assurance_criterion import (
     phase_collinearity,
     two_sets,
 )
-from housing.correlation.orthogonality import cross_orthogonality, outside_span
-from housing.correlation.pairing import PairingRule, ShapePair, nearest_in_order, pair_modes
-from housing.correlation.subspaces import nearest_in_span, principal_angles
-from housing.errors import HousingError
-from housing.measured import MeasuredModes
-from housing.modes.dominance import Dominance
+from gearwhine.housing.correlation.orthogonality import cross_orthogonality, outside_span
+from gearwhine.housing.correlation.pairing import PairingRule, ShapePair, nearest_in_order, pair_modes
+from gearwhine.housing.correlation.subspaces import nearest_in_span, principal_angles
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.measured import MeasuredModes
+from gearwhine.housing.modes.dominance import Dominance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -328,8 +328,8 @@ def compare_by_frequency(
     frequencies : ndarray, shape (n_modes,)
         Circular frequencies of the model, ascending [rad/s]; rigid motion, at zero, is paired with nothing.
     pairing : {"order", "nearest"}
-        The first with the first and so on, or by :func:`housing.correlation.pairing.nearest_in_order`: modes of the
-        model are left out where that makes the squared errors less.
+        The first with the first and so on, or by :func:`gearwhine.housing.correlation.pairing.nearest_in_order`: modes
+        of the model are left out where that makes the squared errors less.
     strengths : Dominance, optional
         Strengths of the model's modes, to stand beside each pair.
 
@@ -398,7 +398,7 @@ def compare_by_shapes(
     rule: PairingRule | None = None,
     strengths: Dominance | None = None,
 ) -> Comparison:
-    """Pair measured modes with the model's by their shapes; see :mod:`housing.correlation.pairing`.
+    """Pair measured modes with the model's by their shapes; see :mod:`gearwhine.housing.correlation.pairing`.
 
     Parameters
     ----------

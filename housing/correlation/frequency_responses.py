@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray, modal_assurance_criterion
-from housing.errors import HousingError
-from housing.modes.natural_modes import ModeSet
-from housing.modes.receptance import receptance
+from gearwhine.housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray, modal_assurance_criterion
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.modes.receptance import receptance
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
 
@@ -31,7 +31,7 @@ def synthesised_responses(
 ) -> ComplexArray:
     """Return the model's frequency responses at the measured degrees of freedom to unit forces, with residual modes.
 
-    (iw)^n times the receptance (:func:`housing.modes.receptance.receptance`), n = 0, 1, 2.
+    (iw)^n times the receptance (:func:`gearwhine.housing.modes.receptance.receptance`), n = 0, 1, 2.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def synthesised_responses(
     Raises
     ------
     HousingError
-        Where the quantity is none of these, or as :func:`housing.modes.receptance.receptance`.
+        Where the quantity is none of these, or as :func:`gearwhine.housing.modes.receptance.receptance`.
     """
     if quantity not in _RATES:
         raise HousingError(f"a response in {quantity!r}; expected one of {', '.join(_RATES)}")

@@ -6,7 +6,7 @@ The criterion is the squared cosine of the angle between two vectors (Allemang a
 
 between 0 and 1, whatever complex number scales either. It weighs all degrees of freedom alike: a survey with most
 points on one wall judges mostly that wall, and one with too few points finds different modes alike (Allemang 2003).
-:func:`auto_mac` shows the second; :mod:`housing.correlation.orthogonality` weighs by mass instead.
+:func:`auto_mac` shows the second; :mod:`gearwhine.housing.correlation.orthogonality` weighs by mass instead.
 
 The coordinate criteria :func:`comac` and :func:`enhanced_comac` give the difference of paired shapes at each degree of
 freedom. Shapes of unknown scale are comparable at one degree of freedom only after they are scaled alike: here both
@@ -32,7 +32,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
+from gearwhine.housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -14,7 +14,7 @@ part of a measured shape outside their span has no mass; :func:`outside_span` gi
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.modal_assurance_criterion import (
+from gearwhine.housing.correlation.modal_assurance_criterion import (
     ComplexArray,
     FloatArray,
     ShapeArray,
@@ -22,7 +22,7 @@ from housing.correlation.modal_assurance_criterion import (
     shape_set,
     two_sets,
 )
-from housing.errors import HousingError
+from gearwhine.housing.errors import HousingError
 
 # Beyond this condition of the shapes, rounding and noise of a part in a thousand decide the coordinates.
 _WORST_CONDITION = 1e3

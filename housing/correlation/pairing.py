@@ -10,9 +10,9 @@ two measured ones. The margin of an assignment is its lead over the next best on
 (σ = 0.2: 5 % off costs 3 % of the score), because shapes are to decide and frequencies to be judged.
 
 Close modes, of the model or of the test, mix. Each is then scored by the part of a shape that lies in the span of the
-other's group (:func:`housing.correlation.subspaces.span_mac`), which is the same however a group is mixed. Within a
-group the members' own MACs decide where each is most of that score; where not, the members cannot be distinguished and
-the order of frequency is kept.
+other's group (:func:`gearwhine.housing.correlation.subspaces.span_mac`), which is the same however a group is mixed.
+Within a group the members' own MACs decide where each is most of that score; where not, the members cannot be
+distinguished and the order of frequency is kept.
 
 Frequencies without shapes are paired in their order: the first with the first, or by the monotone assignment of least
 squares (:func:`nearest_in_order`).
@@ -23,9 +23,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.correlation.modal_assurance_criterion import ShapeArray, modal_assurance_criterion, two_sets
-from housing.correlation.subspaces import close_modes, span_mac
-from housing.errors import HousingError
+from gearwhine.housing.correlation.modal_assurance_criterion import ShapeArray, modal_assurance_criterion, two_sets
+from gearwhine.housing.correlation.subspaces import close_modes, span_mac
+from gearwhine.housing.errors import HousingError
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -178,8 +178,8 @@ class ShapePair:
         are mixed.
     confidence : float
         Margin of the best assignment with this pair over the best without it, as a part of the pair's score, from 0
-        (another is as good) to 1; see :func:`housing.correlation.pairing.margin`. Not a probability. For want of this
-        pair its measured mode may take one of a MAC below the least, other modes may not.
+        (another is as good) to 1; see :func:`gearwhine.housing.correlation.pairing.margin`. Not a probability. For want
+        of this pair its measured mode may take one of a MAC below the least, other modes may not.
     close_model, close_measured : tuple of int
         Close modes to which the pair's mode belongs; empty where it stands apart.
     mixed : bool

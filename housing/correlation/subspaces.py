@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from housing.correlation.modal_assurance_criterion import FloatArray, alike_measured, filled, two_sets
-from housing.errors import HousingError
+from gearwhine.housing.correlation.modal_assurance_criterion import FloatArray, alike_measured, filled, two_sets
+from gearwhine.housing.errors import HousingError
 
 IntArray = npt.NDArray[np.int64]
 

@@ -9,10 +9,10 @@ from which Hooke's law for an isotropic solid with Lamé's constants λ, μ make
 
     K[a i, b k] = λ G[a i, b k] + μ G[a k, b i] + μ δ_ik Σ_j G[a j, b j],        M[a i, b k] = δ_ik m[a, b].
 
-scikit-fem gives the elements and their quadrature (:mod:`meshes.shape_functions`). For each pair of an element's nodes
-one order is computed and summed, transposed where it lies below the diagonal, so that K and M are symmetric to the
-last bit. The pattern is that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n + i is component
-i of node n.
+scikit-fem gives the elements and their quadrature (:mod:`gearwhine.meshes.shape_functions`). For each pair of an
+element's nodes one order is computed and summed, transposed where it lies below the diagonal, so that K and M are
+symmetric to the last bit. The pattern is that of the product Eᵀ E of the elements' incidence E. Degree of freedom 3 n +
+i is component i of node n.
 """
 
 from collections import deque
@@ -24,12 +24,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.matrices import Matrices
-from housing.material import Material, element_constants
-from meshes import ElementBlock, Mesh
-from meshes.elements import ElementKind
-from meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.material import Material, element_constants
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import ElementKind
+from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

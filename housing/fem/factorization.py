@@ -21,8 +21,8 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from housing.errors import FactorizationError
-from housing.fem.linear_algebra import SymmetricMatrix
+from gearwhine.housing.errors import FactorizationError
+from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 
 FloatArray = npt.NDArray[np.float64]
 

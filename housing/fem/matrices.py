@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.linear_algebra import SymmetricMatrix, at_once
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.linear_algebra import SymmetricMatrix, at_once
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from meshes import ElementBlock, Mesh
-from meshes.elements import ElementKind, Facets
-from meshes.shape_functions import shape_functions
+from gearwhine.housing.errors import HousingError
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import ElementKind, Facets
+from gearwhine.meshes.shape_functions import shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from meshes import Mesh
-from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

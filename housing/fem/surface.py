@@ -8,9 +8,9 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from meshes import ElementBlock, Mesh
-from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
-from meshes.shape_functions import quadrature, shape_functions
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
+from gearwhine.meshes.shape_functions import quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

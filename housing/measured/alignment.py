@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import MeasuredDataError
-from housing.fem.nearest_point import NearestOnSurface
-from housing.fem.outer_facets import SurfaceSamples, outer_facets, sample_surface
-from housing.measured.survey_data import MeasuredGeometry
-from housing.model.patches import point_matrix
-from meshes import Mesh
-from meshes.lengths import UNITS, length_text
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.fem.nearest_point import NearestOnSurface
+from gearwhine.housing.fem.outer_facets import SurfaceSamples, outer_facets, sample_surface
+from gearwhine.housing.measured.survey_data import MeasuredGeometry
+from gearwhine.housing.model.patches import point_matrix
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.lengths import UNITS, length_text
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree

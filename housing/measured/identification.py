@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError, MeasuredDataError
-from housing.measured.survey_data import MeasuredModes, MeasuredResponses
+from gearwhine.housing.errors import HousingError, MeasuredDataError
+from gearwhine.housing.measured.survey_data import MeasuredModes, MeasuredResponses
 
 ComplexArray = npt.NDArray[np.complex128]
 FloatArray = npt.NDArray[np.float64]

@@ -11,7 +11,7 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError, MeasuredDataError
+from gearwhine.housing.errors import HousingError, MeasuredDataError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

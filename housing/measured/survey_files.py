@@ -19,12 +19,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import MeasuredDataError
-from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, SurveyData
-from housing.measured.universal_reading import Frame, read_universal
-from housing.measured.universal_writing import write_universal
-from housing.storage.atomic_file import atomic_file
-from meshes.lengths import UNITS
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, SurveyData
+from gearwhine.housing.measured.universal_reading import Frame, read_universal
+from gearwhine.housing.measured.universal_writing import write_universal
+from gearwhine.housing.storage.atomic_file import atomic_file
+from gearwhine.meshes.lengths import UNITS
 
 FloatArray = npt.NDArray[np.float64]
 

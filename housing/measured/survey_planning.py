@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.nearest_point import NearestOnSurface
-from housing.fem.outer_facets import outer_facets, sample_surface
-from housing.measured.survey_data import MeasuredGeometry
-from housing.model.patches import points_matrix
-from meshes import Mesh
-from meshes.elements import Facets, facet_centers, facet_normals, pick_facets
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.nearest_point import NearestOnSurface
+from gearwhine.housing.fem.outer_facets import outer_facets, sample_surface
+from gearwhine.housing.measured.survey_data import MeasuredGeometry
+from gearwhine.housing.model.patches import points_matrix
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import Facets, facet_centers, facet_normals, pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

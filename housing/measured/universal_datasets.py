@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import MeasuredDataError
-from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, Motion
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,10 +11,16 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import MeasuredDataError
-from housing.measured.survey_data import MeasuredModes, SurveyData
-from housing.measured.universal_datasets import Dataset, SurveyPoints, read_datasets, read_functions, read_shapes
-from meshes.lengths import UNITS
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.survey_data import MeasuredModes, SurveyData
+from gearwhine.housing.measured.universal_datasets import (
+    Dataset,
+    SurveyPoints,
+    read_datasets,
+    read_functions,
+    read_shapes,
+)
+from gearwhine.meshes.lengths import UNITS
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import MeasuredDataError
-from housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData
-from housing.measured.universal_datasets import COMPLEX_FIRST, FORCE, MOTIONS, NORMAL, RESPONSE_FUNCTION
-from housing.storage.atomic_file import atomic_file
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured.survey_data import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData
+from gearwhine.housing.measured.universal_datasets import COMPLEX_FIRST, FORCE, MOTIONS, NORMAL, RESPONSE_FUNCTION
+from gearwhine.housing.storage.atomic_file import atomic_file
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from housing.errors import HousingError
-from housing.material import Material
-from housing.model.bushings import Axial
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.material import Material
+from gearwhine.housing.model.bushings import Axial
 
 _TAN = math.tan(math.radians(30.0))
 _HEAD = 1.5  # diameter of the head's bearing face over that of the bolt

@@ -6,13 +6,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.matrices import Additions
-from housing.model.fixtures import port_fixture_matrices
-from housing.model.patches import Patch, Point, patch_matrix
-from housing.own_copies import keep_tuples
-from meshes import Mesh
-from meshes.elements import IntArray, facet_nodes
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import Additions
+from gearwhine.housing.model.fixtures import port_fixture_matrices
+from gearwhine.housing.model.patches import Patch, Point, patch_matrix
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import IntArray, facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
@@ -140,7 +140,7 @@ class Mount:
         keep_tuples(self, "center")
 
     def additions(self, mesh: Mesh) -> Additions:
-        """Pᵀ K₆ P and Pᵀ C₆ P; see :class:`housing.model.fixtures.Fixture`."""
+        """Pᵀ K₆ P and Pᵀ C₆ P; see :class:`gearwhine.housing.model.fixtures.Fixture`."""
         center = None if self.center is None else np.array(self.center)
         port = patch_matrix(mesh, self.patch.facets(mesh), center, name=f"mount {self.name!r}")
         return self.bushing.additions(port, f"mount {self.name!r}")
@@ -184,7 +184,7 @@ class Joint:
         return np.concatenate([facet_nodes(patch.facets(mesh)) for patch in (self.first, self.second)])
 
     def additions(self, mesh: Mesh) -> Additions:
-        """(P₂ - P₁)ᵀ K₆ (P₂ - P₁) and the same with C₆; see :class:`housing.model.fixtures.Fixture`."""
+        """(P₂ - P₁)ᵀ K₆ (P₂ - P₁) and the same with C₆; see :class:`gearwhine.housing.model.fixtures.Fixture`."""
         name = f"joint {self.name!r}"
         if self.center is None:
             center = 0.5 * (self.first.center(mesh) + self.second.center(mesh))

@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
-from housing.fem.nearest_point import SurfacePoint, surface_point
-from housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
-from housing.own_copies import keep_tuples
-from meshes import Mesh
-from numerics.findings import Finding, refuse
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
+from gearwhine.housing.fem.nearest_point import SurfacePoint, surface_point
+from gearwhine.housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Mesh
+from gearwhine.numerics.findings import Finding, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class Fixture(Protocol):
 
         Raises
         ------
-        HousingError, meshes.GeometryError
+        HousingError, gearwhine.meshes.GeometryError
             Where it does not fit the mesh.
         """
 
@@ -55,7 +55,7 @@ def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture])
 
     Raises
     ------
-    HousingError, meshes.GeometryError
+    HousingError, gearwhine.meshes.GeometryError
         Where one of them does not fit the mesh.
     """
     additions = sum((attachment.additions(mesh) for attachment in fixtures), Additions())
@@ -172,7 +172,7 @@ class LumpedMass:
         return surface_point(mesh, mesh.boundary, np.array(self.position))
 
     def additions(self, mesh: Mesh) -> Additions:
-        """Pᵀ M₆ P, or m on the translations of a point; see :class:`housing.model.fixtures.Fixture`."""
+        """Pᵀ M₆ P, or m on the translations of a point; see :class:`gearwhine.housing.model.fixtures.Fixture`."""
         name = f"mass {self.name!r}"
         if self.patch is None:
             return port_fixture_matrices(point_matrix(mesh, self.place(mesh)), name=name, mass=self.mass * np.eye(3))

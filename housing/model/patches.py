@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.matrices import NOTHING, Matrices, NodeBlocks
-from housing.fem.nearest_point import SurfacePoint
-from housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
-from housing.own_copies import keep_tuples
-from meshes import Mesh, box_facets, circle_facets, plane_facets
-from meshes.elements import Facets
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import NOTHING, Matrices, NodeBlocks
+from gearwhine.housing.fem.nearest_point import SurfacePoint
+from gearwhine.housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Mesh, box_facets, circle_facets, plane_facets
+from gearwhine.meshes.elements import Facets
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -113,7 +113,7 @@ class Patch:
     plane : tuple of two points, optional
         A point of it [m] and its normal; the facets on it belong to the patch.
     circle : tuple of center, normal and diameter, optional
-        Circle in a flat face, with the face's outward normal [m]; see :func:`meshes.circle_facets`.
+        Circle in a flat face, with the face's outward normal [m]; see :func:`gearwhine.meshes.circle_facets`.
     """
 
     surface: str | None = None
@@ -132,7 +132,7 @@ class Patch:
 
         Raises
         ------
-        meshes.GeometryError
+        gearwhine.meshes.GeometryError
             Where the mesh has no such surface, or no facet lies in the box, on the plane or in the circle.
         """
         if self.surface is not None:

@@ -1,7 +1,7 @@
 """Bearing seats and sensors: the ports at which the rest of the machine meets the housing.
 
 A bearing seat moves as the rigid motion nearest to its surface's own, in the mean over the area; a sensor moves
-as the point it is glued to (:mod:`housing.model.patches`). Both are linear in the nodes' displacements u,
+as the point it is glued to (:mod:`gearwhine.housing.model.patches`). Both are linear in the nodes' displacements u,
 ``motion = P u``, and a load on the port acts on the nodes by the transpose, so the work done is the same on both sides.
 """
 
@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.nearest_point import surface_point
-from housing.model.patches import patch_matrix, point_matrix
-from housing.own_copies import keep_tuples
-from meshes import Mesh
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.nearest_point import surface_point
+from gearwhine.housing.model.patches import patch_matrix, point_matrix
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -90,7 +90,7 @@ class SensorPort:
 def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
     """Assemble the matrix of a bearing seat: the rigid motion at its centre from the nodes' displacements.
 
-    See :func:`housing.model.patches.patch_matrix`.
+    See :func:`gearwhine.housing.model.patches.patch_matrix`.
 
     Returns
     -------

@@ -9,22 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.fem.matrices import NOTHING, Additions
-from housing.fem.surface import IntArray
-from housing.model.bushings import Mount
-from housing.model.patches import Patch, rigid_motions, spread
-from housing.own_copies import keep_tuples
-from meshes import Mesh
-from meshes.elements import Facets, facet_nodes
-from numerics.findings import Flags, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import NOTHING, Additions
+from gearwhine.housing.fem.surface import IntArray
+from gearwhine.housing.model.bushings import Mount
+from gearwhine.housing.model.patches import Patch, rigid_motions, spread
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import Facets, facet_nodes
+from gearwhine.numerics.findings import Flags, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Support:
-    """A support of a patch of the surface, as of :class:`housing.Patch`; fixed or on springs and dashpots.
+    """A support of a patch of the surface, as of :class:`gearwhine.housing.Patch`; fixed or on springs and dashpots.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """Certificate of a set of modes by its Sturm count (Sylvester's inertia): none missing, none twice, each accurate.
 
 The eigensolver works on the shifted inverse of K φ = λ M φ: block Lanczos or scipy's ``eigsh``
-(:mod:`housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
+(:mod:`gearwhine.housing.modes.eigensolver`). The proof is Sylvester's law of inertia: the number of negative pivots in
 K - σM = L D Lᵀ is the number of eigenvalues below σ, multiple ones counted by their multiplicity. The search is
 repeated more widely until this count proves it complete. A frequency limit is itself the shift, so that one factor both
 counts the modes below it and finds them. For a number of modes the shift lies just below zero, which keeps the shifted
@@ -16,11 +16,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from housing.errors import FactorizationError, HousingError, IncompleteModesError
-from housing.fem.factorization import Factorization, Factorizer
-from housing.fem.linear_algebra import BlockAlgebra
-from housing.fem.matrices import FreeSystem
-from housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
+from gearwhine.housing.errors import FactorizationError, HousingError, IncompleteModesError
+from gearwhine.housing.fem.factorization import Factorization, Factorizer
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra
+from gearwhine.housing.fem.matrices import FreeSystem
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver, nearest_modes
 
 FloatArray = npt.NDArray[np.float64]
 

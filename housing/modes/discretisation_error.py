@@ -24,10 +24,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.fem.matrices import Matrices
-from meshes import Mesh
-from meshes.elements import ElementBlock, facet_centers, facet_normals
-from meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import ElementBlock, facet_centers, facet_normals
+from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -59,7 +59,7 @@ def discretisation_errors(
     ----------
     mesh : Mesh
     constants : ndarray, shape (3, n_elements)
-        λ, μ [Pa] and ρ [kg/m³] of each element, see :func:`housing.material.element_constants`.
+        λ, μ [Pa] and ρ [kg/m³] of each element, see :func:`gearwhine.housing.material.element_constants`.
     frequencies : ndarray, shape (n_modes,)
         ω_h [rad/s].
     shapes : ndarray, shape (n_modes, n_nodes, 3)

@@ -18,10 +18,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import linalg
 
-from housing.errors import HousingError
-from housing.fem.matrices import FreeMass, Matrices
-from housing.model.patches import rigid_body, rigid_motions
-from housing.modes.natural_modes import ModeSet
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.matrices import FreeMass, Matrices
+from gearwhine.housing.model.patches import rigid_body, rigid_motions
+from gearwhine.housing.modes.natural_modes import ModeSet
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

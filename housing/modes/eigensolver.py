@@ -18,7 +18,7 @@ several columns because the factor is read once for all of them (Golub and Under
 1994); a multiple mode needs a block at least as wide as its multiplicity.
 
 *ARPACK* is an implicitly restarted Lanczos method; the factor enters it as ``OPinv``. It may leave out a copy of a
-multiple mode without notice; the certificate (:mod:`housing.modes.certificate`) detects it.
+multiple mode without notice; the certificate (:mod:`gearwhine.housing.modes.certificate`) detects it.
 """
 
 from collections.abc import Callable
@@ -29,8 +29,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
-from housing.errors import IncompleteModesError
-from housing.fem.linear_algebra import BlockAlgebra, Operator
+from gearwhine.housing.errors import IncompleteModesError
+from gearwhine.housing.fem.linear_algebra import BlockAlgebra, Operator
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,15 +12,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HealthError
-from housing.fem.matrices import Matrices
-from housing.model.bushings import Mount
-from housing.model.patches import RigidBody, rigid_body, rigid_motions
-from housing.model.supports import Grounding, Support, grounding
-from housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
-from housing.modes.natural_modes import ModeSet
-from housing.modes.residual_modes import STATIC_BOUND
-from meshes import Mesh
+from gearwhine.housing.errors import HealthError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.bushings import Mount
+from gearwhine.housing.model.patches import RigidBody, rigid_body, rigid_motions
+from gearwhine.housing.model.supports import Grounding, Support, grounding
+from gearwhine.housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.modes.residual_modes import STATIC_BOUND
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Natural modes of the housing, with the proof that none is missing (:mod:`housing.modes.certificate`).
+"""Natural modes of the housing, with the proof that none is missing (:mod:`gearwhine.housing.modes.certificate`).
 
 Residual attachment modes can be added to an existing mode set, read from a file or solved for with other ports.
 """
@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.factorization import Backend, Factorization, Factorizer
-from housing.fem.matrices import FreeSystem, Matrices
-from housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
-from housing.modes.eigensolver import DEFAULT_SOLVER, Solver
-from housing.modes.residual_modes import (
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.factorization import Backend, Factorization, Factorizer
+from gearwhine.housing.fem.matrices import FreeSystem, Matrices
+from gearwhine.housing.modes.certificate import MOST_MODES, Certificate, CertifiedSearch, indefinite_stiffness_error
+from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
+from gearwhine.housing.modes.residual_modes import (
     ResidualModes,
     extended_residual_modes,
     missing_harmonic_responses,
@@ -55,7 +55,7 @@ class ModeSet:
         Residual modes, which complete the static response to loads at the ports, where ports were given.
     discretisation_errors : ndarray, shape (n_modes,), or None
         Estimate of each frequency's relative error by the mesh, where the mesh is known; see
-        :mod:`housing.modes.discretisation_error`.
+        :mod:`gearwhine.housing.modes.discretisation_error`.
     """
 
     frequencies: FloatArray
@@ -110,7 +110,7 @@ def solve_modes(
     ----------
     matrices : Matrices
         Matrices of n_nodes nodes, with the supports and whatever else is attached to them, see
-        :func:`housing.attach_fixtures`.
+        :func:`gearwhine.housing.attach_fixtures`.
     frequency_limit : float
         Every mode below it is found [rad/s]. Either this or ``count``.
     count : int
@@ -122,11 +122,11 @@ def solve_modes(
         Motions whose static compliance the mode set is to hold exactly, by residual modes.
     port_orders : int
         Responses for each of these motions: 1, the static one; 2, that at the limit too; see
-        :func:`housing.modes.residual_modes.residual_attachment_modes`.
+        :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
     solver : {"lanczos", "eigsh"}
         Block Lanczos or ``scipy.sparse.linalg.eigsh``; both on the same factor, with the same certificate.
     backend, threads
-        See :class:`housing.fem.factorization.Factorizer`.
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`.
     progress : callable
         Called with a line of text before each step.
 
@@ -219,8 +219,8 @@ def add_residual_modes(
 ) -> ModeSet:
     """Add residual modes to a mode set, so that the static compliance at the ports is exact.
 
-    The shapes stay the same to the error of their certificate, which Eq. (3) of :mod:`housing.modes.residual_modes`
-    reduces.
+    The shapes stay the same to the error of their certificate, which Eq. (3) of
+    :mod:`gearwhine.housing.modes.residual_modes` reduces.
 
     Parameters
     ----------
@@ -229,17 +229,17 @@ def add_residual_modes(
     modes : ModeSet
         Complete up to its limit; its own residual modes are replaced.
     ports : sparse array of shape (r, 3 n_nodes), or a sequence of them
-        Ports such as those of :func:`housing.model.seats.seat_matrix`; the static compliance has their order.
+        Ports such as those of :func:`gearwhine.housing.model.seats.seat_matrix`; the static compliance has their order.
     factor, shift : Factorization and float, optional
         A factor of K - shift M on the free degrees of freedom, where one is at hand, and its shift [rad²/s²]; both or
         neither.
     backend, threads
-        See :class:`housing.fem.factorization.Factorizer`; used where no factor is given.
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`; used where no factor is given.
 
     Raises
     ------
     HousingError, ReductionError
-        See :func:`housing.modes.residual_modes.residual_attachment_modes`.
+        See :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
     """
     system = FreeSystem(matrices, threads=threads)
     floor = system.floor(modes.certificate.limit)
@@ -273,7 +273,7 @@ class ModeSetExtension:
     modes : ModeSet
         Complete up to its limit.
     backend, threads
-        See :class:`housing.fem.factorization.Factorizer`.
+        See :class:`gearwhine.housing.fem.factorization.Factorizer`.
     """
 
     def __init__(self, matrices: Matrices, modes: ModeSet, *, backend: Backend | None = None, threads: int = 2) -> None:
@@ -298,7 +298,7 @@ class ModeSetExtension:
         Raises
         ------
         HousingError, ReductionError
-            See :func:`housing.modes.residual_modes.residual_attachment_modes`.
+            See :func:`gearwhine.housing.modes.residual_modes.residual_attachment_modes`.
         """
         system = self._system
         further, _ = residual_attachment_modes(

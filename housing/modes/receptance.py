@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.modes.natural_modes import ModeSet
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.modes.natural_modes import ModeSet
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

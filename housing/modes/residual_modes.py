@@ -71,9 +71,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from housing.errors import HousingError, ReductionError
-from housing.fem.linear_algebra import Operator
-from housing.modes.certificate import RESIDUAL_BOUND
+from gearwhine.housing.errors import HousingError, ReductionError
+from gearwhine.housing.fem.linear_algebra import Operator
+from gearwhine.housing.modes.certificate import RESIDUAL_BOUND
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-from housing.errors import HousingError
-from housing.measured.survey_data import MeasuredGeometry
-from housing.modes.natural_modes import ModeSet
-from meshes import Mesh
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.measured.survey_data import MeasuredGeometry
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

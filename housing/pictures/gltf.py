@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from housing.modes.natural_modes import ModeSet
-from housing.pictures.drawn_shapes import (
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.pictures.drawn_shapes import (
     DRAWN_SCALE,
     DrawnHousing,
     DrawnShape,
@@ -26,8 +26,8 @@ from housing.pictures.drawn_shapes import (
     drawn_housing,
     drawn_modes,
 )
-from housing.storage.atomic_file import atomic_file
-from meshes import Mesh
+from gearwhine.housing.storage.atomic_file import atomic_file
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

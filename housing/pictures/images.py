@@ -13,13 +13,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import EncoderUnavailableError
-from housing.modes.natural_modes import ModeSet
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
-from housing.pictures.scene import STRIP, Scene, colour_strip
-from housing.pictures.views import AUTO, check_view
-from housing.storage.atomic_file import atomic_file
-from meshes import Mesh
+from gearwhine.housing.errors import EncoderUnavailableError
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
+from gearwhine.housing.pictures.scene import STRIP, Scene, colour_strip
+from gearwhine.housing.pictures.views import AUTO, check_view
+from gearwhine.housing.storage.atomic_file import atomic_file
+from gearwhine.meshes import Mesh
 
 FilmFormat = Literal["gif", "mp4"]
 Image = npt.NDArray[np.uint8]
@@ -55,7 +55,7 @@ def render_modes(
     notes : mapping of int to str, optional
         A second line under a mode's title.
     view : str
-        One of :data:`housing.pictures.views.VIEWS`.
+        One of :data:`gearwhine.housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height of a picture [pixels].
     progress : callable
@@ -210,7 +210,7 @@ def animate_shapes(
         Folder of the films; made where it is missing.
     film : {"gif", "mp4"}
     view : str
-        One of :data:`housing.pictures.views.VIEWS`.
+        One of :data:`gearwhine.housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height [pixels], both even.
     progress : callable

@@ -14,9 +14,16 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import RendererUnavailableError
-from housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
-from housing.pictures.views import AUTO, IN_WORDS, check_view, seen_areas, view_of_most_motion, viewing_direction
+from gearwhine.housing.errors import RendererUnavailableError
+from gearwhine.housing.pictures.drawn_shapes import DRAWN_SCALE, MODE_QUANTITY, DrawnHousing, DrawnShape, Skin
+from gearwhine.housing.pictures.views import (
+    AUTO,
+    IN_WORDS,
+    check_view,
+    seen_areas,
+    view_of_most_motion,
+    viewing_direction,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -88,7 +95,7 @@ class Scene:
     ----------
     housing : DrawnHousing
     view : str
-        One of :data:`housing.pictures.views.VIEWS`.
+        One of :data:`gearwhine.housing.pictures.views.VIEWS`.
     size : tuple of int
         Width and height [pixels].
     tile : bool
@@ -236,7 +243,7 @@ class Scene:
         Parameters
         ----------
         view : str
-            One of :data:`housing.pictures.views.VIEWS`.
+            One of :data:`gearwhine.housing.pictures.views.VIEWS`.
         beside : bool
             Whether the picture stands beside one that has the captions; it names its view in their place.
         bar : bool

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from housing.storage.netcdf import LabelledArray, digest
-from meshes import ElementBlock, Mesh
-from meshes.elements import Facets
+from gearwhine.housing.storage.netcdf import LabelledArray, digest
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import Facets
 
 IntArray = npt.NDArray[np.int64]
 
@@ -34,7 +34,8 @@ def mesh_from_arrays(arrays: Mapping[str, LabelledArray]) -> Mesh:
     Raises
     ------
     KeyError, ValueError
-        Where an array is missing or the arrays do not fit each other (:class:`meshes.GeometryError` among them).
+        Where an array is missing or the arrays do not fit each other (:class:`gearwhine.meshes.GeometryError` among
+        them).
     """
     blocks: list[ElementBlock] = []
     while (name := f"elements_{len(blocks) + 1}") in arrays:

@@ -18,15 +18,22 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError, ModeFileError
-from housing.model.seats import Seat, Sensor, SensorPort
-from housing.modes.certificate import Certificate
-from housing.modes.natural_modes import ModeSet
-from housing.modes.residual_modes import ResidualModes, StaticProof
-from housing.storage.atomic_file import atomic_file, checksum_holds, write_checksum
-from housing.storage.mesh_arrays import mesh_arrays, mesh_from_arrays
-from housing.storage.netcdf import LabelledArray, canonical_json, content_key, digest, read_netcdf, write_netcdf
-from meshes import Mesh
+from gearwhine.housing.errors import HousingError, ModeFileError
+from gearwhine.housing.model.seats import Seat, Sensor, SensorPort
+from gearwhine.housing.modes.certificate import Certificate
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.housing.modes.residual_modes import ResidualModes, StaticProof
+from gearwhine.housing.storage.atomic_file import atomic_file, checksum_holds, write_checksum
+from gearwhine.housing.storage.mesh_arrays import mesh_arrays, mesh_from_arrays
+from gearwhine.housing.storage.netcdf import (
+    LabelledArray,
+    canonical_json,
+    content_key,
+    digest,
+    read_netcdf,
+    write_netcdf,
+)
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from typing import Generic
 import numpy as np
 import numpy.typing as npt
 
-from housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
-from housing.updating.multistart import Each, Meshes, multistart_search, polish, serial_map
-from housing.updating.parameters import Parameter, Posterior, posterior
-from housing.updating.trust_region import AnyDesign, Effort, Solve
+from gearwhine.housing.updating.misfit import UNPAIRED, Misfit, Target, is_met, measure
+from gearwhine.housing.updating.multistart import Each, Meshes, multistart_search, polish, serial_map
+from gearwhine.housing.updating.parameters import Parameter, Posterior, posterior
+from gearwhine.housing.updating.trust_region import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -96,7 +96,7 @@ class Procedure(Generic[AnyDesign]):
     Attributes
     ----------
     solve : callable
-        See :data:`housing.updating.Solve`.
+        See :data:`gearwhine.housing.updating.Solve`.
     parameters : sequence of Parameter
     start : Design
         Start design, solved.

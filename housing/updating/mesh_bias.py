@@ -21,9 +21,9 @@ import numpy.typing as npt
 from scipy import linalg
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import modal_assurance_criterion
-from housing.updating.surrogate import ModalState, Surrogate
-from housing.updating.trust_region import AnyDesign, Solve
+from gearwhine.housing.correlation import modal_assurance_criterion
+from gearwhine.housing.updating.surrogate import ModalState, Surrogate
+from gearwhine.housing.updating.trust_region import AnyDesign, Solve
 
 FloatArray = npt.NDArray[np.float64]
 

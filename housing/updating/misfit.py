@@ -10,7 +10,8 @@ disagree, and a number of modes other than the known one.
 
 Where shapes were measured, modes are paired by the assignment of greatest MAC. Frequencies alone are paired in their
 order (:attr:`Target.pairing`): the first with the first; with the nearest ones; or with the dominant ones, during a
-search with the modes of least cost (:mod:`housing.updating.mode_choice`), which at a good end are the dominant ones.
+search with the modes of least cost (:mod:`gearwhine.housing.updating.mode_choice`), which at a good end are the
+dominant ones.
 """
 
 from dataclasses import dataclass
@@ -20,11 +21,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from housing.correlation import modal_assurance_criterion
-from housing.correlation.pairing import nearest_in_order
-from housing.errors import HousingError
-from housing.updating.mode_choice import ChoiceShortfall, choice_shortfall, choose_modes
-from housing.updating.surrogate import ModalState, Neighbour
+from gearwhine.housing.correlation import modal_assurance_criterion
+from gearwhine.housing.correlation.pairing import nearest_in_order
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.updating.mode_choice import ChoiceShortfall, choice_shortfall, choose_modes
+from gearwhine.housing.updating.surrogate import ModalState, Neighbour
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

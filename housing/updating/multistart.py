@@ -3,9 +3,9 @@
 The choice of dominant modes gives the misfit many local minima, and a search from one start ends in the nearest. So the
 search begins from many starts, round by round, and the better half of each round continues (successive halving:
 Jamieson and Talwalkar 2016). In the first round every start has a few solutions on the coarse mesh, with the mesh's
-bias corrected (:mod:`housing.updating.mesh_bias`). A bias learned at one design is wrong by per cents some standard
-deviations away where walls are thin, so that the other rounds use the fine mesh itself. Penalties grow from round to
-round. The search ends where a design meets the target on the fine mesh, or with its last round.
+bias corrected (:mod:`gearwhine.housing.updating.mesh_bias`). A bias learned at one design is wrong by per cents some
+standard deviations away where walls are thin, so that the other rounds use the fine mesh itself. Penalties grow from
+round to round. The search ends where a design meets the target on the fine mesh, or with its last round.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,12 +15,12 @@ from typing import Any, Generic, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.updating.mesh_bias import Debiased, MeshBias, debiased
-from housing.updating.misfit import Misfit, Target, is_met, measure
-from housing.updating.parameters import Parameter, coordinate_bounds
-from housing.updating.surrogate import ModalState, Surrogate
-from housing.updating.trust_region import AnyDesign, Effort, SearchResult, Solve, Step, descend, search
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.updating.mesh_bias import Debiased, MeshBias, debiased
+from gearwhine.housing.updating.misfit import Misfit, Target, is_met, measure
+from gearwhine.housing.updating.parameters import Parameter, coordinate_bounds
+from gearwhine.housing.updating.surrogate import ModalState, Surrogate
+from gearwhine.housing.updating.trust_region import AnyDesign, Effort, SearchResult, Solve, Step, descend, search
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class Meshes(Generic[AnyDesign]):
     Attributes
     ----------
     coarse : callable
-        See :data:`housing.updating.Solve`.
+        See :data:`gearwhine.housing.updating.Solve`.
     fine : callable
         Solver on the fine mesh, which is made anew at each design; None where there is one mesh only.
     light : callable

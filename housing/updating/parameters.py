@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.updating.misfit import Misfit, Target, residuals
-from housing.updating.surrogate import Neighbour
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.updating.misfit import Misfit, Target, residuals
+from gearwhine.housing.updating.surrogate import Neighbour
 
 FloatArray = npt.NDArray[np.float64]
 

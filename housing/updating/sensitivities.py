@@ -22,11 +22,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.errors import HousingError
-from housing.fem.assembly import stiffness_degree, straight_elements
-from meshes import Mesh
-from meshes.elements import ElementKind
-from meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.assembly import stiffness_degree, straight_elements
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import ElementKind
+from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, quadrature, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

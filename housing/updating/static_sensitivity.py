@@ -26,9 +26,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
-from meshes import Mesh
-from meshes.shape_functions import determinants, inverses, jacobians, shape_functions
+from gearwhine.housing.updating.sensitivities import ModelSensitivity, modal_sensitivities
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.shape_functions import determinants, inverses, jacobians, shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -24,9 +24,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from housing.errors import HousingError
-from housing.modes.dominance import Dominance, dominance
-from housing.updating.sensitivities import ModalSensitivities
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.modes.dominance import Dominance, dominance
+from gearwhine.housing.updating.sensitivities import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
-from housing.errors import HousingError
-from housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
-from housing.updating.parameters import Parameter, coordinate_bounds
-from housing.updating.surrogate import ModalState, Neighbour, Surrogate
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.updating.misfit import UNPAIRED, Misfit, Target, measure, residuals
+from gearwhine.housing.updating.parameters import Parameter, coordinate_bounds
+from gearwhine.housing.updating.surrogate import ModalState, Neighbour, Surrogate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ AnyDesign = TypeVar("AnyDesign", bound=Design)
 Solve = Callable[[FloatArray, AnyDesign | None], AnyDesign]
 """Solves a design at coordinates z; the second argument is a neighbour whose mesh it may start from.
 
-Raises :class:`housing.HousingError` where there is no sound model."""
+Raises :class:`gearwhine.housing.HousingError` where there is no sound model."""
 
 
 @dataclass(frozen=True)

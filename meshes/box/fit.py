@@ -9,9 +9,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from meshes.box import layout
-from meshes.box.layout import Block
-from meshes.box.parts import FACES, OPPOSITE_FACES, Bolt, Bore, Box, Cover, Flange, Rib, plane_axes
+from gearwhine.meshes.box import layout
+from gearwhine.meshes.box.layout import Block
+from gearwhine.meshes.box.parts import FACES, OPPOSITE_FACES, Bolt, Bore, Box, Cover, Flange, Rib, plane_axes
 
 SLACK = 1e-9
 """Rounding of lengths [m]."""
@@ -24,7 +24,7 @@ class BoxMisfit:
     Attributes
     ----------
     location : tuple of str or int
-        Attributes and indices from the :class:`~meshes.BoxGeometry` down, such as ``("ribs", 0, "at")``.
+        Attributes and indices from the :class:`~gearwhine.meshes.BoxGeometry` down, such as ``("ribs", 0, "at")``.
     expected : str
         The expected value, to be read after "expected".
     """

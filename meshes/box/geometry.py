@@ -7,10 +7,21 @@ the underside of its base in y; feet reach below y = 0.
 from dataclasses import dataclass, field
 from typing import Literal
 
-from meshes.box import layout
-from meshes.box.fit import BoxMisfit, misfits
-from meshes.box.parts import FACES, FOOT_NAMES, OPPOSITE_FACES, Bolt, Bore, Cover, Feet, Fillets, Rib, WallThickness
-from meshes.errors import GeometryError
+from gearwhine.meshes.box import layout
+from gearwhine.meshes.box.fit import BoxMisfit, misfits
+from gearwhine.meshes.box.parts import (
+    FACES,
+    FOOT_NAMES,
+    OPPOSITE_FACES,
+    Bolt,
+    Bore,
+    Cover,
+    Feet,
+    Fillets,
+    Rib,
+    WallThickness,
+)
+from gearwhine.meshes.errors import GeometryError
 
 
 class BoxMisfitError(GeometryError):

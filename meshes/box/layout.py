@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from meshes.box.parts import FACES, Bolt, Bore, Box, Cover, Face, Point, Rib, plane_axes
+from gearwhine.meshes.box.parts import FACES, Bolt, Bore, Box, Cover, Face, Point, Rib, plane_axes
 
 SUNK = 0.5
 """Ribs reach into the walls they meet by this part of the thickness, so that rounded edges leave no gap below."""

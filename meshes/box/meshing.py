@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from meshes.box import layout
-from meshes.box.geometry import BoxGeometry
-from meshes.box.layout import Block
-from meshes.box.parts import FACES, Cover
-from meshes.elements import FloatArray
-from meshes.errors import GeometryError
-from meshes.gmsh_meshing import check_mesh_request, check_mesh_size, collect, gmsh_session, mesh_solids
-from meshes.mesh import Mesh
+from gearwhine.meshes.box import layout
+from gearwhine.meshes.box.geometry import BoxGeometry
+from gearwhine.meshes.box.layout import Block
+from gearwhine.meshes.box.parts import FACES, Cover
+from gearwhine.meshes.elements import FloatArray
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.gmsh_meshing import check_mesh_request, check_mesh_size, collect, gmsh_session, mesh_solids
+from gearwhine.meshes.mesh import Mesh
 
 Entities = list[tuple[int, int]]
 
@@ -322,7 +322,7 @@ def mesh_box(geometry: BoxGeometry, mesh_size: float, *, order: int = 2) -> Mesh
     Raises
     ------
     MeshSizeError
-        See :func:`meshes.check_mesh_size`.
+        See :func:`gearwhine.meshes.check_mesh_size`.
     GeometryError
         Where gmsh cannot build or mesh the shape.
     """

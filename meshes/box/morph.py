@@ -17,12 +17,12 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from meshes.box import layout
-from meshes.box.geometry import BoxGeometry
-from meshes.box.layout import Block
-from meshes.elements import FloatArray, IntArray, facet_centers, facet_normals
-from meshes.errors import GeometryError
-from meshes.mesh import Mesh
+from gearwhine.meshes.box import layout
+from gearwhine.meshes.box.geometry import BoxGeometry
+from gearwhine.meshes.box.layout import Block
+from gearwhine.meshes.elements import FloatArray, IntArray, facet_centers, facet_normals
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.mesh import Mesh
 
 
 class MorphError(GeometryError):
@@ -137,7 +137,7 @@ class BoxMorph:
     Parameters
     ----------
     mesh : Mesh
-        Tetrahedra, of :func:`meshes.mesh_box` or moved by an earlier morph.
+        Tetrahedra, of :func:`gearwhine.meshes.mesh_box` or moved by an earlier morph.
     geometry : BoxGeometry
         Present dimensions of the mesh.
 

@@ -240,7 +240,7 @@ class Bolt:
 
 
 class Box(Protocol):
-    """A box by its parts, as `meshes.BoxGeometry` has them; layout and checks are derived from it."""
+    """A box by its parts, as `gearwhine.meshes.BoxGeometry` has them; layout and checks are derived from it."""
 
     @property
     def size(self) -> Point:

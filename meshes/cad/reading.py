@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.cad.shape import stated_unit
-from meshes.cad.worker import FORESEEN, JOINING, MESHING, READING, STARTING, Request
-from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
-from meshes.gmsh_meshing import Tetrahedra, check_mesh_request
-from meshes.mesh import Mesh
+from gearwhine.meshes.cad.shape import stated_unit
+from gearwhine.meshes.cad.worker import FORESEEN, JOINING, MESHING, READING, STARTING, Request
+from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
+from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_request
+from gearwhine.meshes.mesh import Mesh
 
 _LONGEST = 3600.0  # seconds for a file in all
 # Seconds to read and join solids, and more by the byte: a sound file of 20 kB takes a tenth of a second, a damaged one
@@ -90,7 +90,7 @@ def mesh_cad(
     Raises
     ------
     MeshSizeError
-        See :func:`meshes.check_mesh_size`.
+        See :func:`gearwhine.meshes.check_mesh_size`.
     GeometryError
         Where the file is missing, of another kind, broken, without a solid, in a mistaken unit, or where a solid
         cannot be meshed.
@@ -136,7 +136,7 @@ def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> 
     room = Path(__file__).resolve().parents[2]
     search = os.pathsep.join(part for part in (str(room), os.environ.get("PYTHONPATH", "")) if part)
     with subprocess.Popen(
-        [sys.executable, "-m", "meshes.cad.worker", str(folder), str(os.getpid())],
+        [sys.executable, "-m", "gearwhine.meshes.cad.worker", str(folder), str(os.getpid())],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from meshes.errors import GeometryError
-from meshes.lengths import LARGEST, SMALLEST, UNITS, length_text, plausible
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.lengths import LARGEST, SMALLEST, UNITS, length_text, plausible
 
 _PREFIXES = {"$": 1.0, "MILLI": 1e-3, "CENTI": 1e-2, "DECI": 0.1, "MICRO": 1e-6, "KILO": 1e3, "NANO": 1e-9}
 _CONVERTED = {"INCH": 0.0254, "INCHES": 0.0254, "IN": 0.0254, "FOOT": 0.3048, "FEET": 0.3048, "FT": 0.3048}

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from meshes.cad.shape import Shape, choose_unit, conforming, extent, read_solids
-from meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
-from meshes.gmsh_meshing import Tetrahedra, check_mesh_size, coarse_size, collect, gmsh_session, mesh_solids
+from gearwhine.meshes.cad.shape import Shape, choose_unit, conforming, extent, read_solids
+from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
+from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_size, coarse_size, collect, gmsh_session, mesh_solids
 
 STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
 FORESEEN = "foreseen"  # the file with the number of elements to come
@@ -41,7 +41,7 @@ class Request:
         Mesh size [m]; None for one by the thickness of the walls.
     order : {1, 2}
     stated, given : float or None
-        Units of length [m], as of :func:`meshes.cad.shape.choose_unit`.
+        Units of length [m], as of :func:`gearwhine.meshes.cad.shape.choose_unit`.
     glue : bool
         Whether solids that touch become one piece.
     places : list of (x, y, z, diameter)

@@ -13,10 +13,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from meshes.elements import KINDS, NO_NODE, ElementBlock, IntArray, count
-from meshes.errors import GeometryError
-from meshes.formats.content import MeshContent, corner_rows, find_faces
-from meshes.mesh import Mesh
+from gearwhine.meshes.elements import KINDS, NO_NODE, ElementBlock, IntArray, count
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.formats.content import MeshContent, corner_rows, find_faces
+from gearwhine.meshes.mesh import Mesh
 
 _DEPTH = 20  # levels of files that include files
 _INCLUDE, _INPUT = "INCLUDE", "INPUT"

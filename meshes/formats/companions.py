@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from meshes.formats.abaqus import included_files
-from meshes.formats.nastran import ENDINGS, included_decks
+from gearwhine.meshes.formats.abaqus import included_files
+from gearwhine.meshes.formats.nastran import ENDINGS, included_decks
 
 _TETGEN = (".node", ".ele")
 

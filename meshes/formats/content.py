@@ -5,10 +5,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from meshes.elements import NO_NODE, ElementBlock, FloatArray, IntArray, faces_as_facets, group_rows, pick_facets
-from meshes.errors import GeometryError
-from meshes.mesh import Mesh
-from meshes.shape_functions import volumes
+from gearwhine.meshes.elements import (
+    NO_NODE,
+    ElementBlock,
+    FloatArray,
+    IntArray,
+    faces_as_facets,
+    group_rows,
+    pick_facets,
+)
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.mesh import Mesh
+from gearwhine.meshes.shape_functions import volumes
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
 
-from meshes.errors import GeometryError
-from meshes.formats.abaqus import read_abaqus, write_abaqus
-from meshes.formats.content import MeshContent
-from meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
-from meshes.formats.nastran import ENDINGS, read_nastran
-from meshes.mesh import Mesh
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.formats.abaqus import read_abaqus, write_abaqus
+from gearwhine.meshes.formats.content import MeshContent
+from gearwhine.meshes.formats.meshio_formats import content_from_meshio, load_meshio, meshio_from_mesh
+from gearwhine.meshes.formats.nastran import ENDINGS, read_nastran
+from gearwhine.meshes.mesh import Mesh
 
 # Every kind of element comes back whole under these endings; under others some are lost or changed in silence.
 WRITABLE = (".inp", ".med", ".msh", ".vtk", ".vtu", ".xdmf")

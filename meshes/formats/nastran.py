@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.elements import NO_NODE, ElementBlock, FloatArray, IntArray
-from meshes.errors import GeometryError
-from meshes.formats.content import MeshContent
+from gearwhine.meshes.elements import NO_NODE, ElementBlock, FloatArray, IntArray
+from gearwhine.meshes.errors import GeometryError
+from gearwhine.meshes.formats.content import MeshContent
 
 ENDINGS = (".bdf", ".fem", ".nas")
 """Endings of the files that are bulk data of Nastran."""

@@ -6,8 +6,8 @@ the eigenvalue that continues them and the modal assurance criterion of the shap
 couple, such as forward and backward whirl in isotropic ones, are followed separately, so that they cannot be confused
 where they cross.
 
-Without damping the number of roots is proved at every speed (`rotors.whirl.completeness`). With damping a proof costs a
-contour integral at each speed: it is made at a few speeds, or at all on request.
+Without damping the number of roots is proved at every speed (`gearwhine.rotors.whirl.completeness`). With damping a
+proof costs a contour integral at each speed: it is made at a few speeds, or at all on request.
 """
 
 from collections.abc import Sequence
@@ -16,12 +16,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.harmonic_response import finite_values
-from rotors.certificate import ACCEPTED
-from rotors.errors import IncompleteModesError, require, require_finite
-from rotors.model.bearing import Bearing
-from rotors.model.shaft import Rotor
-from rotors.numerics.branch_following import (
+from gearwhine.rotors.analyses.harmonic_response import finite_values
+from gearwhine.rotors.certificate import ACCEPTED
+from gearwhine.rotors.errors import IncompleteModesError, require, require_finite
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.numerics.branch_following import (
     BranchPoint,
     along_branches,
     extended_branches,
@@ -29,14 +29,23 @@ from rotors.numerics.branch_following import (
     paired_modes,
     refined_crossing,
 )
-from rotors.whirl.circular_coordinates import coupled_motions
-from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
-from rotors.whirl.eigenvalues import NEAR, ExactRoots, Speed, apart, constant_speed, distinct, refine_each, refine_roots
-from rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_reach
-from rotors.whirl.modal_projection import ModalProjection
-from rotors.whirl.motion import ShaftMotion
-from rotors.whirl.planar_basis import DEFAULT_COUNT
-from rotors.whirl.whirl_modes import NEUTRAL, START_REACH, ComplexFrequencies, WhirlSolver
+from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
+from gearwhine.rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
+from gearwhine.rotors.whirl.eigenvalues import (
+    NEAR,
+    ExactRoots,
+    Speed,
+    apart,
+    constant_speed,
+    distinct,
+    refine_each,
+    refine_roots,
+)
+from gearwhine.rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_reach
+from gearwhine.rotors.whirl.modal_projection import ModalProjection
+from gearwhine.rotors.whirl.motion import ShaftMotion
+from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT
+from gearwhine.rotors.whirl.whirl_modes import NEUTRAL, START_REACH, ComplexFrequencies, WhirlSolver
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -71,7 +80,7 @@ class Branch:
     eigenvalues : ndarray of complex, shape (s,)
         Eigenvalues [rad/s].
     direction, axial_share : ndarray, shape (s,)
-        Directions and shares as in `rotors.WhirlModes`.
+        Directions and shares as in `gearwhine.rotors.WhirlModes`.
     """
 
     eigenvalues: ComplexArray
@@ -113,7 +122,7 @@ def followed(equations: WhirlEquations, roots: Sequence[ExactRoots], speeds: Flo
 
 
 def characters(equations: WhirlEquations, roots: ExactRoots, speeds: FloatArray) -> FloatArray:
-    """Whirl direction and axial share of roots at speeds, as in `rotors.WhirlModes`, (w, 2)."""
+    """Whirl direction and axial share of roots at speeds, as in `gearwhine.rotors.WhirlModes`, (w, 2)."""
     if len(equations.blocks) == 1:
         return np.tile([float(equations.blocks[0]), 0.0 if equations.blocks[0] else 1.0], (roots.eigenvalues.size, 1))
     motion = ShaftMotion.of(equations, roots.eigenvalues, speeds.astype(np.complex128), roots.solutions, roots.scales)
@@ -247,11 +256,11 @@ class Crossing:
     order : float
         Multiple of the speed.
     direction : float
-        Whirl direction, as in `rotors.WhirlModes`.
+        Whirl direction, as in `gearwhine.rotors.WhirlModes`.
     branch : int
         Index in the diagram.
     axial_share : float
-        Axial share of the motion, as in `rotors.WhirlModes`.
+        Axial share of the motion, as in `gearwhine.rotors.WhirlModes`.
     """
 
     speed: float
@@ -308,9 +317,9 @@ class Campbell(ComplexFrequencies):
     eigenvalues : ndarray of complex, shape (s, m)
         Eigenvalues [rad/s].
     direction : ndarray, shape (s, m)
-        Directions as in `rotors.WhirlModes`.
+        Directions as in `gearwhine.rotors.WhirlModes`.
     axial_share : ndarray, shape (s, m)
-        Axial shares as in `rotors.WhirlModes`.
+        Axial shares as in `gearwhine.rotors.WhirlModes`.
     proved : ndarray of bool, shape (s,)
         Speeds at which the number of roots was proved.
     """
@@ -405,7 +414,7 @@ def campbell(
     prove_all : bool
         Whether the number of roots is proved at every speed where bearings damp, and not at a few only.
     solver : WhirlSolver, optional
-        A `rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
+        A `gearwhine.rotors.WhirlSolver` of the same rotor and bearings, whose basis and equations are used.
 
     Raises
     ------

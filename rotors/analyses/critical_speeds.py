@@ -2,8 +2,8 @@
 
 The map shows the forward critical speeds over the stiffness of the bearings. In isotropic bearings forward synchronous
 whirl is a planar problem: with Ω = ω the rotary inertia enters as (I_d − I_p) ω², here a circular block of
-`rotors.whirl.equations` at λ = iω and Ω = ω. Every curve is exact, and at every stiffness the number of its points is
-proved by the count of `rotors.whirl.completeness`.
+`gearwhine.rotors.whirl.equations` at λ = iω and Ω = ω. Every curve is exact, and at every stiffness the number of its
+points is proved by the count of `gearwhine.rotors.whirl.completeness`.
 """
 
 from collections.abc import Sequence
@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.campbell import campbell
-from rotors.certificate import ACCEPTED, ModeCertificate
-from rotors.errors import RotorError, require, require_count
-from rotors.model.bearing import Bearing, undamped
-from rotors.model.shaft import Rotor
-from rotors.whirl.circular_coordinates import coupled_motions
-from rotors.whirl.completeness import NO_OSCILLATION
-from rotors.whirl.eigenvalues import SYNCHRONOUS
-from rotors.whirl.modal_projection import ModalProjection
-from rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
+from gearwhine.rotors.analyses.campbell import campbell
+from gearwhine.rotors.certificate import ACCEPTED, ModeCertificate
+from gearwhine.rotors.errors import RotorError, require, require_count
+from gearwhine.rotors.model.bearing import Bearing, undamped
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
+from gearwhine.rotors.whirl.completeness import NO_OSCILLATION
+from gearwhine.rotors.whirl.eigenvalues import SYNCHRONOUS
+from gearwhine.rotors.whirl.modal_projection import ModalProjection
+from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT, planar_basis
+from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, WhirlRoots, WhirlSolver, certified_whirl
 
 # Number of speeds at which bearing tables are searched, and the factor beyond them up to which branches are followed.
 TABLE_SPEEDS = 60
@@ -40,9 +40,9 @@ class CriticalSpeeds:
     speeds : ndarray, shape (c,)
         Critical speeds, ascending [rad/s].
     direction : ndarray, shape (c,)
-        Whirl direction: 1 circular forward, −1 circular backward, 0 planar, as in `rotors.WhirlModes`.
+        Whirl direction: 1 circular forward, −1 circular backward, 0 planar, as in `gearwhine.rotors.WhirlModes`.
     axial_share : ndarray, shape (c,)
-        Part of the kinetic energy along the axis, as in `rotors.WhirlModes`.
+        Part of the kinetic energy along the axis, as in `gearwhine.rotors.WhirlModes`.
     certificate : ModeCertificate
         Proof that none is missing.
     """
@@ -86,7 +86,7 @@ def critical_speeds(
     Where bearings have tables over speed, these are the crossings of a diagram of 60 speeds in the range that the
     tables share. With cross-coupled stiffness that is not symmetric the roots are complex (self-excited or decaying
     whirl), and the real part of ω is given. Damping is left out, which is the usual definition; the damped whirl
-    frequency crosses a little elsewhere, where `rotors.Campbell.crossings` has it.
+    frequency crosses a little elsewhere, where `gearwhine.rotors.Campbell.crossings` has it.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def critical_speeds(
     Raises
     ------
     RotorError, IncompleteModesError
-        As `rotors.solve_whirl`.
+        As `gearwhine.rotors.solve_whirl`.
     """
     free = [undamped(bearing) for bearing in bearings]
     chosen = planar_basis(rotor, free, speed_limit, count)

@@ -1,7 +1,7 @@
 """Harmonic response of a turning rotor, by the exact equations of both planes.
 
-A load Re[F e^{iωt}] at a node stands on the right of the equations of `rotors.whirl.equations` at λ = iω, with a
-negative sign in the node's force balance. No modes are summed, so nothing is truncated.
+A load Re[F e^{iωt}] at a node stands on the right of the equations of `gearwhine.rotors.whirl.equations` at λ = iω,
+with a negative sign in the node's force balance. No modes are summed, so nothing is truncated.
 """
 
 from collections.abc import Sequence
@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_finite
-from rotors.model.bearing import Bearing
-from rotors.model.loads import HarmonicForce
-from rotors.model.shaft import Rotor
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
-from rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_equations, whirl_reach
-from rotors.whirl.motion import ShaftMotion
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.loads import HarmonicForce
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
+from gearwhine.rotors.whirl.equations import WhirlEquations, equations_at_speed, whirl_equations, whirl_reach
+from gearwhine.rotors.whirl.motion import ShaftMotion
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

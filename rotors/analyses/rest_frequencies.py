@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ModeCertificate, combined_certificate
-from rotors.errors import require, require_count, require_finite
-from rotors.model.bearing import Bearing, undamped
-from rotors.model.shaft import Rotor
-from rotors.modes.lateral import require_unbuckled
-from rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft, discretise_together
-from rotors.transfer_matrix.mode_shapes import limit_above, proved_modes, shaft_with_modes
-from rotors.transfer_matrix.rotor_shafts import bending_shafts
-from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, wittrick_williams_counts
-from rotors.whirl.modal_projection import slowest
-from rotors.whirl.planar_basis import DEFAULT_COUNT
-from rotors.whirl.whirl_modes import solve_whirl
+from gearwhine.rotors.certificate import ModeCertificate, combined_certificate
+from gearwhine.rotors.errors import require, require_count, require_finite
+from gearwhine.rotors.model.bearing import Bearing, undamped
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.modes.lateral import require_unbuckled
+from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft, discretise_together
+from gearwhine.rotors.transfer_matrix.mode_shapes import limit_above, proved_modes, shaft_with_modes
+from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shafts
+from gearwhine.rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, wittrick_williams_counts
+from gearwhine.rotors.whirl.modal_projection import slowest
+from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT
+from gearwhine.rotors.whirl.whirl_modes import solve_whirl
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,8 +34,8 @@ class RestFrequencies:
     frequencies : ndarray, shape (m,)
         Natural frequencies, ascending [rad/s]; an isotropic root stands twice.
     axial_share : ndarray, shape (m,)
-        Share of the kinetic energy along the axis, as in `rotors.WhirlModes`; 0 where the bearings do not couple axial
-        and lateral motion.
+        Share of the kinetic energy along the axis, as in `gearwhine.rotors.WhirlModes`; 0 where the bearings do not
+        couple axial and lateral motion.
     certificate : ModeCertificate
         Proof of completeness over both planes, and over axial motion where it is coupled to them.
     """
@@ -55,7 +55,7 @@ def rest_frequencies(
     """Undamped natural frequencies of both planes of a rotor that does not turn.
 
     Where bearings do not couple the planes, each is solved with its own k_xx or k_yy; otherwise both are solved
-    together, as in `rotors.solve_whirl` at zero speed.
+    together, as in `gearwhine.rotors.solve_whirl` at zero speed.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def rest_frequencies(
     Raises
     ------
     RotorError, IncompleteModesError
-        As `rotors.solve_lateral_modes`.
+        As `gearwhine.rotors.solve_lateral_modes`.
     """
     undamped_bearings = [undamped(bearing.at_speed(slowest(bearing))) for bearing in bearings]
     if not all(_is_planar(bearing) for bearing in undamped_bearings):

@@ -2,7 +2,7 @@
 
 The transfer matrix at ω = 0 of everything between two neighbouring stations, whatever its steps, cones, couplings and
 axial forces, maps the state (displacements u, forces f to the right) at the left station to that at the right one. With
-the field of the weight per unit acceleration, p (`rotors.analyses.statics`), and the acceleration a,
+the field of the weight per unit acceleration, p (`gearwhine.rotors.analyses.statics`), and the acceleration a,
 
     u₁ = T₁₁ u₀ + T₁₂ f₀ + p_u a        f₁ = T₂₁ u₀ + T₂₂ f₀ + p_f a.
 
@@ -24,9 +24,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.statics import TINY
-from rotors.errors import RotorError, require
-from rotors.model.profile import (
+from gearwhine.rotors.analyses.statics import TINY
+from gearwhine.rotors.errors import RotorError, require
+from gearwhine.rotors.model.profile import (
     AXIAL,
     BENDING,
     STATION_TOLERANCE,
@@ -34,10 +34,10 @@ from rotors.model.profile import (
     Profile,
     merged_positions,
 )
-from rotors.model.shaft import Rotor, station_index, station_inertias
-from rotors.transfer_matrix.discretised_shaft import ELEMENT_MARGIN
-from rotors.transfer_matrix.mode_shapes import require_positions
-from rotors.transfer_matrix.timoshenko import ShaftElements
+from gearwhine.rotors.model.shaft import Rotor, station_index, station_inertias
+from gearwhine.rotors.transfer_matrix.discretised_shaft import ELEMENT_MARGIN
+from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
+from gearwhine.rotors.transfer_matrix.timoshenko import ShaftElements
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

@@ -1,14 +1,14 @@
 """Static deflection and bearing loads of a rotor under its weight and given forces.
 
 The weight along a shaft element enters exactly, whatever its taper and axial force. With y' = (A₀ + ω²B) y
-(`rotors.transfer_matrix.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0, 0); its
-derivative with respect to ω² obeys (∂y)' = A₀ ∂y + B (1, 0, 0, 0): the field under the load ρA per unit acceleration.
-So
+(`gearwhine.rotors.transfer_matrix.timoshenko`), y(0) = (1, 0, 0, 0) gives at ω = 0 the rigid translation y = (1, 0, 0,
+0); its derivative with respect to ω² obeys (∂y)' = A₀ ∂y + B (1, 0, 0, 0): the field under the load ρA per unit
+acceleration. So
 
     y_particular = g ∂T/∂ω²|₀ (1, 0, 0, 0),
 
 where the derivative of the entire T is Im T(iε)/ε, to rounding for a tiny ε. Both planes and the axial direction go
-through the equations of `rotors.whirl.equations` at λ = 0.
+through the equations of `gearwhine.rotors.whirl.equations` at λ = 0.
 """
 
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.harmonic_response import bearing_forces
-from rotors.errors import RotorError, require, require_finite
-from rotors.model.bearing import Bearing
-from rotors.model.shaft import Rotor
-from rotors.transfer_matrix.mode_shapes import require_positions
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
-from rotors.whirl.equations import WhirlEquations, whirl_equations, whirl_reach
+from gearwhine.rotors.analyses.harmonic_response import bearing_forces
+from gearwhine.rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
+from gearwhine.rotors.whirl.equations import WhirlEquations, whirl_equations, whirl_reach
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

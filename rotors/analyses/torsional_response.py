@@ -2,8 +2,8 @@
 
 Material damping is a complex shear modulus G (1 + 2iζ): at every frequency a shaft element loses the part of its
 energy that a mode of damping ratio ζ loses. With c = 1 + 2iζ its equations θ' = τ/(c GJ), τ' = −ω²ρJ θ are those of
-`rotors.transfer_matrix.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1 + 2iζ),
-dashpots iωc, and couplings, which are massless, k_θ (1 + 2iζ) + iωc_θ.
+`gearwhine.rotors.transfer_matrix.timoshenko` for ω²/c with torques counted in units of c. Springs to ground carry k (1
++ 2iζ), dashpots iωc, and couplings, which are massless, k_θ (1 + 2iζ) + iωc_θ.
 """
 
 from collections.abc import Sequence
@@ -12,15 +12,15 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.harmonic_response import finite_values
-from rotors.errors import require, require_finite
-from rotors.model.bearing import AxisSpring
-from rotors.model.segment import Coupling
-from rotors.model.shaft import Rotor
-from rotors.numerics.banded import BandPattern
-from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
-from rotors.transfer_matrix.mode_shapes import require_positions
-from rotors.transfer_matrix.rotor_shafts import rod_shaft
+from gearwhine.rotors.analyses.harmonic_response import finite_values
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.model.bearing import AxisSpring
+from gearwhine.rotors.model.segment import Coupling
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.numerics.banded import BandPattern
+from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
+from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -17,12 +17,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from rotors.analyses.harmonic_response import HarmonicResponse, finite_values, solve_harmonic
-from rotors.model.bearing import Bearing
-from rotors.model.loads import Bow, Unbalance
-from rotors.model.shaft import Rotor
-from rotors.transfer_matrix.rotor_shafts import bending_shaft
-from rotors.whirl.modal_projection import slowest
+from gearwhine.rotors.analyses.harmonic_response import HarmonicResponse, finite_values, solve_harmonic
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.loads import Bow, Unbalance
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft
+from gearwhine.rotors.whirl.modal_projection import slowest
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
-from rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.errors import RotorError, require, require_finite
 
 FloatArray = npt.NDArray[np.float64]
 

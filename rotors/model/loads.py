@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_finite
+from gearwhine.rotors.errors import require, require_finite
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from rotors.errors import require, require_finite
+from gearwhine.rotors.errors import require, require_finite
 
 ShearFormula = Literal["cowper", "hutchinson"]
 

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import RotorError, require, require_finite
-from rotors.model.segment import Coupling, Segment
+from gearwhine.rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.model.segment import Coupling, Segment
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -122,7 +122,7 @@ class Profile:
         Index of each span's section.
     coefficients : ndarray, shape (k, 10, j)
         Coefficients of 1, s, s², ... of every section, SI, with s from −1 to 1 along the span: in bending 1/(κGA +
-        P), 1/EI, ρA, ρI, g, g P (`rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
+        P), 1/EI, ρA, ρI, g, g P (`gearwhine.rotors.transfer_matrix.timoshenko`); 1/GJ, ρJ; 1/EA, ρA.
     bounds : ndarray, shape (k, 5)
         Least κGA and EI, largest ρA and ρI, axial force P.
     uniform : ndarray of bool, shape (k,)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_finite
-from rotors.model.material import ElasticMaterial, Section, ShearFormula
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.model.material import ElasticMaterial, Section, ShearFormula
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,11 +9,17 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from numerics.findings import Finding, Severity, refuse
-from rotors.errors import RotorError, require, require_finite
-from rotors.model.material import ShaftMaterial
-from rotors.model.profile import STATION_TOLERANCE, Profile, StiffnessDiameter, merged_positions, shaft_profile
-from rotors.model.segment import Coupling, Segment
+from gearwhine.numerics.findings import Finding, Severity, refuse
+from gearwhine.rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.model.material import ShaftMaterial
+from gearwhine.rotors.model.profile import (
+    STATION_TOLERANCE,
+    Profile,
+    StiffnessDiameter,
+    merged_positions,
+    shaft_profile,
+)
+from gearwhine.rotors.model.segment import Coupling, Segment
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -237,8 +243,8 @@ class ShaftSpans:
     nodes : ndarray, shape (s + 1,)
         Ends of the spans [m].
     kind, start, end, lengths : ndarray, shape (s,)
-        Kinds and lengths as in `rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of the
-        rotor's profile.
+        Kinds and lengths as in `gearwhine.rotors.transfer_matrix.discretised_shaft.ContinuousShaft`, the kinds those of
+        the rotor's profile.
     inertias : ndarray, shape (s + 1, 3)
         Mass [kg], diametral and polar moment of inertia [kg·m²] at the nodes.
     """

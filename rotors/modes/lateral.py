@@ -10,14 +10,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ModeCertificate
-from rotors.errors import require
-from rotors.model.bearing import RadialSupport
-from rotors.model.segment import Coupling
-from rotors.model.shaft import Rotor
-from rotors.transfer_matrix.mode_shapes import ShaftFields, find_modes, require_positions
-from rotors.transfer_matrix.rotor_shafts import bending_shaft
-from rotors.transfer_matrix.wittrick_williams import wittrick_williams_count
+from gearwhine.rotors.certificate import ModeCertificate
+from gearwhine.rotors.errors import require
+from gearwhine.rotors.model.bearing import RadialSupport
+from gearwhine.rotors.model.segment import Coupling
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.transfer_matrix.mode_shapes import ShaftFields, find_modes, require_positions
+from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft
+from gearwhine.rotors.transfer_matrix.wittrick_williams import wittrick_williams_count
 
 # Part of the frequency scale √(stiffness / mass) that replaces zero at standstill: a free shaft's rigid motion is at
 # zero.
@@ -114,7 +114,7 @@ class LateralModes:
         The springs in K, which a coupled model removes again.
     certificate : ModeCertificate
         Proof of completeness. It does not cover the attachment modes of
-        `rotors.modes.residual_modes.add_attachment_modes`.
+        `gearwhine.rotors.modes.residual_modes.add_attachment_modes`.
     """
 
     frequencies: FloatArray

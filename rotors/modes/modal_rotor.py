@@ -28,15 +28,20 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_finite
-from rotors.model.bearing import Bearing, RadialSupport
-from rotors.model.segment import Segment, gauss_rule
-from rotors.model.shaft import Rotor, station_inertias
-from rotors.modes.lateral import LateralModes, solve_lateral_modes
-from rotors.modes.residual_modes import add_attachment_modes, add_rod_attachment_modes
-from rotors.modes.torsional_and_axial import AxialModes, TorsionalModes, solve_axial_modes, solve_torsional_modes
-from rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
-from rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.model.bearing import Bearing, RadialSupport
+from gearwhine.rotors.model.segment import Segment, gauss_rule
+from gearwhine.rotors.model.shaft import Rotor, station_inertias
+from gearwhine.rotors.modes.lateral import LateralModes, solve_lateral_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes, add_rod_attachment_modes
+from gearwhine.rotors.modes.torsional_and_axial import (
+    AxialModes,
+    TorsionalModes,
+    solve_axial_modes,
+    solve_torsional_modes,
+)
+from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft, rod_shaft
+from gearwhine.rotors.transfer_matrix.wittrick_williams import wittrick_williams_counts
 
 FloatArray = npt.NDArray[np.float64]
 

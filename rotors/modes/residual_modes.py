@@ -5,10 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rotors.modes.lateral import LateralModes, lateral_modes
-from rotors.modes.torsional_and_axial import Modes, RodModes, rod_modes
-from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
-from rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, require_positions, responses, ritz_vectors
+from gearwhine.rotors.modes.lateral import LateralModes, lateral_modes
+from gearwhine.rotors.modes.torsional_and_axial import Modes, RodModes, rod_modes
+from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from gearwhine.rotors.transfer_matrix.mode_shapes import (
+    ShaftFields,
+    SolvedModes,
+    require_positions,
+    responses,
+    ritz_vectors,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +42,7 @@ def add_attachment_modes(
     Parameters
     ----------
     modes : LateralModes
-        A certified set from `rotors.solve_lateral_modes`, with one mode or more.
+        A certified set from `gearwhine.rotors.solve_lateral_modes`, with one mode or more.
     forces_at, moments_at : sequence of float
         Places of forces and of moments in the plane from the left end [m].
 
@@ -63,7 +69,7 @@ def add_rod_attachment_modes(modes: Modes, at: Sequence[float]) -> Modes:
     Parameters
     ----------
     modes : Modes
-        A certified set from `rotors.solve_torsional_modes` or `rotors.solve_axial_modes`.
+        A certified set from `gearwhine.rotors.solve_torsional_modes` or `gearwhine.rotors.solve_axial_modes`.
     at : sequence of float
         Places of the loads from the left end [m].
 

@@ -10,13 +10,13 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ModeCertificate
-from rotors.errors import require
-from rotors.model.bearing import AxisSpring
-from rotors.model.shaft import Rotor
-from rotors.transfer_matrix.discretised_shaft import ContinuousShaft
-from rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, find_modes, require_positions
-from rotors.transfer_matrix.rotor_shafts import rod_shaft
+from gearwhine.rotors.certificate import ModeCertificate
+from gearwhine.rotors.errors import require
+from gearwhine.rotors.model.bearing import AxisSpring
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft
+from gearwhine.rotors.transfer_matrix.mode_shapes import ShaftFields, SolvedModes, find_modes, require_positions
+from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -53,7 +53,7 @@ _PACKAGES = ("rotors", "coupling")
 _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
 _KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
-_IMPORT = re.compile(rb"^from ((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
+_IMPORT = re.compile(rb"^from (?:gearwhine\.)?((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
 class _Log(event.Listener):
@@ -61,7 +61,7 @@ class _Log(event.Listener):
 
     def on_start(self, event: Any) -> None:
         function = event.data["dispatcher"].py_func
-        if function.__module__.partition(".")[0] in _PACKAGES:
+        if function.__module__.partition(".")[0] == "gearwhine":
             logging.getLogger(__name__).info("compiling %s", function.__qualname__)
 
     def on_end(self, event: Any) -> None:

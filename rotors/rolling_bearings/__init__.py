@@ -11,10 +11,10 @@ tangent, for the equilibrium of a whole machine; `rolling_state` is the state at
 are x, y, z and the rotations about x and y of the inner ring against the outer.
 """
 
-from rotors.rolling_bearings.catalogue import catalogue_bearing, catalogue_row, standing_rows
-from rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
-from rotors.rolling_bearings.element_contacts import ElementLoads
-from rotors.rolling_bearings.equilibrium import (
+from gearwhine.rotors.rolling_bearings.catalogue import catalogue_bearing, catalogue_row, standing_rows
+from gearwhine.rotors.rolling_bearings.clearance import OperatingClearance, RingFit, operating_clearance, thermal_offset
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads
+from gearwhine.rotors.rolling_bearings.equilibrium import (
     COORDINATES,
     ROLLING_DAMPING_TIME,
     RollingElements,
@@ -25,12 +25,12 @@ from rotors.rolling_bearings.equilibrium import (
     rolling_equilibrium,
     rolling_state,
 )
-from rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
-from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
-from rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
-from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
+from gearwhine.rotors.rolling_bearings.frequencies import CharacteristicFrequencies, characteristic_frequencies
+from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity, point_contact
+from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
+from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
+from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired, preload_offset
+from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 __all__ = [
     "COORDINATES",

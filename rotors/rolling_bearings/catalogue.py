@@ -26,11 +26,11 @@ from typing import Literal, get_args
 
 from scipy.optimize import brentq
 
-from rotors.errors import RotorError, require, require_finite
-from rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
-from rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
-from rotors.rolling_bearings.rolling_bearing import RollingBearing, paired
-from rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
+from gearwhine.rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.rolling_bearings.ratings import Row, dynamic_rating, static_rating
+from gearwhine.rotors.rolling_bearings.roller_rows import RollerRow, SphericalRollerRow, TaperedRollerRow
+from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing, paired
+from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow, spherical_groove
 
 CatalogueType = Literal[
     "deep-groove",

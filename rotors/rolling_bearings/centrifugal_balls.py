@@ -28,10 +28,16 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import EquilibriumError
-from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics, ball_loads, row_energy
-from rotors.rolling_bearings.rows import BallRow
+from gearwhine.rotors.errors import EquilibriumError
+from gearwhine.rotors.numerics.trust_region import Local, minimise
+from gearwhine.rotors.rolling_bearings.element_contacts import (
+    ElementLoads,
+    RowEnergy,
+    ball_kinematics,
+    ball_loads,
+    row_energy,
+)
+from gearwhine.rotors.rolling_bearings.rows import BallRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -19,8 +19,8 @@ of rings by rotation is left out.
 import math
 from dataclasses import dataclass
 
-from rotors.errors import require, require_finite
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity
 
 _STEEL_EXPANSION = 11.7e-6
 

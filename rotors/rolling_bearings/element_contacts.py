@@ -17,7 +17,7 @@ in series, and the approach is δ = |v| − A:
 for δ > 0 and nothing otherwise. The length of a vector is convex, and so is an increasing convex function of it: the
 energy is convex in q. Friction is left out.
 
-`rotors.rolling_bearings.roller_slices` has rollers.
+`gearwhine.rotors.rolling_bearings.roller_slices` has rollers.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from rotors.rolling_bearings.rows import BallRow
+from gearwhine.rotors.rolling_bearings.rows import BallRow
 
 FloatArray = npt.NDArray[np.float64]
 

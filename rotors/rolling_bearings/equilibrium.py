@@ -4,12 +4,12 @@ With the energy φ(q) of all elements and the load f, the potential
 
     Π(q) = φ(q) − fᵀ q
 
-is convex (`rotors.rolling_bearings.element_contacts`, `rotors.rolling_bearings.centrifugal_balls`) and grows faster
-than linearly in every direction that the bearing holds. So it has a minimum for every load along those, which is the
-equilibrium, and a trust region finds it from any start. The tangent stiffness is the Hessian of φ there; with it
-`linearised_bearing` makes the linear bearing of a rotor. `RollingElements` gives φ and its derivatives at any
-displacement, so that a machine can minimise the energy of its shafts and all its bearings together. Krämer's formulas
-give a first estimate of the stiffness.
+is convex (`gearwhine.rotors.rolling_bearings.element_contacts`, `gearwhine.rotors.rolling_bearings.centrifugal_balls`)
+and grows faster than linearly in every direction that the bearing holds. So it has a minimum for every load along
+those, which is the equilibrium, and a trust region finds it from any start. The tangent stiffness is the Hessian of φ
+there; with it `linearised_bearing` makes the linear bearing of a rotor. `RollingElements` gives φ and its derivatives
+at any displacement, so that a machine can minimise the energy of its shafts and all its bearings together. Krämer's
+formulas give a first estimate of the stiffness.
 
 The outer ring of a floating bearing slides along z without friction. Its energy is the least over the place w of the
 inner ring against it,
@@ -29,17 +29,17 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import EquilibriumError, require, require_count, require_finite
-from rotors.model.bearing import Bearing
-from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
-from rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
-from rotors.rolling_bearings.four_point_balls import FourPointBalls
-from rotors.rolling_bearings.ratings import Row
-from rotors.rolling_bearings.roller_rows import LineContactRow
-from rotors.rolling_bearings.roller_slices import RollerSlices
-from rotors.rolling_bearings.rolling_bearing import RollingBearing
-from rotors.rolling_bearings.rows import BallRow, FourPointRow
+from gearwhine.rotors.errors import EquilibriumError, require, require_count, require_finite
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.numerics.trust_region import Local, minimise
+from gearwhine.rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
+from gearwhine.rotors.rolling_bearings.four_point_balls import FourPointBalls
+from gearwhine.rotors.rolling_bearings.ratings import Row
+from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
+from gearwhine.rotors.rolling_bearings.roller_slices import RollerSlices
+from gearwhine.rotors.rolling_bearings.rolling_bearing import RollingBearing
+from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -2,8 +2,8 @@
 
 In its plane (radial, axial) a ball's centre stands at p between two arcs of the outer ring with the centres c_o± and
 two of the inner ring with c_i±, arc by arc as far as `FourPointRow.arcs` places them, c_i = c_o + v₀ + B q with the v₀
-and B of `rotors.rolling_bearings.element_contacts`. The ball presses an arc by the length of c − p beyond the arc's
-radius less the ball's, so with all four and the centrifugal force F_c
+and B of `gearwhine.rotors.rolling_bearings.element_contacts`. The ball presses an arc by the length of c − p beyond the
+arc's radius less the ball's, so with all four and the centrifugal force F_c
 
     φ(q) = min over p of Σ ⅖ K (|c − p| − (f − ½) D)^{5/2} − F_c p_r.
 
@@ -22,10 +22,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import EquilibriumError
-from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics
-from rotors.rolling_bearings.rows import FourPointRow
+from gearwhine.rotors.errors import EquilibriumError
+from gearwhine.rotors.numerics.trust_region import Local, minimise
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy, ball_kinematics
+from gearwhine.rotors.rolling_bearings.rows import FourPointRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -15,9 +15,9 @@ once on either raceway in each turn of its own, at 2 BSF.
 import math
 from dataclasses import dataclass
 
-from rotors.errors import require_finite
-from rotors.rolling_bearings.ratings import Row
-from rotors.rolling_bearings.rows import BallRow
+from gearwhine.rotors.errors import require_finite
+from gearwhine.rotors.rolling_bearings.ratings import Row
+from gearwhine.rotors.rolling_bearings.rows import BallRow
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1, elliprd
 
-from rotors.errors import require, require_finite
+from gearwhine.rotors.errors import require, require_finite
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ row in four-point contact has those of two rows. Self-aligning balls and rollers
 It holds for steady loads up to half of C, without moments, clearance and preload between the rows.
 
 **Basic reference rating life** (ISO/TS 16281:2008): of the loads that the elements carry, hence with clearance,
-preload, tilt and centrifugal force. Balls, with the ratings Q_c of one contact (`rotors.rolling_bearings.ratings`) and
-the inner ring turning against the load, summed over all rows:
+preload, tilt and centrifugal force. Balls, with the ratings Q_c of one contact
+(`gearwhine.rotors.rolling_bearings.ratings`) and the inner ring turning against the load, summed over all rows:
 
     Q_ei = (Σ Q_i³ / Z)^{1/3},   Q_eo = (Σ Q_o^{10/3} / Z)^{3/10}
     L₁₀ᵣ = [Σ (Q_ci/Q_ei)^{−10/3} + (Q_co/Q_eo)^{−10/3}]^{−9/10}
@@ -35,12 +35,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require_finite
-from rotors.rolling_bearings.element_contacts import ElementLoads
-from rotors.rolling_bearings.equilibrium import RollingState
-from rotors.rolling_bearings.ratings import Row, contact_ratings, dynamic_rating
-from rotors.rolling_bearings.roller_rows import LineContactRow
-from rotors.rolling_bearings.rows import FourPointRow
+from gearwhine.rotors.errors import require_finite
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads
+from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
+from gearwhine.rotors.rolling_bearings.ratings import Row, contact_ratings, dynamic_rating
+from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow
+from gearwhine.rotors.rolling_bearings.rows import FourPointRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -35,9 +35,9 @@ for Young's moduli of 207 GPa and for grooves up to 0.52 D and 0.53 D; closer on
 import math
 from dataclasses import replace
 
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity
-from rotors.rolling_bearings.roller_rows import LineContactRow, SphericalRollerRow
-from rotors.rolling_bearings.rows import BallRow, FourPointRow
+from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity
+from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow, SphericalRollerRow
+from gearwhine.rotors.rolling_bearings.rows import BallRow, FourPointRow
 
 Row = BallRow | LineContactRow
 

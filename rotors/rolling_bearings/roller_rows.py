@@ -47,9 +47,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from rotors.errors import require, require_count, require_finite
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity
-from rotors.rolling_bearings.rows import RIGHT_ANGLE, require_space
+from gearwhine.rotors.errors import require, require_count, require_finite
+from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity
+from gearwhine.rotors.rolling_bearings.rows import RIGHT_ANGLE, require_space
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -220,7 +220,7 @@ class RollerRow(LineContactRow):
     direction : int
         Direction, 1 or −1, of the axial load that one flange carries.
     estimated : bool
-        Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
+        Whether the geometry is an estimate (`gearwhine.rotors.rolling_bearings.catalogue`).
     flanges : Flanges
         ``"none"`` (NU, N: no axial load), ``"one"`` (NJ: in the row's direction) or ``"both"`` (NUP).
     flange_stiffness : float

@@ -1,8 +1,8 @@
 """Contact energy of a row of rollers in slices, its gradient and Hessian, and the loads of rollers and slices.
 
-`rotors.rolling_bearings.roller_rows` has the approach δ of every slice and its sources. Without centrifugal force a
-slice has the energy 9/19 c' δ^{19/9}, c' = c/n. With the part f of it the approaches u at the inner and w = δ − u at
-the outer raceway balance,
+`gearwhine.rotors.rolling_bearings.roller_rows` has the approach δ of every slice and its sources. Without centrifugal
+force a slice has the energy 9/19 c' δ^{19/9}, c' = c/n. With the part f of it the approaches u at the inner and w = δ −
+u at the outer raceway balance,
 
     c_r u^{10/9} + f = c_r w^{10/9},   c_r = 2^{10/9} c',
 
@@ -19,8 +19,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy
-from rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, TaperedRollerRow
+from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowEnergy
+from gearwhine.rotors.rolling_bearings.roller_rows import LineContactRow, RollerRow, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,7 +5,7 @@ centre. A row's own direction is +1 where pushing the inner ring towards +z load
 Double-row and paired bearings stand back to back, face to face or in tandem. A floating bearing has an outer ring that
 slides in its seat along z, without friction: it takes the place at which the elements have no axial force.
 
-Forces of the elements and the 5x5 bearing stiffness follow in :mod:`rotors.rolling_bearings.equilibrium`.
+Forces of the elements and the 5x5 bearing stiffness follow in :mod:`gearwhine.rotors.rolling_bearings.equilibrium`.
 """
 
 from collections.abc import Sequence
@@ -15,9 +15,9 @@ from typing import Literal
 
 from scipy.optimize import brentq
 
-from rotors.errors import RotorError, require, require_finite
-from rotors.rolling_bearings.ratings import Row
-from rotors.rolling_bearings.roller_rows import SphericalRollerRow
+from gearwhine.rotors.errors import RotorError, require, require_finite
+from gearwhine.rotors.rolling_bearings.ratings import Row
+from gearwhine.rotors.rolling_bearings.roller_rows import SphericalRollerRow
 
 _CLOSEST = 0.7  # distance of two rows over the width of their elements, which may be staggered
 

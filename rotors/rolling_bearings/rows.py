@@ -10,8 +10,8 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Self
 
-from rotors.errors import require, require_count, require_finite
-from rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, in_series, point_contact
+from gearwhine.rotors.errors import require, require_count, require_finite
+from gearwhine.rotors.rolling_bearings.hertz import STEEL, ContactElasticity, PointContact, in_series, point_contact
 
 
 def require_space(label: str, count: int, diameter: float, pitch_diameter: float) -> None:
@@ -56,7 +56,7 @@ class BallRow:
     elasticity : ContactElasticity
         Elasticity of the contacts; steel unless given.
     estimated : bool
-        Whether the geometry is an estimate (`rotors.rolling_bearings.catalogue`).
+        Whether the geometry is an estimate (`gearwhine.rotors.rolling_bearings.catalogue`).
 
     Raises
     ------

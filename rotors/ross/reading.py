@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import RotorError
-from rotors.model.bearing import Bearing, Pedestal
-from rotors.model.shaft import Disc, Rotor
-from rotors.ross.shafts import COUPLING, SHAFT, ReadShaft, read_shaft
-from rotors.ross.tables import Entry, Remarks, read_entries
+from gearwhine.rotors.errors import RotorError
+from gearwhine.rotors.model.bearing import Bearing, Pedestal
+from gearwhine.rotors.model.shaft import Disc, Rotor
+from gearwhine.rotors.ross.shafts import COUPLING, SHAFT, ReadShaft, read_shaft
+from gearwhine.rotors.ross.tables import Entry, Remarks, read_entries
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -155,7 +155,8 @@ def read_ross(path: str | os.PathLike[str]) -> RossModel:
     ROSS itself is not needed. Elements become exact segments, cones included, so that frequencies are those that ROSS
     approaches as its mesh is refined. A bearing with ``n_link`` stands on a pedestal: the point mass at that node,
     on the bearings from there to the ground. Tables over ``frequency`` become tables over the speed of rotation, as
-    ROSS takes them at whirl speed; between their speeds ROSS follows a spline, and a `rotors.Bearing` a monotone cubic.
+    ROSS takes them at whirl speed; between their speeds ROSS follows a spline, and a `gearwhine.rotors.Bearing` a
+    monotone cubic.
 
     Parameters
     ----------

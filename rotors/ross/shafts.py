@@ -1,8 +1,8 @@
 """Shaft elements of a ROSS file: cylinders, cones and couplings in a row, their nodes and shear coefficients.
 
 ROSS has two formulas for the shear coefficient κ. Its ``cowper`` is Cowper's, as in
-`rotors.model.material.shear_coefficient`. Its ``hutchinson`` has the denominator of Hutchinson (J. Appl. Mech. 68,
-2001) but a factor 1 + ν less in the numerator,
+`gearwhine.rotors.model.material.shear_coefficient`. Its ``hutchinson`` has the denominator of Hutchinson (J. Appl.
+Mech. 68, 2001) but a factor 1 + ν less in the numerator,
 
     κ = 6 (1 + ν)(1 + m²)² / [(1 + m²)²(7 + 12ν + 4ν²) + 4 m²(5 + 6ν + 2ν²)],
 
@@ -18,11 +18,11 @@ from typing import Final
 
 import numpy as np
 
-from rotors.errors import RotorError
-from rotors.model.material import ElasticMaterial, Section, ShaftMaterial, ShearFormula
-from rotors.model.segment import Coupling, Segment, forces_beside
-from rotors.model.shaft import Disc
-from rotors.ross.tables import Entry, Remarks
+from gearwhine.rotors.errors import RotorError
+from gearwhine.rotors.model.material import ElasticMaterial, Section, ShaftMaterial, ShearFormula
+from gearwhine.rotors.model.segment import Coupling, Segment, forces_beside
+from gearwhine.rotors.model.shaft import Disc
+from gearwhine.rotors.ross.tables import Entry, Remarks
 
 RIGID_IN_SHEAR: Final = 1e9
 """Shear coefficient of an element without shear deflection."""

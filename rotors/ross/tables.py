@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from rotors.errors import RotorError
+from gearwhine.rotors.errors import RotorError
 
 
 class Remarks:

@@ -10,15 +10,15 @@ import numpy as np
 import numpy.typing as npt
 import tomli_w
 
-from rotors.errors import require, require_finite
-from rotors.model.bearing import Bearing, Pedestal
-from rotors.model.material import ElasticMaterial
-from rotors.model.profile import STATION_TOLERANCE, merged_positions
-from rotors.model.segment import Coupling, Segment
-from rotors.model.shaft import Disc, Rotor, station_index
-from rotors.ross.reading import PLACES
-from rotors.ross.shafts import ross_formula
-from rotors.ross.tables import Remarks
+from gearwhine.rotors.errors import require, require_finite
+from gearwhine.rotors.model.bearing import Bearing, Pedestal
+from gearwhine.rotors.model.material import ElasticMaterial
+from gearwhine.rotors.model.profile import STATION_TOLERANCE, merged_positions
+from gearwhine.rotors.model.segment import Coupling, Segment
+from gearwhine.rotors.model.shaft import Disc, Rotor, station_index
+from gearwhine.rotors.ross.reading import PLACES
+from gearwhine.rotors.ross.shafts import ross_formula
+from gearwhine.rotors.ross.tables import Remarks
 
 FloatArray = npt.NDArray[np.float64]
 Table = dict[str, Any]

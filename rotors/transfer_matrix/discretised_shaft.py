@@ -1,9 +1,9 @@
 """Discretised shaft: shaft elements between nodes, cut from a continuous shaft for a highest frequency.
 
 This is the common form of bending, torsion and axial motion. Every node may carry inertia and a spring to ground; every
-shaft element between two nodes has an exact transfer matrix (`rotors.transfer_matrix.timoshenko`). Lengths and forces
-are scaled so that displacements and forces are of one size and a state vector can be normalised as a whole.
-`rotors.transfer_matrix.rotor_shafts` makes the continuous and the discretised shafts of a rotor.
+shaft element between two nodes has an exact transfer matrix (`gearwhine.rotors.transfer_matrix.timoshenko`). Lengths
+and forces are scaled so that displacements and forces are of one size and a state vector can be normalised as a whole.
+`gearwhine.rotors.transfer_matrix.rotor_shafts` makes the continuous and the discretised shafts of a rotor.
 
 A continuous shaft has spans between stations, which are cut into elements so short that none, clamped at both ends, has
 a natural frequency of its own below the highest asked. For a Timoshenko element of length h, clamped ends give by
@@ -25,11 +25,11 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import RotorError
-from rotors.model.profile import merged_positions, restricted
-from rotors.model.segment import gauss_rule
-from rotors.model.shaft import station_index
-from rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
+from gearwhine.rotors.errors import RotorError
+from gearwhine.rotors.model.profile import merged_positions, restricted
+from gearwhine.rotors.model.segment import gauss_rule
+from gearwhine.rotors.model.shaft import station_index
+from gearwhine.rotors.transfer_matrix.timoshenko import NumberArray, ShaftElements
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -115,7 +115,7 @@ class DiscretisedShaft:
     @cached_property
     def energy_weights(self) -> EnergyWeights:
         """Quadrature weights of squared motions and strains: coefficients times lengths times Gauss weights."""
-        from rotors.transfer_matrix.mode_shape_kernels import energy_weights
+        from gearwhine.rotors.transfer_matrix.mode_shape_kernels import energy_weights
 
         table, nodal = self.table, (self.node_stiffness, self.node_inertia, self.node_polar)
         return EnergyWeights(
@@ -254,7 +254,7 @@ class ContinuousShaft:
     kind, start, end, lengths : ndarray, shape (s,)
         Kind of every span, the fractions of the kind's span that it covers, and its length [m].
     coefficients : ndarray, shape (k, 6 or 2, j)
-        Coefficients of the kinds, as in `rotors.transfer_matrix.timoshenko.ShaftElements`.
+        Coefficients of the kinds, as in `gearwhine.rotors.transfer_matrix.timoshenko.ShaftElements`.
     uniform : ndarray of bool, shape (k,)
         Whether a kind does not taper.
     stiffness, inertia : ndarray, shape (k, n)
@@ -264,7 +264,7 @@ class ContinuousShaft:
     node_inertia, node_stiffness : ndarray, shape (s + 1, n)
         Inertia and stiffness at the nodes; ``node_polar`` (s + 1,) is the polar inertia.
     length_unit, displacement_unit : float, ndarray
-        Units as in `rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
+        Units as in `gearwhine.rotors.transfer_matrix.discretised_shaft.DiscretisedShaft`.
     """
 
     label: str
@@ -322,7 +322,7 @@ class ContinuousShaft:
         RotorError
             It takes too many elements.
         """
-        from rotors.transfer_matrix.timoshenko_kernels import element_counts
+        from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_counts
 
         counts = element_counts(
             highest, ELEMENT_MARGIN, self.kind, self.lengths, self.stiffness, self.inertia, self.force
@@ -336,7 +336,7 @@ class ContinuousShaft:
 
     def in_elements(self, counts: IntArray, highest: float) -> DiscretisedShaft:
         """Discretise every span into ``counts`` (s,) equal elements, valid up to ``highest`` rad/s."""
-        from rotors.transfer_matrix.timoshenko_kernels import cut_spans
+        from gearwhine.rotors.transfer_matrix.timoshenko_kernels import cut_spans
 
         nodes, index, element, kind, middle, half, lengths = cut_spans(
             counts, self.nodes, self.kind, self.start, self.end, self.lengths, self.uniform

@@ -1,9 +1,9 @@
 """Compiled mode shapes of a discretised shaft: multiple shooting, energy quadrature and orthonormalisation.
 
 The banded equations of multiple shooting and their null vectors, the mode shapes, are those of
-`rotors.transfer_matrix.mode_shapes`; kinetic and strain energy are integrated along the shaft; the Gram-Schmidt
-orthonormalisation in mass serves `rotors.whirl.planar_basis`. The arrays of a discretised shaft come in the order of
-`rotors.transfer_matrix.wittrick_williams_kernels`. Importing this module imports numba.
+`gearwhine.rotors.transfer_matrix.mode_shapes`; kinetic and strain energy are integrated along the shaft; the
+Gram-Schmidt orthonormalisation in mass serves `gearwhine.rotors.whirl.planar_basis`. The arrays of a discretised shaft
+come in the order of `gearwhine.rotors.transfer_matrix.wittrick_williams_kernels`. Importing this module imports numba.
 """
 
 import math
@@ -11,8 +11,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.compiled import counted, inner, uncounted
-from rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, table_transfer_matrices
+from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, table_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

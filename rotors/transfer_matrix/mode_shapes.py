@@ -21,11 +21,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from rotors.certificate import ModeCertificate, certify
-from rotors.errors import IncompleteModesError, RotorError, require, require_count, require_finite
-from rotors.model.profile import STATION_TOLERANCE
-from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, ContinuousShaft, DiscretisedShaft
-from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
+from gearwhine.rotors.certificate import ModeCertificate, certify
+from gearwhine.rotors.errors import IncompleteModesError, RotorError, require, require_count, require_finite
+from gearwhine.rotors.model.profile import STATION_TOLERANCE
+from gearwhine.rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, ContinuousShaft, DiscretisedShaft
+from gearwhine.rotors.transfer_matrix.wittrick_williams import (
+    lowest_natural_frequencies,
+    shaft_arrays,
+    wittrick_williams_count,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -129,7 +133,7 @@ class ShaftFields:
     @cached_property
     def _rows(self) -> tuple[FloatArray, FloatArray]:
         """Motion and strain of every field at the Gauss points and the nodes, as of `energy_rows`."""
-        from rotors.transfer_matrix.mode_shape_kernels import energy_rows
+        from gearwhine.rotors.transfer_matrix.mode_shape_kernels import energy_rows
 
         table, weights, count = self.shaft.table, self.shaft.energy_weights, self.frequency_squared.size
         motion, strain = np.empty((count, weights.mass.size)), np.empty((count, weights.strain.size))
@@ -166,7 +170,7 @@ def groups(frequencies: FloatArray, tolerance: float) -> list[slice]:
 
 def responses(shaft: DiscretisedShaft, loads: list[tuple[int, int]], frequency_squared: float) -> FloatArray:
     """Node states under unit forces at one ω² off the roots, each on a node and a component, (loads, p + 1, 2n)."""
-    from rotors.transfer_matrix.mode_shape_kernels import shooting_responses
+    from gearwhine.rotors.transfer_matrix.mode_shape_kernels import shooting_responses
 
     n = shaft.size
     sides = np.zeros((len(loads), 2 * n * shaft.nodes.size))
@@ -236,7 +240,7 @@ def solve_mode_shapes(
     mass, stiffness : ndarray, shape (m, m)
         Integrated anew where modes are combinations of fields, so that what cancels keeps its digits.
     """
-    from rotors.transfer_matrix.mode_shape_kernels import null_states
+    from gearwhine.rotors.transfer_matrix.mode_shape_kernels import null_states
 
     zeros = min(shaft.rigid_shapes.shape[0], frequencies.size)
     shared, elastic, near = frequencies, frequencies[zeros:], []

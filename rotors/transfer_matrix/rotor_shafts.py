@@ -7,10 +7,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from rotors.model.bearing import AxisSpring, RadialSupport
-from rotors.model.profile import AXIAL, BENDING, TORSION
-from rotors.model.shaft import Rotor
-from rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft
+from gearwhine.rotors.model.bearing import AxisSpring, RadialSupport
+from gearwhine.rotors.model.profile import AXIAL, BENDING, TORSION
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.transfer_matrix.discretised_shaft import ContinuousShaft, DiscretisedShaft
 
 FloatArray = npt.NDArray[np.float64]
 RodMotion = Literal["torsion", "axial"]

@@ -1,6 +1,6 @@
 """Exact transfer matrices of a shaft element: Timoshenko beam in bending, rod in torsion or along its axis.
 
-The equations; :mod:`rotors.transfer_matrix.timoshenko_kernels` has them compiled.
+The equations; :mod:`gearwhine.rotors.transfer_matrix.timoshenko_kernels` has them compiled.
 
 Bending, at circular frequency ω, with the section's displacement x and rotation β, under a static axial
 force P (tension positive). From the energy ½ ∫ κGA (x' − β)² + EI β'² + P x'² dz the transverse force is
@@ -27,13 +27,13 @@ with h_k = e₁ h_{k−1} − e₂ h_{k−2}, h_0 = 1, h_{−1} = 0 (the complet
 two roots λ²). These series are entire: they need no square root, so the cut-off frequency √(κGA/ρI),
 where the second wave number turns real, the massless field of Myklestad and Prohl's lumped shaft (ρ = 0),
 the static state (ω = 0) and negative ω² (a shifted, positive definite problem) are no special cases.
-They are used on elements short enough (`rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5, where
-thirteen terms are exact to rounding and no hyperbolic function can overflow.
+They are used on elements short enough (`gearwhine.rotors.transfer_matrix.discretised_shaft`) that |λ²| stays below 5,
+where thirteen terms are exact to rounding and no hyperbolic function can overflow.
 
-**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1 (`rotors.model.profile`
-makes them, exact to rounding). Its solution is an entire function, whose power series about the middle is
-summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence Φ
-symplectic, and its inverse is a transposition: T is symplectic to rounding too.
+**A tapering element** has coefficients that are polynomials in s, from −1 at its left end to 1
+(`gearwhine.rotors.model.profile` makes them, exact to rounding). Its solution is an entire function, whose power series
+about the middle is summed, y(s) = Φ(s) y(0); then T = Φ(1) Φ(−1)⁻¹. Both equations are Hamiltonian (reciprocity), hence
+Φ symplectic, and its inverse is a transposition: T is symplectic to rounding too.
 """
 
 from dataclasses import dataclass
@@ -89,7 +89,7 @@ class ShaftElements:
         ndarray, shape (b, e, k, 2n, 2n)
             Rows and columns in the order displacement, rotation, force, moment; or angle, torque.
         """
-        from rotors.transfer_matrix.timoshenko_kernels import table_transfer_matrices
+        from gearwhine.rotors.transfer_matrix.timoshenko_kernels import table_transfer_matrices
 
         moving, turning = _pair(translation, rotation)
         shape = (moving.size, self.lengths.size, fractions.size, 2 * self.size, 2 * self.size)
@@ -105,7 +105,7 @@ class ShaftElements:
         rotation: npt.ArrayLike | None = None,
     ) -> NumberArray:
         """Transfer matrices to one fraction (z,) each of some elements (z,), at every ω² (b,), (z, b, 2n, 2n)."""
-        from rotors.transfer_matrix.timoshenko_kernels import place_transfer_matrices
+        from gearwhine.rotors.transfer_matrix.timoshenko_kernels import place_transfer_matrices
 
         moving, turning = _pair(translation, rotation)
         out = np.empty((element.size, moving.size, 2 * self.size, 2 * self.size), moving.dtype)

@@ -1,7 +1,8 @@
 """Compiled transfer matrices of Timoshenko beam and rod elements, and the cutting of a shaft into them.
 
-The equations are those of `rotors.transfer_matrix.timoshenko`; all functions of them take real or complex ω². Spans are
-cut into elements by the rule of `rotors.transfer_matrix.discretised_shaft`. Importing this module imports numba.
+The equations are those of `gearwhine.rotors.transfer_matrix.timoshenko`; all functions of them take real or complex ω².
+Spans are cut into elements by the rule of `gearwhine.rotors.transfer_matrix.discretised_shaft`. Importing this module
+imports numba.
 """
 
 import math
@@ -11,13 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.compiled import FINITE, counted, inner
+from gearwhine.rotors.numerics.compiled import FINITE, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 NumberArray = npt.NDArray[Any]
 
-# |λ²| of an element stays below 5 (`rotors.transfer_matrix.discretised_shaft`): 5¹³ / 26! is below rounding.
+# |λ²| of an element stays below 5 (`gearwhine.rotors.transfer_matrix.discretised_shaft`): 5¹³ / 26! is below rounding.
 CLOSED_TERMS = 13
 EVEN = np.array([1.0 / factorial(2 * k) for k in range(CLOSED_TERMS)])
 ODD = np.array([1.0 / factorial(2 * k + 1) for k in range(CLOSED_TERMS)])

@@ -2,9 +2,9 @@
 
 The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) for a structure with dynamic
 stiffness K(ω) is J = J₀ + s(K), with J₀ the clamped members' own modes below ω, here none by
-construction (`rotors.transfer_matrix.discretised_shaft`), and s(K) the number of negative eigenvalues. Eliminating the
-nodes of a shaft from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of everything left of
-a node (the node included) and K₁₁ that of the next element with its far end clamped,
+construction (`gearwhine.rotors.transfer_matrix.discretised_shaft`), and s(K) the number of negative eigenvalues.
+Eliminating the nodes of a shaft from the left turns s(K) into a sum over nodes: with S the dynamic stiffness of
+everything left of a node (the node included) and K₁₁ that of the next element with its far end clamped,
 
     s(K) = Σ_nodes s(S + K₁₁) + s(S_last).
 
@@ -34,8 +34,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import IncompleteModesError
-from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from gearwhine.rotors.errors import IncompleteModesError
+from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -65,7 +65,7 @@ def wittrick_williams_count(shaft: DiscretisedShaft, frequency: float) -> int:
 
 def wittrick_williams_counts(shafts: Sequence[DiscretisedShaft], frequency: float) -> list[int]:
     """Return the Wittrick-Williams count of several shafts."""
-    from rotors.transfer_matrix.wittrick_williams_kernels import wittrick_williams_count_of
+    from gearwhine.rotors.transfer_matrix.wittrick_williams_kernels import wittrick_williams_count_of
 
     return [int(wittrick_williams_count_of(frequency, *shaft_arrays(shaft))) for shaft in shafts]
 
@@ -89,7 +89,7 @@ def lowest_natural_frequencies(shaft: DiscretisedShaft, wanted: int, limit: floa
     IncompleteModesError
         The count does not reach ``wanted`` at the limit, or exceeds the rigid motions even at 1e-16 of it.
     """
-    from rotors.transfer_matrix.wittrick_williams_kernels import lowest_roots
+    from gearwhine.rotors.transfer_matrix.wittrick_williams_kernels import lowest_roots
 
     zeros = shaft.rigid_shapes.shape[0]
     if wanted <= zeros:

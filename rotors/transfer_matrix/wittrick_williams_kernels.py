@@ -1,8 +1,8 @@
 """Compiled Wittrick-Williams root count of a discretised shaft, and the natural frequencies in its brackets.
 
-The derivation is in `rotors.transfer_matrix.wittrick_williams`. The arrays of a discretised shaft come in one order
-throughout: lengths and coefficients of the distinct shaft elements, the index of each element among them, and stiffness
-and inertia of the nodes. Importing this module imports numba.
+The derivation is in `gearwhine.rotors.transfer_matrix.wittrick_williams`. The arrays of a discretised shaft come in one
+order throughout: lengths and coefficients of the distinct shaft elements, the index of each element among them, and
+stiffness and inertia of the nodes. Importing this module imports numba.
 """
 
 import math
@@ -10,8 +10,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.compiled import counted, inner
-from rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices
+from gearwhine.rotors.numerics.compiled import counted, inner
+from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

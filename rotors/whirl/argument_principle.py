@@ -1,9 +1,9 @@
 """Argument principle: the number of roots of the exact equations in a region, and estimates of missing roots.
 
-The determinant f(λ) of `rotors.whirl.equations` is entire, so that the number of its zeros inside a closed contour
-is the winding number of f about zero along it. The contour here bounds a rectangle in the plane of w = ln λ: an annular
-sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such sector just inside
-0 < arg λ < π.
+The determinant f(λ) of `gearwhine.rotors.whirl.equations` is entire, so that the number of its zeros inside a closed
+contour is the winding number of f about zero along it. The contour here bounds a rectangle in the plane of w = ln λ: an
+annular sector r₁ < |λ| < r₂, θ₁ < arg λ < θ₂. All oscillating motions, stable or not, lie in one such sector just
+inside 0 < arg λ < π.
 
 Known roots are divided out: q(λ) = f(λ) / Π (λ − μ_k), over all known μ_k inside and outside, is analytic on the
 contour whatever the μ_k are, and the number of zeros of f inside is exactly
@@ -36,9 +36,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import IncompleteModesError
-from rotors.whirl.eigenvalues import Speed
-from rotors.whirl.equations import WhirlEquations
+from gearwhine.rotors.errors import IncompleteModesError
+from gearwhine.rotors.whirl.eigenvalues import Speed
+from gearwhine.rotors.whirl.equations import WhirlEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -66,7 +66,7 @@ class Sector:
 
     def holds(self, eigenvalues: ComplexArray) -> npt.NDArray[np.bool_]:
         """Mark the values that lie inside."""
-        from rotors.whirl.eigenvalue_kernels import inside
+        from gearwhine.rotors.whirl.eigenvalue_kernels import inside
 
         is_inside = np.empty(eigenvalues.size, dtype=np.bool_)
         inside(eigenvalues, self.bounds, is_inside)
@@ -146,7 +146,7 @@ def count_by_argument_principle(
     RootOnContourError
         The phase does not settle however finely an edge is sampled.
     """
-    from rotors.whirl.argument_principle_kernels import follow_contour
+    from gearwhine.rotors.whirl.argument_principle_kernels import follow_contour
 
     matrix = equations.shooting_matrix
     base, rate = complex(speed.base), complex(speed.rate)

@@ -9,10 +9,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.banded_kernels import TINY, factor, fill
-from rotors.numerics.compiled import counted, inner
-from rotors.whirl.eigenvalue_kernels import edge_distance, logarithm
-from rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
+from gearwhine.rotors.numerics.banded_kernels import TINY, factor, fill
+from gearwhine.rotors.numerics.compiled import counted, inner
+from gearwhine.rotors.whirl.eigenvalue_kernels import edge_distance, logarithm
+from gearwhine.rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -109,8 +109,8 @@ def follow_contour(
     Returns the number of points (0 where the path does not converge) and of determinants, the number of roots inside,
     the known roots inside that are not divided out, and (3, s): the points, ln q and d ln q/dw.
 
-    ``bounds`` are as of `rotors.whirl.eigenvalue_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ, and
-    ``mass`` gives the unit of force. An interval that is not safe is halved.
+    ``bounds`` are as of `gearwhine.rotors.whirl.eigenvalue_kernels.edge_distance`, Ω = ``speed[0]`` + ``speed[1]`` λ,
+    and ``mass`` gives the unit of force. An interval that is not safe is halved.
     """
     edge = np.empty(4 * (SIDE_SAMPLES - 1) + 1, dtype=np.complex128)
     _put_edge(bounds, edge)

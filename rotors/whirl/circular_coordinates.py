@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.model.bearing import Bearing
+from gearwhine.rotors.model.bearing import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-# Rows r+, β+, r−, β−, z; columns x, y, z and the rotations about x and about y, as in `rotors.Bearing`.
+# Rows r+, β+, r−, β−, z; columns x, y, z and the rotations about x and about y, as in `gearwhine.rotors.Bearing`.
 CIRCULAR = np.array(
     [
         [1.0, 1.0j, 0.0, 0.0, 0.0],

@@ -13,16 +13,16 @@ difference of s(D), the negative eigenvalues: Wittrick and Williams' count, carr
 no stiffness, the free rotor's at zero, lie below both.
 
 Eliminating nodes from the left, with (U, F) the n states that the left part admits, S = F U⁻¹, and K₁₁ = T₁₂⁻¹T₁₁
-of the next shaft element, s(D) = Σ s(S + K₁₁) + s(S_last), as in `rotors.transfer_matrix.wittrick_williams`. Congruence
-with U spares the inverse:
+of the next shaft element, s(D) = Σ s(S + K₁₁) + s(S_last), as in `gearwhine.rotors.transfer_matrix.wittrick_williams`.
+Congruence with U spares the inverse:
 
     s(S + K₁₁) = s(Uᴴ T₁₂⁻¹ U_right).
 
 Pedestals are eliminated first: the negative eigenvalues of each one's own matrix count, and the bearing becomes the
 Schur complement.
 
-Damped or driven rotors are counted by the argument principle (`rotors.whirl.argument_principle`). Where the count
-exceeds the roots found, the missing ones are searched for again.
+Damped or driven rotors are counted by the argument principle (`gearwhine.rotors.whirl.argument_principle`). Where the
+count exceeds the roots found, the missing ones are searched for again.
 """
 
 from collections.abc import Sequence
@@ -30,13 +30,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ModeCertificate
-from rotors.errors import IncompleteModesError
-from rotors.model.bearing import Bearing
-from rotors.whirl.argument_principle import NONE, RootOnContourError, Sector, count_by_argument_principle
-from rotors.whirl.circular_coordinates import NodeBearing
-from rotors.whirl.eigenvalues import ExactRoots, Speed, distinct, refine_roots, with_circle
-from rotors.whirl.equations import WhirlEquations
+from gearwhine.rotors.certificate import ModeCertificate
+from gearwhine.rotors.errors import IncompleteModesError
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.whirl.argument_principle import NONE, RootOnContourError, Sector, count_by_argument_principle
+from gearwhine.rotors.whirl.circular_coordinates import NodeBearing
+from gearwhine.rotors.whirl.eigenvalues import ExactRoots, Speed, distinct, refine_roots, with_circle
+from gearwhine.rotors.whirl.equations import WhirlEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

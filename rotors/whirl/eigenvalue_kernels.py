@@ -1,8 +1,8 @@
 """Compiled whirl eigenvalues: perturbation by damping for starting values, Newton iteration, and tests of eigenvalues.
 
-The second-order perturbation is derived in `rotors.whirl.modal_projection`, the iteration for each root by itself in
-`rotors.whirl.eigenvalues`. The tests decide whether eigenvalues oscillate, are separated, or lie inside a sector.
-Importing this module imports numba.
+The second-order perturbation is derived in `gearwhine.rotors.whirl.modal_projection`, the iteration for each root by
+itself in `gearwhine.rotors.whirl.eigenvalues`. The tests decide whether eigenvalues oscillate, are separated, or lie
+inside a sector. Importing this module imports numba.
 """
 
 import cmath
@@ -11,10 +11,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
-from rotors.numerics.banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
-from rotors.numerics.compiled import FUSED, counted, inner, uncounted
-from rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
+from gearwhine.rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
+from gearwhine.rotors.numerics.banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
+from gearwhine.rotors.numerics.compiled import FUSED, counted, inner, uncounted
+from gearwhine.rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

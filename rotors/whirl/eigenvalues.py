@@ -1,10 +1,11 @@
 """Whirl eigenvalues by Newton's method on the exact equations, and by contour integrals where they coalesce.
 
 Roots of a cluster are refined together, and duplicates are recognised. With the equations N(λ) x = 0 of
-`rotors.whirl.equations`, let X and Y span the right and left singular vectors of the k smallest singular values of
-N(σ), k the number of roots near σ. Projected on them the equations are Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up to second
-order in λ − σ, a small eigenproblem that gives all k roots at once, double ones and nearly double ones with all their
-digits: a determinant would keep only half. For k = 1 this is Newton's method on the two-sided Rayleigh functional,
+`gearwhine.rotors.whirl.equations`, let X and Y span the right and left singular vectors of the k smallest singular
+values of N(σ), k the number of roots near σ. Projected on them the equations are Y^H [N(σ) + (λ − σ) N'(σ)] X q = 0 up
+to second order in λ − σ, a small eigenproblem that gives all k roots at once, double ones and nearly double ones with
+all their digits: a determinant would keep only half. For k = 1 this is Newton's method on the two-sided Rayleigh
+functional,
 
     λ ← λ − (yᴴ N x) / (yᴴ N' x),
 
@@ -30,8 +31,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
-from rotors.whirl.equations import WhirlEquations
+from gearwhine.rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
+from gearwhine.rotors.whirl.equations import WhirlEquations
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -157,7 +158,7 @@ def converged_roots(equations: WhirlEquations, starts: ComplexArray, speed: Spee
 
 def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
     """Return the converged roots, each once, and the values of the others."""
-    from rotors.whirl.eigenvalue_kernels import are_converged
+    from gearwhine.rotors.whirl.eigenvalue_kernels import are_converged
 
     if are_converged(roots.eigenvalues, roots.residuals, ACCEPTED, SAME):
         return roots, NO_PLACES
@@ -167,7 +168,7 @@ def _accepted(roots: ExactRoots) -> tuple[ExactRoots, ComplexArray]:
 
 def apart(values: ComplexArray, tolerance: float) -> bool:
     """Whether no two values are closer than ``tolerance`` times their modulus."""
-    from rotors.whirl.eigenvalue_kernels import are_apart
+    from gearwhine.rotors.whirl.eigenvalue_kernels import are_apart
 
     return bool(are_apart(values, tolerance))
 
@@ -226,7 +227,7 @@ def refine_each(
 
 def refine_alone(equations: WhirlEquations, starts: ComplexArray, vectors: ComplexArray, speed: Speed) -> ExactRoots:
     """Exact roots from starting values (w,) and vectors (w, order), each by itself; none is dropped."""
-    from rotors.whirl.eigenvalue_kernels import newton
+    from gearwhine.rotors.whirl.eigenvalue_kernels import newton
 
     # Arrays of one type, so that the kernel is compiled once: some of those given are read-only.
     starts, vectors = (np.array(given, dtype=np.complex128, order="C") for given in (starts, vectors))

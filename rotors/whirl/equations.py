@@ -1,12 +1,13 @@
 """Whirl equations: the exact transfer-matrix equations of both planes of a turning shaft at any complex frequency.
 
 A motion e^{λt} of a disc turning at Ω obeys I_d λ²β_x + Ω I_p λ β_y = M_x and I_d λ²β_y − Ω I_p λ β_x = M_y
-(`rotors.whirl.whirl_modes`). In the circular coordinates of `rotors.whirl.circular_coordinates` these part into
+(`gearwhine.rotors.whirl.whirl_modes`). In the circular coordinates of `gearwhine.rotors.whirl.circular_coordinates`
+these part into
 
     (I_d λ² ∓ iΩ I_p λ) β± = M± ,
 
 and since a round section's polar inertia is twice its diametral one, every shaft element obeys the planar
-equations of `rotors.transfer_matrix.timoshenko` with
+equations of `gearwhine.rotors.transfer_matrix.timoshenko` with
 
     ω² → −λ² for translation,     ω² → −λ² ± 2iΩλ for rotation.
 
@@ -24,7 +25,8 @@ with the forces g in a node's bearings along directions F u of their own, and no
 entry is an entire function of λ, the pedestals' resonances included, and so is the determinant; its zeros are the
 eigenvalues, each with its multiplicity. (Elimination of the states shows it: the equations of the elements and of
 the bearings' forces have unit diagonal, and what is left is the map from the displacements of the left end and of
-the pedestals to the forces on the right end and the pedestals.) `rotors.whirl.shooting_matrix` puts them in order.
+the pedestals to the forces on the right end and the pedestals.) `gearwhine.rotors.whirl.shooting_matrix` puts them in
+order.
 
 A node without inertia or bearing needs no unknowns unless the motion grows too much along the way: a run of elements
 has the product of their transfer matrices (`WhirlEquations.in_runs`), so that a shaft of sixty steps has no more
@@ -42,13 +44,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.model.bearing import Bearing, RadialSupport
-from rotors.model.shaft import Rotor
-from rotors.numerics.banded import BandPattern
-from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
-from rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, bearing_at_node
-from rotors.whirl.shooting_matrix import Layout, ShootingMatrix, shooting_matrix
+from gearwhine.rotors.model.bearing import Bearing, RadialSupport
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.numerics.banded import BandPattern
+from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from gearwhine.rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, bearing_at_node
+from gearwhine.rotors.whirl.shooting_matrix import Layout, ShootingMatrix, shooting_matrix
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -178,7 +180,7 @@ class WhirlEquations:
         self, solutions: ComplexArray, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray
     ) -> dict[int, ComplexArray]:
         """States (b, p + 1, 2 or 4) of every block at all nodes in scaled units, from solutions (b, order)."""
-        from rotors.whirl.shooting_matrix_kernels import node_states
+        from gearwhine.rotors.whirl.shooting_matrix_kernels import node_states
 
         states, unknowns = {}, np.ascontiguousarray(solutions)
         for block, places in zip(self.blocks, self._state_places, strict=True):
@@ -246,7 +248,7 @@ def whirl_equations(
     rotor, bearings : Rotor, sequence of Bearing
         The rotor and its bearings.
     blocks : tuple of int
-        One of `rotors.whirl.circular_coordinates.coupled_motions`.
+        One of `gearwhine.rotors.whirl.circular_coordinates.coupled_motions`.
     highest : float
         Planar frequency up to which elements are short enough [rad/s]: see `whirl_reach`.
     places : sequence of float

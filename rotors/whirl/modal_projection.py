@@ -9,7 +9,7 @@ G the polar inertia matrix and Φ_b the modes' displacements at bearing b,
 (TM-104434 Eqs. 11–15 with constant speed and grounded bearings). The sums over bearings are its compensation
 matrices. Slopes, axial modes and pedestals are added where bearings have them. Each set of motions that the bearings
 couple is projected on its own; where forward and backward motion are not coupled, each in the circular coordinates of
-`rotors.whirl.circular_coordinates`.
+`gearwhine.rotors.whirl.circular_coordinates`.
 
 A lightly damped rotor whose planes are coupled by the gyroscopic moment alone is solved by perturbation. Let Λ_x
 and Λ_y be the squared frequencies of both planes at rest, and all matrices be those of their modes. With states
@@ -34,13 +34,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from rotors.model.bearing import Bearing
-from rotors.model.shaft import Rotor
-from rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
-from rotors.modes.torsional_and_axial import solve_axial_modes
-from rotors.transfer_matrix.rotor_shafts import rod_shaft
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
-from rotors.whirl.planar_basis import (
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.modes.modal_rotor import gyroscopic_matrix, section_motions
+from gearwhine.rotors.modes.torsional_and_axial import solve_axial_modes
+from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, CIRCULAR, coupled_motions
+from gearwhine.rotors.whirl.planar_basis import (
     PlanarBasis,
 )
 
@@ -111,7 +111,7 @@ class CoupledPlanes:
 
     def eigenvalues(self, speeds: FloatArray) -> tuple[ComplexArray, BoolArray]:
         """All λ with conjugates, (speeds, 2N), rad/s, and the speeds at which damping couples modes too strongly."""
-        from rotors.whirl.eigenvalue_kernels import damped, squares
+        from gearwhine.rotors.whirl.eigenvalue_kernels import damped, squares
 
         squared, right = np.linalg.eigh(squares(self.frequencies, self.gyroscopic, speeds))
         undamped = self.frequencies, self.gyroscopic, speeds
@@ -128,16 +128,16 @@ def slowest(bearing: Bearing) -> float:
 class ModalProjection:
     """Projection of one set of coupled motions of a rotor on its modal basis.
 
-    Coordinates are the circular ones of `rotors.whirl.circular_coordinates` where forward or backward motion stands
-    alone. Where both are coupled they are those of x and y, in which all matrices are real and the eigenproblem costs
-    a third.
+    Coordinates are the circular ones of `gearwhine.rotors.whirl.circular_coordinates` where forward or backward motion
+    stands alone. Where both are coupled they are those of x and y, in which all matrices are real and the eigenproblem
+    costs a third.
 
     Attributes
     ----------
     basis : PlanarBasis
         Basis of the motions of one plane.
     blocks : tuple of int
-        Blocks as of `rotors.whirl.equations.WhirlEquations`.
+        Blocks as of `gearwhine.rotors.whirl.equations.WhirlEquations`.
     axial_frequencies, axial_shapes : ndarray, shapes (a,) and (a, bearings)
         Frequencies of the free axial modes [rad/s], and their shapes at the bearings; empty where no bearing needs
         them.
@@ -284,7 +284,7 @@ class Pencil:
     Attributes
     ----------
     blocks : tuple of int
-        Blocks as of `rotors.whirl.equations.WhirlEquations`.
+        Blocks as of `gearwhine.rotors.whirl.equations.WhirlEquations`.
     still, turning : ndarray, shape (2N, 2N)
         Constant part [1/s], and part per rad/s of the speed Ω.
     planes : CoupledPlanes or None

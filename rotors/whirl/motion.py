@@ -21,18 +21,18 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rotors.model.bearing import Bearing
-from rotors.model.profile import merged_positions
-from rotors.transfer_matrix.discretised_shaft import (
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.profile import merged_positions
+from gearwhine.rotors.transfer_matrix.discretised_shaft import (
     GAUSS_FRACTIONS,
     GAUSS_WEIGHTS,
     SQUARE_FRACTIONS,
     SQUARE_WEIGHTS,
     DiscretisedShaft,
 )
-from rotors.transfer_matrix.mode_shapes import require_positions
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES
-from rotors.whirl.equations import WhirlEquations, squared_frequencies
+from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES
+from gearwhine.rotors.whirl.equations import WhirlEquations, squared_frequencies
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -130,7 +130,7 @@ class ShaftMotion:
 
         The inertias of the nodes are included.
         """
-        from rotors.whirl.shooting_matrix_kernels import inertia_shares
+        from gearwhine.rotors.whirl.shooting_matrix_kernels import inertia_shares
 
         shaft = self.shaft
         along = shaft.inertia_weights

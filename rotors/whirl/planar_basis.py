@@ -12,15 +12,24 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rotors.errors import require, require_count, require_finite
-from rotors.model.bearing import Bearing, RadialSupport
-from rotors.model.shaft import Rotor
-from rotors.modes.lateral import require_unbuckled
-from rotors.modes.residual_modes import FREE_SHIFT, NOTHING_LEFT
-from rotors.transfer_matrix.discretised_shaft import GAUSS_FRACTIONS, GAUSS_WEIGHTS, ContinuousShaft, DiscretisedShaft
-from rotors.transfer_matrix.mode_shapes import responses, rigid_states, shaft_with_modes, shared_roots
-from rotors.transfer_matrix.rotor_shafts import bending_shaft
-from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies, shaft_arrays, wittrick_williams_count
+from gearwhine.rotors.errors import require, require_count, require_finite
+from gearwhine.rotors.model.bearing import Bearing, RadialSupport
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.modes.lateral import require_unbuckled
+from gearwhine.rotors.modes.residual_modes import FREE_SHIFT, NOTHING_LEFT
+from gearwhine.rotors.transfer_matrix.discretised_shaft import (
+    GAUSS_FRACTIONS,
+    GAUSS_WEIGHTS,
+    ContinuousShaft,
+    DiscretisedShaft,
+)
+from gearwhine.rotors.transfer_matrix.mode_shapes import responses, rigid_states, shaft_with_modes, shared_roots
+from gearwhine.rotors.transfer_matrix.rotor_shafts import bending_shaft
+from gearwhine.rotors.transfer_matrix.wittrick_williams import (
+    lowest_natural_frequencies,
+    shaft_arrays,
+    wittrick_williams_count,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -104,7 +113,12 @@ def planar_basis(
     RotorError, IncompleteModesError
         Wrong arguments, or the root count does not reach the modes.
     """
-    from rotors.transfer_matrix.mode_shape_kernels import energy_rows, energy_weights, mass_orthonormal, null_states
+    from gearwhine.rotors.transfer_matrix.mode_shape_kernels import (
+        energy_rows,
+        energy_weights,
+        mass_orthonormal,
+        null_states,
+    )
 
     require_count("count of modes", count)
     for bearing in bearings:
@@ -120,7 +134,7 @@ def planar_basis(
     nodes = [shaft.node_at(place) for place in forces]
     loads = [(node, 0) for node in nodes] + [(shaft.node_at(place), 1) for place in moments]
     loads = list(dict.fromkeys(loads))
-    # As in `rotors.modes.residual_modes`, the response of a free shaft is taken at ω² slightly below zero.
+    # As in `gearwhine.rotors.modes.residual_modes`, the response of a free shaft is taken at ω² slightly below zero.
     shift = -((FREE_SHIFT * (float(elastic[0]) if elastic.size else 1.0)) ** 2) if zeros else 0.0
     squared = shared_roots(elastic) ** 2
     states = [null_states(squared, *shaft_arrays(shaft))]

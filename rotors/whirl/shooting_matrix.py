@@ -22,9 +22,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.banded import BandPattern
-from rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
-from rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
+from gearwhine.rotors.numerics.banded import BandPattern
+from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
+from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
 
 IntArray = npt.NDArray[np.intp]
 FloatArray = npt.NDArray[np.float64]
@@ -136,7 +136,7 @@ class ShootingMatrix:
 
     def values(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Entries at every λ, speed Ω (which may be complex) and unit of force, (b, nnz)."""
-        from rotors.whirl.shooting_matrix_kernels import entries
+        from gearwhine.rotors.whirl.shooting_matrix_kernels import entries
 
         out = np.empty((eigenvalues.size, self.pattern.rows.size), dtype=np.complex128)
         entries(eigenvalues, speeds, scale, self.arrays, out)
@@ -144,7 +144,7 @@ class ShootingMatrix:
 
     def log_determinants(self, eigenvalues: ComplexArray, speeds: ComplexArray, scale: FloatArray) -> ComplexArray:
         """Logarithms of the determinants, (b,), their imaginary parts within (−π, π]."""
-        from rotors.whirl.shooting_matrix_kernels import determinants
+        from gearwhine.rotors.whirl.shooting_matrix_kernels import determinants
 
         return np.asarray(determinants(eigenvalues, speeds, scale, self.arrays, self.pattern.arrays))
 

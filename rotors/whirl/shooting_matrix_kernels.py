@@ -1,7 +1,7 @@
 """Compiled shooting matrix of whirl: its entries, determinant and node states, and kinetic-energy shares.
 
-The matrix is laid out by `rotors.whirl.shooting_matrix`; the shares of complex motions serve `rotors.whirl.motion`.
-Importing this module imports numba.
+The matrix is laid out by `gearwhine.rotors.whirl.shooting_matrix`; the shares of complex motions serve
+`gearwhine.rotors.whirl.motion`. Importing this module imports numba.
 """
 
 from typing import Any
@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rotors.numerics.banded_kernels import TINY, factor, fill, put
-from rotors.numerics.compiled import FUSED, counted, inner
-from rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, transfer_matrix
+from gearwhine.rotors.numerics.banded_kernels import TINY, factor, fill, put
+from gearwhine.rotors.numerics.compiled import FUSED, counted, inner
+from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, transfer_matrix
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -77,7 +77,7 @@ def _put_runs(
 
 @inner(error_model="python")
 def force_unit(at: complex, mass: float) -> float:
-    """Return the unit of force for roots near λ, as `rotors.whirl.equations.WhirlEquations.force_scale`."""
+    """Return the unit of force for roots near λ, as `gearwhine.rotors.whirl.equations.WhirlEquations.force_scale`."""
     return min(max((at.real**2 + at.imag**2) * mass, 1e-30), 1.0)
 
 

@@ -1,9 +1,10 @@
 """Whirl modes: damped, gyroscopic modes of a rotor on its bearings, exact and complete by proof.
 
 Speed Ω is positive counter-clockwise from +z; motion e^{λt} whirls forward, with the rotation for Ω > 0, when y
-lags x by a quarter turn. Starting values come from a projection on planar modes (`rotors.whirl.modal_projection`); each
-root is then refined on the exact transfer equations of both planes (`rotors.whirl.equations`,
-`rotors.whirl.eigenvalues`), and their number is proved (`rotors.whirl.completeness`).
+lags x by a quarter turn. Starting values come from a projection on planar modes
+(`gearwhine.rotors.whirl.modal_projection`); each root is then refined on the exact transfer equations of both planes
+(`gearwhine.rotors.whirl.equations`, `gearwhine.rotors.whirl.eigenvalues`), and their number is proved
+(`gearwhine.rotors.whirl.completeness`).
 """
 
 import math
@@ -16,15 +17,15 @@ from typing import TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 
-from rotors.certificate import ModeCertificate, combined_certificate
-from rotors.model.bearing import Bearing
-from rotors.model.shaft import Rotor
-from rotors.whirl.completeness import NO_OSCILLATION, certified_roots, is_conservative, oscillating
-from rotors.whirl.eigenvalues import ExactRoots, Speed, constant_speed, refine_roots
-from rotors.whirl.equations import WhirlEquations, reach_step, whirl_equations_in_runs, whirl_reach
-from rotors.whirl.modal_projection import Pencil, pencils
-from rotors.whirl.motion import ShaftMotion, StrainShares, strain_shares
-from rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis, planar_basis
+from gearwhine.rotors.certificate import ModeCertificate, combined_certificate
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.shaft import Rotor
+from gearwhine.rotors.whirl.completeness import NO_OSCILLATION, certified_roots, is_conservative, oscillating
+from gearwhine.rotors.whirl.eigenvalues import ExactRoots, Speed, constant_speed, refine_roots
+from gearwhine.rotors.whirl.equations import WhirlEquations, reach_step, whirl_equations_in_runs, whirl_reach
+from gearwhine.rotors.whirl.modal_projection import Pencil, pencils
+from gearwhine.rotors.whirl.motion import ShaftMotion, StrainShares, strain_shares
+from gearwhine.rotors.whirl.planar_basis import DEFAULT_COUNT, PlanarBasis, planar_basis
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -156,7 +157,7 @@ class WhirlModes(ComplexFrequencies):
         """Shares of every mode's mean strain energy in lengths of shaft, bearings and pedestals.
 
         The mean over a cycle is ¼ q̂ᴴKq̂ without growth or decay; of a bearing's stiffness the symmetric part stores
-        energy (`rotors.whirl.motion`).
+        energy (`gearwhine.rotors.whirl.motion`).
 
         Parameters
         ----------
@@ -337,7 +338,7 @@ def certified_whirl(
 
     ``turning`` is the speed at which elements must be short enough [rad/s]; None where it follows the frequency.
     """
-    from rotors.whirl.eigenvalue_kernels import ascending
+    from gearwhine.rotors.whirl.eigenvalue_kernels import ascending
 
     oscillating_starts = [ascending(values, least, NO_OSCILLATION) for _, values in starts]
     sizes: list[list[float]] = [np.abs(values).tolist() for values in oscillating_starts]
@@ -389,7 +390,7 @@ def _reach_behind(ascending: Sequence[float], count: int) -> float:
 
 def _limit_behind(refined: Sequence[ExactRoots], least: float, count: int) -> float:
     """Return a frequency in a gap above the lowest ``count`` roots, or above all of them."""
-    from rotors.whirl.eigenvalue_kernels import ascending
+    from gearwhine.rotors.whirl.eigenvalue_kernels import ascending
 
     sizes = np.abs(ascending(_all([roots.eigenvalues for roots in refined]), least, NO_OSCILLATION)).tolist()
     if not sizes:

@@ -9,7 +9,7 @@ import numpy as np
 
 import gearwhine as gw
 from gearwhine.figures import draw_campbell
-from rotors import campbell
+from gearwhine.rotors import campbell
 
 steel = gw.ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
 discs = [gw.Disc.from_dimensions(at, 0.07, diameter, 0.05, 7810.0) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]

@@ -3,8 +3,8 @@
 import numpy as np
 
 import gearwhine as gw
-from coupling.gears import ConstantStiffness
-from meshes import Bore, BoxGeometry, WallThickness
+from gearwhine.coupling.gears import ConstantStiffness
+from gearwhine.meshes import Bore, BoxGeometry, WallThickness
 
 AXES = {"input": (-0.045, 0.1), "output": (0.045, 0.1)}  # x, y [m]: 90 mm apart
 seats = {f"{shaft} {side}": (*axis, z) for shaft, axis in AXES.items() for side, z in (("back", -0.1), ("front", 0.1))}

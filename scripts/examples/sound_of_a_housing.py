@@ -7,7 +7,7 @@ some decibels; over several modes together the measurement comes near.
 import numpy as np
 
 import gearwhine as gw
-from housing.acoustics.sound_levels import measurement_box, power_level, pressure_level, sum_of_levels
+from gearwhine.housing.acoustics.sound_levels import measurement_box, power_level, pressure_level, sum_of_levels
 
 COARSE = {"housing.box.mesh_size": "45 mm", "acoustics.mesh_size": "45 mm", "acoustics.floor": "-22 mm"}
 study = gw.load("steel-box", COARSE | {"acoustics.highest_frequency": "2.3 kHz"})

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import gearwhine as gw
-from coupling import gears
+from gearwhine.coupling import gears
 
 RELIEF_FROM = 0.41  # roll angle where the relief begins [rad]
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 import gearwhine as gw
-from coupling.gears import SquareStiffness
+from gearwhine.coupling.gears import SquareStiffness
 
 TEETH = {"pinion": 28, "wheel": 42}
 DISTANCE = 3e-3 * sum(TEETH.values()) / 2  # of the shafts, at module 3 mm [m]

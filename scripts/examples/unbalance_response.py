@@ -6,7 +6,7 @@ import numpy as np
 
 import gearwhine as gw
 from gearwhine.figures import ProbeResponse, draw_unbalance_response
-from rotors import Unbalance, critical_speeds, unbalance_response
+from gearwhine.rotors import Unbalance, critical_speeds, unbalance_response
 
 steel = gw.ShaftMaterial(youngs_modulus=211e9, shear_modulus=81.2e9, density=7810.0)
 disc = gw.Disc(at=0.4, mass=20.0, polar_inertia=0.2, diametral_inertia=0.11)

@@ -4,11 +4,19 @@ import math
 
 import numpy as np
 
-from coupling import CoupledMachine, GearMesh, MachineLoads, MountedBearing, MountedGear, Torque, assemble_machine
-from coupling.gears import Gear, GearPairGeometry, SquareStiffness, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.components import rotor_component
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling import (
+    CoupledMachine,
+    GearMesh,
+    MachineLoads,
+    MountedBearing,
+    MountedGear,
+    Torque,
+    assemble_machine,
+)
+from gearwhine.coupling.gears import Gear, GearPairGeometry, SquareStiffness, tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
 TORQUE = 150.0
 ANGLE = math.radians(15.0)

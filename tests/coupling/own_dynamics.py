@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from own_statics import SLICES, OwnStatics
 
-from coupling import Machine
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.machine.components import HousingComponent
+from gearwhine.coupling import Machine
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.machine.components import HousingComponent
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

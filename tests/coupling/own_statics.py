@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import Machine, MountedBearing, Shaft, ShaftGear
-from coupling.gears import ConstantStiffness, Gear
-from coupling.gears.geometry.toothed_section import toothed_section
-from coupling.gears.loaded.gear_pair import GearPair
-from rotors import Bearing, Rotor, Segment, ShaftMaterial
+from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftGear
+from gearwhine.coupling.gears import ConstantStiffness, Gear
+from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from own_statics import STEEL, one_stage
 from own_statics import linear_bearing as made_bearing
 from scipy.optimize import brentq
 
-from coupling import Machine, MountedBearing
-from coupling.errors import EquilibriumNotFoundError
-from coupling.machine.axial_location import AxialLocation, AxialSupport
-from rotors.rolling_bearings import (
+from gearwhine.coupling import Machine, MountedBearing
+from gearwhine.coupling.errors import EquilibriumNotFoundError
+from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,

@@ -5,7 +5,7 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
-from coupling import (
+from gearwhine.coupling import (
     BaseMotion,
     CoupledMachine,
     CouplingError,
@@ -17,9 +17,9 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.machine.base_motion import BaseHarmonic, BaseHistory, participations
-from coupling.machine.components import rotor_component
-from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, static_deflection
+from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, participations
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, static_deflection
 
 FloatArray = npt.NDArray[np.float64]
 

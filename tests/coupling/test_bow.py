@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coupling import MachineLoads, MountedBearing, assemble_machine
-from coupling.machine.components import rotor_component
-from coupling.machine.loads import BowReactions
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor, unbalance_response
-from rotors.analyses.unbalance import bow_shape
-from rotors.model.loads import Bow
+from gearwhine.coupling import MachineLoads, MountedBearing, assemble_machine
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.loads import BowReactions
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor, unbalance_response
+from gearwhine.rotors.analyses.unbalance import bow_shape
+from gearwhine.rotors.model.loads import Bow
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 SHAFT = Rotor("shaft", [Segment(0.5, 0.05, 0.0, STEEL)] * 3, [Disc(0.5, 30.0, 0.3, 0.2), Disc(1.0, 50.0, 0.6, 0.4)])

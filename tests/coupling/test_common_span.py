@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from coupling.time.condensation import common_span
+from gearwhine.coupling.time.condensation import common_span
 
 
 def test_matrices_of_few_directions_are_made_again_from_their_cores() -> None:

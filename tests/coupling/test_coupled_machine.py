@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
@@ -21,10 +21,10 @@ from coupling import (
     coupled_modes,
     static_equilibrium,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.machine.components import HousingComponent, RotorComponent, rotor_component
-from coupling.statics.mean_mesh import mean_contact
-from rotors import (
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, rotor_component
+from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.rotors import (
     Bearing,
     Disc,
     ModalRotor,
@@ -35,7 +35,7 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

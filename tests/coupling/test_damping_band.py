@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from test_transmissibility import geared
 
-from coupling.linear.complex_modes import coupled_modes
-from coupling.linear.damping_band import DampingBand
-from coupling.linear.line_mechanisms import LineMechanisms
-from coupling.statics.mean_mesh import linear_matrices, mean_contact
+from gearwhine.coupling.linear.complex_modes import coupled_modes
+from gearwhine.coupling.linear.damping_band import DampingBand
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
 
 
 def test_a_band_is_the_line_of_machines_with_half_and_twice_the_damping() -> None:

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import signal
 
-from coupling import CouplingError, amplitude_spectrum
-from coupling.signals.decimation import decimation
-from coupling.signals.spectrum import averaged_spectrum
+from gearwhine.coupling import CouplingError, amplitude_spectrum
+from gearwhine.coupling.signals.decimation import decimation
+from gearwhine.coupling.signals.spectrum import averaged_spectrum
 
 
 @given(st.lists(st.integers(0, 300), max_size=12), st.sampled_from([1, 2, 3, 16]), st.integers(0, 2**32 - 1))

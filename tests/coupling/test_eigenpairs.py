@@ -5,9 +5,9 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from coupling import CoupledSystem, CouplingError, ModesError, coupled_modes, receptance
-from coupling.linear.eigenpairs import pair_residuals, quadratic_eigenpairs, refine_pair
-from coupling.machine.components import Component
+from gearwhine.coupling import CoupledSystem, CouplingError, ModesError, coupled_modes, receptance
+from gearwhine.coupling.linear.eigenpairs import pair_residuals, quadratic_eigenpairs, refine_pair
+from gearwhine.coupling.machine.components import Component
 
 FloatArray = npt.NDArray[np.float64]
 HALVES = (slice(0, 2), slice(2, 4))

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling.collocation.linear_part import corrected_eigenvectors
+from gearwhine.coupling.collocation.linear_part import corrected_eigenvectors
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.collocation.arrays import MONOMIALS, ORDER, PLACES, Reference
-from coupling.collocation.element_kernels import advance_to, carry_on
+from gearwhine.coupling.collocation.arrays import MONOMIALS, ORDER, PLACES, Reference
+from gearwhine.coupling.collocation.element_kernels import advance_to, carry_on
 
 
 @settings(deadline=None)

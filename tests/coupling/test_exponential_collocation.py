@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
     SpeedProfile,
@@ -22,13 +22,13 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from coupling.time.exponential_collocation import integration_method
-from coupling.time.transient import TransientResult, integrate_blocks
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.coupling.time.exponential_collocation import integration_method
+from gearwhine.coupling.time.transient import TransientResult, integrate_blocks
 
 FloatArray = npt.NDArray[np.float64]
 

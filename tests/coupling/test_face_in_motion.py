@@ -9,13 +9,13 @@ import pytest
 from own_dynamics import OwnDynamics
 from own_statics import STEEL, distance, toothed
 
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
-from coupling.gears import ConstantStiffness, SquareStiffness
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.machine.components import HousingComponent
-from coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact, mean_equilibrium
-from rotors import Bearing, Rotor, Segment
+from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
+from gearwhine.coupling.gears import ConstantStiffness, SquareStiffness
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact, mean_equilibrium
+from gearwhine.rotors import Bearing, Rotor, Segment
 
 FloatArray = npt.NDArray[np.float64]
 

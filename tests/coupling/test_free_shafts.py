@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from coupling import Machine, MountedBearing, Shaft
-from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.coupling import Machine, MountedBearing, Shaft
+from gearwhine.rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 RIGID = ShaftMaterial(1e16, 4e15, 7810.0)

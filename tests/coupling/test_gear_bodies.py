@@ -10,13 +10,13 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from coupling import CoupledMachine, Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
-from coupling.gears import Gear, SquareStiffness, loaded_transmission_error
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_compliance, shift_shares
-from coupling.machine.components import rotor_component
-from coupling.statics.mean_mesh import mean_meshes
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
+from gearwhine.coupling import CoupledMachine, Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
+from gearwhine.coupling.gears import Gear, SquareStiffness, loaded_transmission_error
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_compliance, shift_shares
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.statics.mean_mesh import mean_meshes
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
 
 FloatArray = npt.NDArray[np.float64]
 

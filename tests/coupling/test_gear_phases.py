@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from coupling import CouplingError
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.geometry.profile import pair_outlines
-from coupling.machine.gear_train import mesh_phases
+from gearwhine.coupling import CouplingError
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.geometry.profile import pair_outlines
+from gearwhine.coupling.machine.gear_train import mesh_phases
 
 FloatArray = npt.NDArray[np.float64]
 

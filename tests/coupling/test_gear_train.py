@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
@@ -19,10 +19,10 @@ from coupling import (
     Torque,
     assemble_machine,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.machine.components import rotor_component
-from coupling.machine.loads import AnyTorque, TorqueHistory
-from rotors import Bearing, ModalRotor, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.loads import AnyTorque, TorqueHistory
+from gearwhine.rotors import Bearing, ModalRotor, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 RIG = GearPairGeometry(*(Gear(name, 28, 3.175e-3, math.radians(20.0), 6.35e-3) for name in ("pinion", "wheel")))

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from coupling import ShaftGear
-from coupling.gears import Gear
-from coupling.machine.parts import gear_disc, inertia_with_discs, rotor_with_gears
 from gearwhine.case import parse_case
+from gearwhine.coupling import ShaftGear
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.machine.parts import gear_disc, inertia_with_discs, rotor_with_gears
 from gearwhine.from_case.rotors import build_rotor
-from rotors import Rotor, Segment, ShaftMaterial
+from gearwhine.rotors import Rotor, Segment, ShaftMaterial
 
 WIDTH = 0.04
 GEAR = Gear("pinion", 25, 3e-3, math.radians(20.0), WIDTH)

@@ -5,11 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from coupling import GearMesh, MachineLoads, MountedBearing, MountedGear, Torque, assemble_machine, static_equilibrium
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.components import rotor_component
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling import (
+    GearMesh,
+    MachineLoads,
+    MountedBearing,
+    MountedGear,
+    Torque,
+    assemble_machine,
+    static_equilibrium,
+)
+from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 SHAFT = Rotor("", [Segment(0.1, 0.05, 0.0, STEEL)] * 4)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
     TransientOutputs,
@@ -16,15 +16,15 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.machine.components import Component, HousingComponent, housing_component
-from coupling.machine.connectors import LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.time.condensation import condensed
-from housing import Material, ModeSet, Sensor, Support, assemble, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.seats import sensor_port
-from housing.model.supports import fixed_freedoms
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box
+from gearwhine.coupling.machine.components import Component, HousingComponent, housing_component
+from gearwhine.coupling.machine.connectors import LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.time.condensation import condensed
+from gearwhine.housing import Material, ModeSet, Sensor, Support, assemble, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import sensor_port
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]
 

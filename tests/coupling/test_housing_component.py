@@ -4,9 +4,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CouplingError, assemble_machine, coupled_modes
-from coupling.machine.components import HousingComponent, housing_component
-from housing import Certificate, ModeSet
+from gearwhine.coupling import CouplingError, assemble_machine, coupled_modes
+from gearwhine.coupling.machine.components import HousingComponent, housing_component
+from gearwhine.housing import Certificate, ModeSet
 
 FloatArray = npt.NDArray[np.float64]
 OMEGA = np.array([100.0, 180.0])

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coupling import CoupledSystem, SpeedProfile, TransientOutputs, TransientSettings, simulate
-from coupling.machine.components import Component
-from coupling.machine.connectors import LinearConnector, SpeedTable
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from coupling.machine.driving_frequencies import least_sampling_rate
-from coupling.time.integration import boundaries, coarsest_step
+from gearwhine.coupling import CoupledSystem, SpeedProfile, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import LinearConnector, SpeedTable
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
+from gearwhine.coupling.time.integration import boundaries, coarsest_step
 
 RUN_UP = SpeedProfile(np.array([0.0, 4.0]), np.array([0.5, 2.0]))
 

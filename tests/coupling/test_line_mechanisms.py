@@ -8,9 +8,9 @@ import pytest
 from helical_pairs import couple_pairs
 from test_teeth_friction import machine as with_friction
 
-from coupling import CoupledMachine, Torque, static_equilibrium
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.linear.line_mechanisms import LineMechanisms, LineParts
+from gearwhine.coupling import CoupledMachine, Torque, static_equilibrium
+from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms, LineParts
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -8,12 +8,12 @@ import numpy.typing as npt
 import pytest
 from own_statics import one_stage
 
-from coupling import Machine, MountedBearing, machine_description
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
-from coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
-from rotors import Pedestal
-from rotors.rolling_bearings import BallRow, paired
+from gearwhine.coupling import Machine, MountedBearing, machine_description
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
+from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
+from gearwhine.rotors import Pedestal
+from gearwhine.rotors.rolling_bearings import BallRow, paired
 
 FloatArray = npt.NDArray[np.float64]
 GRAVITY = (1.0, -9.81, 0.3)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from own_statics import STEEL
 
-from coupling import Machine, MountedBearing, Shaft, ShaftForce
-from coupling.machine.parts import Driving
-from coupling.statics.static_equilibrium import static_equilibrium
-from rotors import Bearing, Disc, Rotor, Segment
+from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftForce
+from gearwhine.coupling.machine.parts import Driving
+from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment
 
 THICK, LENGTH, LEFT, RIGHT, MIDDLE = 0.03, 0.3, 0.05, 0.25, 0.15
 AXIAL = 1e9, 2e8

@@ -9,16 +9,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
-from coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
-from coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.machine.components import HousingComponent
-from coupling.machine.gear_train import GearedShafts, gear_train
-from coupling.machine.parts import rotor_with_gears
-from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial, static_deflection
-from rotors.analyses.statics import StaticForce
+from gearwhine.coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
+from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.gear_train import GearedShafts, gear_train
+from gearwhine.coupling.machine.parts import rotor_with_gears
+from gearwhine.rotors import (
+    Bearing,
+    Coupling,
+    Disc,
+    Pedestal,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    static_deflection,
+)
+from gearwhine.rotors.analyses.statics import StaticForce
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 MODULE, LENGTH = 3e-3, 0.25

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, CouplingError
-from coupling.time.histories import modal_rows
 from gearwhine.case import load_case
+from gearwhine.coupling import CoupledMachine, CouplingError
+from gearwhine.coupling.time.histories import modal_rows
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.machine import build_machine
 

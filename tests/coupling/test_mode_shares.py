@@ -4,13 +4,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CoupledSystem, CouplingError, coupled_modes, stability
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.linear.complex_modes import Part, mode_shares
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.statics.mean_mesh import (
+from gearwhine.coupling import CoupledSystem, CouplingError, coupled_modes, stability
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.linear.complex_modes import Part, mode_shares
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.statics.mean_mesh import (
     ContactState,
     contact_at,
     linear_matrices,

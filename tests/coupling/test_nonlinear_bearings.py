@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     CouplingError,
@@ -24,15 +24,15 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.connector_forces.kernel_arrays import bearing_arrays
-from coupling.machine.components import Component, rotor_component
-from coupling.machine.connectors import LinearConnector, NonlinearConnector
-from coupling.machine.loads import Unbalance
-from coupling.signals import line_names
-from coupling.time.histories import histories, transient_outputs
-from coupling.time.transient import TransientResult
-from rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
-from rotors.rolling_bearings import (
+from gearwhine.coupling.connector_forces.kernel_arrays import bearing_arrays
+from gearwhine.coupling.machine.components import Component, rotor_component
+from gearwhine.coupling.machine.connectors import LinearConnector, NonlinearConnector
+from gearwhine.coupling.machine.loads import Unbalance
+from gearwhine.coupling.signals import line_names
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.rotors import Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,
@@ -97,7 +97,7 @@ def everything(n: int) -> TransientOutputs:
 @LAWS
 def test_the_compiled_law_is_that_of_the_room_of_rotors(bearing: RollingBearing) -> None:
     """Forces and tangent by the rolling room's own code; energy and its slopes by differences."""
-    from coupling.connector_forces.bearing_kernels import bearing_force
+    from gearwhine.coupling.connector_forces.bearing_kernels import bearing_force
 
     q = np.array([8e-6, -12e-6, 3e-6 if bearing.has_axial_stiffness else 0.0, 2e-4, -1e-4])
     state = rolling_state(bearing, q, cage_angle=0.3)

@@ -11,20 +11,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from own_statics import FULL, STEEL, STIFFNESS, TEETH, distance, linear_bearing, one_stage, toothed
 
-from coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
-from coupling.assembly import assemble_machine
-from coupling.errors import EquilibriumNotFoundError
-from coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.machine.components import HousingComponent, PedestalComponent
-from coupling.machine.parts import Driving
-from coupling.statics.operating_point import CAUSES
-from coupling.statics.static_equilibrium import static_equilibrium
-from rotors import EquilibriumError, Pedestal, Rotor, RotorError, Segment
-from rotors.model.profile import StiffnessDiameter
-from rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
+from gearwhine.coupling import CouplingError, GapLaw, Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.assembly import assemble_machine
+from gearwhine.coupling.errors import EquilibriumNotFoundError
+from gearwhine.coupling.gears import ConstantStiffness, Spall, loaded_transmission_error, tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
+from gearwhine.coupling.machine.components import HousingComponent, PedestalComponent
+from gearwhine.coupling.machine.parts import Driving
+from gearwhine.coupling.statics.operating_point import CAUSES
+from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.rotors import EquilibriumError, Pedestal, Rotor, RotorError, Segment
+from gearwhine.rotors.model.profile import StiffnessDiameter
+from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, TaperedRollerRow
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -224,7 +224,7 @@ def test_stiff_parts_have_no_share_in_the_misalignment() -> None:
 def test_five_stations_over_the_face_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     machine = one_stage(gear_pairs=[GearPair("pinion", "wheel", "weber-banaschek")])
     (coarse,) = machine.operating_point().pairs
-    monkeypatch.setattr("coupling.gears.contact.face_slices.FACE_STATIONS", 9)
+    monkeypatch.setattr("gearwhine.coupling.gears.contact.face_slices.FACE_STATIONS", 9)
     (fine,) = machine.operating_point().pairs
     assert coarse.misalignment == pytest.approx(fine.misalignment, rel=2e-3)
     assert coarse.k_h_beta == pytest.approx(fine.k_h_beta, rel=5e-3)

@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling import Machine, MountedBearing, Shaft, ShaftForce, ShaftGear
-from coupling.gears import Gear
-from coupling.gears.geometry.faults import MissingTooth
-from coupling.gears.geometry.modifications import ProfileDeviation
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import TableStiffness
-from coupling.machine.base_motion import BaseHarmonic, BaseHistory, BaseMotion
-from coupling.machine.gear_train import Output
-from coupling.machine.loads import Torque, TorqueHistory, TorqueSlope
-from coupling.machine.parts import Driving
-from housing import STEEL, Housing, Joint, LumpedMass, Mount, Seat, Sensor, Support
-from housing.model.bushings import Bushing
-from housing.model.patches import Patch
-from meshes import Mesh
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, Unbalance
+from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.faults import MissingTooth
+from gearwhine.coupling.gears.geometry.modifications import ProfileDeviation
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.models import TableStiffness
+from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, BaseMotion
+from gearwhine.coupling.machine.gear_train import Output
+from gearwhine.coupling.machine.loads import Torque, TorqueHistory, TorqueSlope
+from gearwhine.coupling.machine.parts import Driving
+from gearwhine.housing import STEEL, Housing, Joint, LumpedMass, Mount, Seat, Sensor, Support
+from gearwhine.housing.model.bushings import Bushing
+from gearwhine.housing.model.patches import Patch
+from gearwhine.meshes import Mesh
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, Unbalance
 
 ROTOR = Rotor("r", [Segment(0.2, 0.03, 0.0, ShaftMaterial(207e9, 80e9, 7850.0))])
 GEAR = Gear("pinion", 25, 3e-3, 0.35, 0.02)

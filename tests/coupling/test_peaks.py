@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling.signals.peaks import spectral_peaks
-from coupling.signals.spectrum import Spectrum, amplitude_spectrum, averaged_spectrum
+from gearwhine.coupling.signals.peaks import spectral_peaks
+from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum, averaged_spectrum
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     CouplingError,
@@ -26,15 +26,24 @@ from coupling import (
     assemble_machine,
     simulate,
 )
-from coupling.gears import Gear, GearPairGeometry, SquareStiffness, ToothContact, tooth_contact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component, rotor_component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.periodic import PeriodicResponse, common_period, periodic_response
-from coupling.time.histories import histories, transient_outputs
-from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.coupling.gears import Gear, GearPairGeometry, SquareStiffness, ToothContact, tooth_contact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component, rotor_component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.periodic import PeriodicResponse, common_period, periodic_response
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    ModalRotor,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 Errors = Sequence[tuple[float, float, float]]
@@ -234,8 +243,8 @@ def test_motions_repeat_under_another_integrator(damping: float, viscous: float,
 @pytest.mark.parametrize(("viscous", "fade"), [(0.0, 0.0), (0.08, 0.0), (0.08, 0.4)])
 def test_monodromy_over_losses_of_contact(viscous: float, fade: float) -> None:
     """Against differences of the whole march, forces that step at impact included; det M = e^{-∫ damping dt}."""
-    from coupling.periodic.orbit import integrate_period
-    from coupling.periodic.shooting import problem
+    from gearwhine.coupling.periodic.orbit import integrate_period
+    from gearwhine.coupling.periodic.shooting import problem
 
     system = one_mass(0.78, waving(0.3, viscous, fade), 0.03)
     response = periodic_response(system, start=(np.array([3.8]), np.zeros(1)))

@@ -9,8 +9,8 @@ import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate, static_equilibrium
-from coupling.gears import (
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate, static_equilibrium
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -21,9 +21,9 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.time.transient import TransientResult
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,14 +8,14 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
-from coupling import CoupledSystem, CouplingError, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.periodic import periodic_response, response_curve
-from coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling import CoupledSystem, CouplingError, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.periodic import periodic_response, response_curve
+from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.output.quantity import RPM
 from gearwhine.solve.steady_state import SolvedSteady
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
@@ -20,12 +20,12 @@ from coupling import (
     assemble_machine,
     simulate,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.machine.components import rotor_component
-from coupling.machine.loads import Drive, TorqueHistory, TorqueRipple, TorqueSlope
-from coupling.time.histories import histories, transient_outputs
-from coupling.time.transient import TransientResult
-from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.loads import Drive, TorqueHistory, TorqueRipple, TorqueSlope
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 

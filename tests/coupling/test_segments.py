@@ -4,15 +4,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CoupledSystem, CouplingError, PeriodicError
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.periodic import periodic_response, response_curve
-from coupling.periodic.branch import Branch, interpolation
-from coupling.periodic.orbit import bordered_correction, correction, integrate_period, product
-from coupling.periodic.shooting import problem
+from gearwhine.coupling import CoupledSystem, CouplingError, PeriodicError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.periodic import periodic_response, response_curve
+from gearwhine.coupling.periodic.branch import Branch, interpolation
+from gearwhine.coupling.periodic.orbit import bordered_correction, correction, integrate_period, product
+from gearwhine.coupling.periodic.shooting import problem
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, MountedBearing, assemble_machine, coupled_modes
-from coupling.machine.components import rotor_component
-from coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
-from rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling import CoupledMachine, MountedBearing, assemble_machine, coupled_modes
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
+from gearwhine.rotors import Bearing, Coupling, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 TORSIONAL, AXIAL, LATERAL = 2e4, 1e7, 4e6

@@ -7,8 +7,8 @@ import numpy.typing as npt
 import pytest
 from helical_pairs import couple_pairs, helical
 
-from coupling import static_equilibrium
-from coupling.gears import (
+from gearwhine.coupling import static_equilibrium
+from gearwhine.coupling.gears import (
     GearPair,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -16,8 +16,8 @@ from coupling.gears import (
     load_gear_pair,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.load_shuttling import load_arms, mean_load_arms, shuttling_loads
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.machine.load_shuttling import load_arms, mean_load_arms, shuttling_loads
 
 FORCE = 4000.0
 

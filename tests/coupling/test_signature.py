@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import jv
 
-from coupling import CouplingError, SpeedProfile, amplitude_spectrum
-from coupling.signals import (
+from gearwhine.coupling import CouplingError, SpeedProfile, amplitude_spectrum
+from gearwhine.coupling.signals import (
     AngleSignal,
     OrderMap,
     decibels,
@@ -23,7 +23,7 @@ from coupling.signals import (
     sidebands,
     spectrogram,
 )
-from coupling.signals.spectrum import lines_at, signal_parts
+from gearwhine.coupling.signals.spectrum import lines_at, signal_parts
 
 INTERVAL = 1e-4
 TIMES = INTERVAL * np.arange(10_000)  # one second

@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.stiffness.hertz import line_contact
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
-from coupling.machine.base_motion import BaseHistory, _velocities, participations
-from coupling.machine.components import HousingComponent, rotor_component
-from coupling.machine.load_shuttling import load_arms, shuttling_loads
-from coupling.machine.thrust import ThrustPair, axial_forces
-from coupling.signals.spectrum import averaged_spectrum
-from rotors import Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.stiffness.hertz import line_contact
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.machine.base_motion import BaseHistory, _velocities, participations
+from gearwhine.coupling.machine.components import HousingComponent, rotor_component
+from gearwhine.coupling.machine.load_shuttling import load_arms, shuttling_loads
+from gearwhine.coupling.machine.thrust import ThrustPair, axial_forces
+from gearwhine.coupling.signals.spectrum import averaged_spectrum
+from gearwhine.rotors import Rotor, Segment, ShaftMaterial, modal_rotor
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 
@@ -70,7 +70,7 @@ def test_shuttling_goes_through_the_mesh_period_with_the_rotation(rate: float, m
         return 1e-4 * (0.7 + np.cos(turned - 0.4) + 0.5 * np.cos(2.0 * turned + 1.1))
 
     monkeypatch.setattr(
-        "coupling.machine.load_shuttling.load_arms",
+        "gearwhine.coupling.machine.load_shuttling.load_arms",
         lambda *given: np.column_stack([arm(given[3]), np.zeros(len(given[3]))]),
     )
     assert callable(load_arms)

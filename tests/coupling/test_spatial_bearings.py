@@ -3,10 +3,28 @@
 import numpy as np
 import pytest
 
-from coupling import CouplingError, Machine, MountedBearing, Shaft, ShaftForce, assemble_machine, coupled_modes
-from coupling.machine.components import HousingComponent, housing_component, rotor_component
-from coupling.statics.static_equilibrium import static_equilibrium
-from rotors import Bearing, Disc, ModalRotor, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor, solve_whirl
+from gearwhine.coupling import (
+    CouplingError,
+    Machine,
+    MountedBearing,
+    Shaft,
+    ShaftForce,
+    assemble_machine,
+    coupled_modes,
+)
+from gearwhine.coupling.machine.components import HousingComponent, housing_component, rotor_component
+from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    ModalRotor,
+    Pedestal,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    modal_rotor,
+    solve_whirl,
+)
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 SHAFT = Rotor("shaft", [Segment(0.25, 0.05, 0.0, STEEL)] * 4, [Disc(0.25, 12.0, 0.09, 0.05)])
@@ -76,7 +94,7 @@ def test_pedestal_without_mass_is_refused() -> None:
 
 def rigid_seat(mass: float, inertia: float, z: float) -> HousingComponent:
     """A free rigid body as housing, with one seat at a height above its centre; six motions of unit modal mass."""
-    from housing import Certificate, ModeSet
+    from gearwhine.housing import Certificate, ModeSet
 
     modes = ModeSet(np.zeros(6), np.zeros((6, 1, 3)), Certificate(1.0, 6, 6, 0.0, 0.0), {}, "", 0.0, 1)
     motion = np.diag([1.0 / np.sqrt(mass)] * 3 + [1.0 / np.sqrt(inertia)] * 3)

@@ -5,8 +5,8 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from coupling import amplitude_spectrum
-from coupling.signals.spectrum import whole_period_samples
+from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.signals.spectrum import whole_period_samples
 
 INTERVAL = 1e-3
 

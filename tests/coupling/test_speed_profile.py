@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
     SpeedProfile,
@@ -19,12 +19,12 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector, SpeedTable
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from coupling.time.transient import TransientResult
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector, SpeedTable
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

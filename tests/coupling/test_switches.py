@@ -9,12 +9,12 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from coupling.collocation.arrays import INSIDE, ORDER, POINTS, Reference, element_work
-from coupling.collocation.element_kernels import interpolated, law
-from coupling.collocation.switch_kernels import branch, by_pairs, next_part, placed
-from coupling.connector_forces.kernel_arrays import Contacts
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, TipRelief, tooth_contact
-from coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force
+from gearwhine.coupling.collocation.arrays import INSIDE, ORDER, POINTS, Reference, element_work
+from gearwhine.coupling.collocation.element_kernels import interpolated, law
+from gearwhine.coupling.collocation.switch_kernels import branch, by_pairs, next_part, placed
+from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
+from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, TipRelief, tooth_contact
+from gearwhine.coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force
 
 GEAR = Gear("gear", 28, 3.175e-3, math.radians(20.0), 6.35e-3, tip_relief=TipRelief(2e-5, math.radians(24.0)))
 CONTACT = replace(

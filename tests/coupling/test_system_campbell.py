@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CouplingError,
     GearMesh,
@@ -16,12 +16,12 @@ from coupling import (
     coupled_modes,
     system_campbell,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.linear.campbell import ModesAtSpeed, likeness, matched
-from coupling.linear.eigenpairs import quadratic_eigenpairs
-from coupling.linear.excitation_orders import ExcitationLine, excitation_lines
-from coupling.machine.components import rotor_component
-from rotors import (
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from gearwhine.coupling.linear.campbell import ModesAtSpeed, likeness, matched
+from gearwhine.coupling.linear.eigenpairs import quadratic_eigenpairs
+from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.rotors import (
     Bearing,
     Disc,
     ModalRotor,
@@ -32,7 +32,7 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
@@ -28,7 +28,7 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -40,16 +40,16 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.contact.sliding_friction import SlidingFriction, sliding_direction_means, sliding_friction
-from coupling.gears.loaded.mesh_friction import mesh_friction
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.machine.components import Component, rotor_component
-from coupling.machine.connectors import ContactConnector, Sliding
-from coupling.time.histories import histories, transient_outputs
-from coupling.time.transient import TransientResult
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.contact.sliding_friction import SlidingFriction, sliding_direction_means, sliding_friction
+from gearwhine.coupling.gears.loaded.mesh_friction import mesh_friction
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.machine.components import Component, rotor_component
+from gearwhine.coupling.machine.connectors import ContactConnector, Sliding
+from gearwhine.coupling.time.histories import histories, transient_outputs
+from gearwhine.coupling.time.transient import TransientResult
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -142,7 +142,7 @@ def test_a_contact_line_turns_piece_by_piece(half_line: float) -> None:
 @given(st.floats(0.0, 30.0), st.floats(1e-7, 1e-4), st.floats(0.1, 400.0))
 def test_the_nominal_rotation_always_heats_the_flanks(phase: float, compression: float, speed: float) -> None:
     """Σ E_j |w_j| of the pairs, the sliding speeds from the roll angles."""
-    from coupling.gears.contact.tooth_force_kernels import friction_shares
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_shares
 
     law = sliding_friction(PAIR, CONTACT, COEFFICIENT)
     place = law.pitch_point, law.path_end
@@ -170,7 +170,7 @@ def test_helical_faces_turn_slice_by_slice(helix: float, even: bool, agree: floa
     Tables know a pair by its own compression alone. Where the bodies that pairs share deflect unevenly over the face,
     the load of one pair also depends on where the other is loaded, which the tables leave out.
     """
-    from coupling.gears.contact.tooth_force_kernels import friction_shares
+    from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_shares
 
     angle = np.radians(helix)
     crowned = HelixDeviation(crowning=5e-6)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling.errors import CouplingError
-from coupling.signals.spectrum import Spectrum, amplitude_spectrum
-from coupling.signals.tones import hann_tones, tones_at
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
+from gearwhine.coupling.signals.tones import hann_tones, tones_at
 
 FloatArray = npt.NDArray[np.float64]
 

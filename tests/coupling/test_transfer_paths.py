@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import (
+from gearwhine.case import load_case
+from gearwhine.coupling import (
     CoupledMachine,
     CouplingError,
     MachineLoads,
@@ -18,12 +19,11 @@ from coupling import (
     assemble_machine,
     coupled_modes,
 )
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.machine.components import HousingComponent
-from coupling.machine.loads import TorqueRipple
-from coupling.signals import housing_paths, line_names, mode_parts
-from coupling.time.histories import modal_record, transient_outputs, with_modal_rows
-from gearwhine.case import load_case
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.loads import TorqueRipple
+from gearwhine.coupling.signals import housing_paths, line_names, mode_parts
+from gearwhine.coupling.time.histories import modal_record, transient_outputs, with_modal_rows
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.machine import build_machine
 

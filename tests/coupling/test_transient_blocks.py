@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling import CoupledSystem, CouplingError, SpeedProfile, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.time.integration import Checkpoint
-from coupling.time.transient import integrate_blocks, integration_key, transient_figures
+from gearwhine.coupling import CoupledSystem, CouplingError, SpeedProfile, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.time.integration import Checkpoint
+from gearwhine.coupling.time.transient import integrate_blocks, integration_key, transient_figures
 
 BLOCK = 64
 RECORD = ("times", "displacement", "velocity", "acceleration", "compression", "force")
@@ -90,7 +90,7 @@ def test_contact_figures_begin_with_the_record_where_a_block_does(record_from: f
 
 def test_a_cache_that_forgets_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     before = simulate(SYSTEM, SETTINGS, ROWS)
-    monkeypatch.setattr("coupling.time.step_matrices.StepCache._MOST_BYTES", 1)
+    monkeypatch.setattr("gearwhine.coupling.time.step_matrices.StepCache._MOST_BYTES", 1)
     after = simulate(SYSTEM, SETTINGS, ROWS)
     assert all(getattr(before, name).tobytes() == getattr(after, name).tobytes() for name in RECORD)
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
     TransientError,
@@ -20,13 +20,13 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from coupling.time.integration import Checkpoint
-from coupling.time.transient import TransientResult, integrate_blocks
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
+from gearwhine.coupling.time.integration import Checkpoint
+from gearwhine.coupling.time.transient import TransientResult, integrate_blocks
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,8 +7,15 @@ import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
-from coupling import CoupledSystem, TransientError, TransientOutputs, TransientSettings, simulate, static_equilibrium
-from coupling.gears import (
+from gearwhine.coupling import (
+    CoupledSystem,
+    TransientError,
+    TransientOutputs,
+    TransientSettings,
+    simulate,
+    static_equilibrium,
+)
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -16,13 +23,13 @@ from coupling.gears import (
     ToothContact,
     tooth_contact,
 )
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.face_slices import face_slices
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.machine.speed_profile import SpeedProfile
-from coupling.time.transient import EnergyBalance, TransientResult
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     CouplingError,
@@ -19,23 +19,32 @@ from coupling import (
     coupled_modes,
     receptance,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.linear.frequency_response import (
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.linear.frequency_response import (
     BasisError,
     mesh_error_response,
     resonance_grid,
     sensor_force_response,
     unbalance_response,
 )
-from coupling.machine.components import Component, HousingComponent, rotor_component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.loads import BowReactions, TorqueRipple
-from coupling.statics.mean_mesh import contact_at
-from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors import Unbalance as RotorUnbalance
-from rotors import unbalance_response as rotor_unbalance_response
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.coupling.machine.components import Component, HousingComponent, rotor_component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.loads import BowReactions, TorqueRipple
+from gearwhine.coupling.statics.mean_mesh import contact_at
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    ModalRotor,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+from gearwhine.rotors import Unbalance as RotorUnbalance
+from gearwhine.rotors import unbalance_response as rotor_unbalance_response
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

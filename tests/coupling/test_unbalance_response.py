@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     MachineLoads,
     MountedBearing,
@@ -16,8 +16,8 @@ from coupling import (
     coupled_modes,
     simulate,
 )
-from coupling.machine.components import rotor_component
-from rotors import (
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.rotors import (
     Bearing,
     Disc,
     ModalRotor,
@@ -28,7 +28,7 @@ from rotors import (
     solve_torsional_modes,
     solve_whirl,
 )
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -37,13 +37,13 @@ def poisoned(make):
 np.empty, np.empty_like = poisoned(np.empty), poisoned(np.empty_like)
 
 from dataclasses import replace
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.periodic import periodic_response
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.periodic import periodic_response
 
 contact = ToothContact(1.6, piecewise.quadratic(0.8, 1.2, 0.8, 1.6), piecewise.constant(0.0, 1.6), 0.05)
 masses = Component("masses", ("torsion", "torsion"), np.diag([0.2, 0.1]), 0.02 * np.eye(2), np.zeros((2, 2)))

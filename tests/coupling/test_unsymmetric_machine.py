@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     BaseMotion,
     CoupledMachine,
     GearMesh,
@@ -23,14 +23,14 @@ from coupling import (
     assemble_machine,
     receptance,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
-from coupling.linear.frequency_response import mesh_error_response, unbalance_response
-from coupling.machine.base_motion import BaseHarmonic, BaseHistory
-from coupling.machine.components import HousingComponent, pedestal_component, rotor_component
-from coupling.machine.loads import BowReactions, Drive, TorqueRipple
-from coupling.machine.shaft_dashpots import ShaftDashpots
-from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor
-from rotors.analyses.harmonic_response import frequency_response
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, tooth_contact
+from gearwhine.coupling.linear.frequency_response import mesh_error_response, unbalance_response
+from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory
+from gearwhine.coupling.machine.components import HousingComponent, pedestal_component, rotor_component
+from gearwhine.coupling.machine.loads import BowReactions, Drive, TorqueRipple
+from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
+from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.rotors.analyses.harmonic_response import frequency_response
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,16 +12,16 @@ from scipy import linalg, optimize
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from scipy.special import ivp, jvp, kvp, yvp
 
-from coupling import Machine, MountedBearing, Shaft, ShaftGear
-from coupling.gears import Gear, GearError
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
-from coupling.gears.stiffness.ring_body import twist_compliance
-from coupling.gears.stiffness.wheel_modes import WheelSection, wheel_modes, wheel_section
-from coupling.machine.components import rotor_component
-from coupling.machine.gear_bodies import transport
-from coupling.statics.mean_mesh import mean_equilibrium, mean_meshes
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
+from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftGear
+from gearwhine.coupling.gears import Gear, GearError
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_shares
+from gearwhine.coupling.gears.stiffness.ring_body import twist_compliance
+from gearwhine.coupling.gears.stiffness.wheel_modes import WheelSection, wheel_modes, wheel_section
+from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.gear_bodies import transport
+from gearwhine.coupling.statics.mean_mesh import mean_equilibrium, mean_meshes
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
 
 FloatArray = npt.NDArray[np.float64]
 

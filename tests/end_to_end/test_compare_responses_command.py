@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
+from gearwhine.housing.measured import (
+    MeasuredGeometry,
+    MeasuredModes,
+    MeasuredResponses,
+    SurveyData,
+    map_survey,
+    write_survey,
+)
 from gearwhine.solve.housing_modes import solve_housing
-from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, map_survey, write_survey
 
 CASE = """
 title = "a box"

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from meshio._mesh import topological_dimension
 
-from meshes import Mesh, read_mesh, write_mesh
-from meshes.elements import SOLIDS
+from gearwhine.meshes import Mesh, read_mesh, write_mesh
+from gearwhine.meshes.elements import SOLIDS
 
 CASE = """
 title = "block"

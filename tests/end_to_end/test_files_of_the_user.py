@@ -63,7 +63,7 @@ def test_the_case_that_is_read_is_not_replaced(gearwhine: Any, own_case: Path, h
 
 
 def test_the_mesh_that_the_case_names_is_not_replaced(gearwhine: Any, tmp_path: Path, block_of: Any) -> None:
-    from meshes import write_mesh
+    from gearwhine.meshes import write_mesh
 
     write_mesh(block_of("hexahedron"), tmp_path / "mesh.inp")
     (tmp_path / "own.toml").write_text(MESH_CASE, encoding="utf-8")

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshes import read_mesh, write_mesh
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes import read_mesh, write_mesh
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 STEEL = """
 [material.steel]

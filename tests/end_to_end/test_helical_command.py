@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coupling import coupled_modes
-from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
+from gearwhine.coupling import coupled_modes
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import mean_bearing_forces, solve_transient

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshes import ElementBlock, Mesh, write_mesh
-from meshes.elements import facet_centers, pick_facets
+from gearwhine.meshes import ElementBlock, Mesh, write_mesh
+from gearwhine.meshes.elements import facet_centers, pick_facets
 
 CASE = """
 [material.steel]

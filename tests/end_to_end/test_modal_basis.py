@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling.linear.frequency_response import mesh_error_response
 from gearwhine.case import Case, load_case
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import ReducedHousing, basis_error, build_machine, reduce_housing

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from gearwhine.cli import run_command
-from housing import read_modes
-from housing.pictures import scene as renderer
+from gearwhine.housing import read_modes
+from gearwhine.housing.pictures import scene as renderer
 
 COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 CLOCK = ("seconds", "seconds_when_solved")

@@ -16,7 +16,7 @@ from looked_at import HOSTILE, look_at, look_at_shapes, with_hostile_names
 from gearwhine.case import bundled_case
 from gearwhine.cli.command_line import app
 from gearwhine.from_case import mesh
-from meshes import mesh_box, mesh_cad
+from gearwhine.meshes import mesh_box, mesh_cad
 
 ROOT = Path(__file__).parents[2]
 RUN = [*sorted((ROOT / "docs" / "tutorials").glob("*.md")), *sorted((ROOT / "docs" / "how-to").glob("*.md"))]

@@ -13,14 +13,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coupling import coupled_modes
 from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
+from gearwhine.coupling import coupled_modes
 from gearwhine.from_case.rotors import build_bearings, rolling_state
 from gearwhine.results.rotors import rotors_document
-from gearwhine.solve.machine import build_machine
-from gearwhine.solve.rotors import solve_rotors
-from rotors.rolling_bearings import (
+from gearwhine.rotors.rolling_bearings import (
     FourPointRow,
     RingFit,
     RollerRow,
@@ -30,6 +28,8 @@ from rotors.rolling_bearings import (
     operating_clearance,
     static_rating,
 )
+from gearwhine.solve.machine import build_machine
+from gearwhine.solve.rotors import solve_rotors
 
 FRISWELL = tomllib.loads(files("gearwhine.cases").joinpath("friswell-rotor.toml").read_text(encoding="utf-8"))
 RINGS = {"bore": "50 mm", "outer_diameter": "90 mm", "width": "20 mm"}

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from housing import read_modes
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.housing import read_modes
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 # All in mm. The origin is the middle of the box in x and z, the underside of its base in y.
 X, Y, Z, WALL, FILLET = 140.0, 110.0, 130.0, 12.0, 8.0

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import bundled_case
-from housing import read_modes
-from housing.measured import MeasuredModes, SurveyData, map_survey, read_survey, write_universal
+from gearwhine.housing import read_modes
+from gearwhine.housing.measured import MeasuredModes, SurveyData, map_survey, read_survey, write_universal
 
 COARSE = ("--set", 'housing.box.mesh_size="45 mm"')
 

@@ -12,7 +12,7 @@ import pytest
 from gearwhine.case import Case, bundled_files, load_case
 from gearwhine.case.bearings import RollingCatalogue, RollingStiffness
 from gearwhine.from_case.machine import describe_machine
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 ROOT = Path(__file__).parents[2]
 NAME = "two-stage-reducer"

@@ -9,8 +9,8 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.from_case.parametric_housing import ParametricHousing, fitted_case
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, map_survey, write_survey
 from gearwhine.solve import updating
-from housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, map_survey, write_survey
 
 SECRET = {"top": 10.5e-3, "front": 15e-3}
 CASE = """

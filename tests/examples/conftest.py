@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from gearwhine.from_case import mesh
-from meshes import mesh_box
+from gearwhine.meshes import mesh_box
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "scripts" / "examples"

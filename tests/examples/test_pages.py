@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from gearwhine.case import Case
 from gearwhine.from_case import mesh
-from meshes import mesh_box
+from gearwhine.meshes import mesh_box
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

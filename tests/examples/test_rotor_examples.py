@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import gears
-from coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling import gears
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
 
 
 def test_campbell_diagram_has_the_published_frequencies(example: Any) -> None:

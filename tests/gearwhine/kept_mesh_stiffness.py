@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.linear.line_sensitivity import LineModel
 
 
 def without_stiffness(model: LineModel) -> LineModel:

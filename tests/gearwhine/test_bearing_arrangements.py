@@ -11,7 +11,7 @@ from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.cli import run_command
 from gearwhine.results.check import sections as check_sections
 from gearwhine.results.operating_point import sections
-from rotors.rolling_bearings import (
+from gearwhine.rotors.rolling_bearings import (
     RollingBearing,
     Row,
     catalogue_row,

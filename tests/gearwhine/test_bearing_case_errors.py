@@ -8,7 +8,7 @@ import pytest
 from broken_cases import check_one_wrong
 
 from gearwhine.case.bearings import CatalogueType
-from rotors.rolling_bearings.catalogue import CatalogueType as LibraryType
+from gearwhine.rotors.rolling_bearings.catalogue import CatalogueType as LibraryType
 
 BALLS = {"count": 7, "element_diameter": "8 mm", "pitch_diameter": "43.5 mm"}
 ROLLERS = {**BALLS, "element_length": "8 mm"}

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling.gears import loaded_transmission_error, mesh_stiffness
-from coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.case import Case, case_document, load_case, parse_case
+from gearwhine.coupling.gears import loaded_transmission_error, mesh_stiffness
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results.system import sections
 from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, first_touch, solve_over_torques

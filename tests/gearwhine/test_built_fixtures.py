@@ -9,7 +9,7 @@ import pytest
 from gearwhine.case import parse_case
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount
 from gearwhine.from_case.mesh import cover_joints
-from housing import Material, bolted_joint
+from gearwhine.housing import Material, bolted_joint
 
 
 def test_a_bolt_between_two_faces_presses_each_from_its_own_side() -> None:

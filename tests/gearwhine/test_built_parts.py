@@ -9,7 +9,7 @@ from gearwhine.case import Material, Rotor
 from gearwhine.case.bearings import Pedestal, RadialStiffness, RollingGeometry, Stop
 from gearwhine.case.gears import Gear, HelixErrors
 from gearwhine.case.operation import Base, TorqueHistory, TorqueRipple
-from rotors.rolling_bearings import rolling_equilibrium
+from gearwhine.rotors.rolling_bearings import rolling_equilibrium
 
 STEEL = {"steel": Material(youngs_modulus=210e9, poisson_ratio=0.25, density=7800.0)}
 ROTOR = Rotor.model_validate(

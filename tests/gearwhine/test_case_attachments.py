@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.from_case.fixtures import build_attachments
+from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.housing import modes_document
 from gearwhine.solve.housing_modes import solve_housing
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
 BOX: dict[str, Any] = {

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import GapLaw, RollingLaw
 from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
 from gearwhine.solve.machine import solve_machine

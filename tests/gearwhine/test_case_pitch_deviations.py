@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling.gears.geometry.pitch_deviations import pitch_gaps
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
+from gearwhine.coupling.gears.geometry.pitch_deviations import pitch_gaps
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.rotors import build_gear
 from gearwhine.solve.machine import build_machine

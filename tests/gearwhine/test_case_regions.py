@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from gearwhine.case import CaseError, load_case, parse_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.mesh import materials_of
-from meshes import Mesh, write_mesh
+from gearwhine.meshes import Mesh, write_mesh
 
 BOX = tomllib.loads(files("gearwhine.cases").joinpath("steel-box.toml").read_text(encoding="utf-8"))
 COVER = {"name": "cover", "material": "aluminium", "box": [[-1.0, "150 mm", -1.0], [1.0, "170 mm", 1.0]]}

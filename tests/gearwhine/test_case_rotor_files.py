@@ -10,7 +10,7 @@ import pytest
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.cli import run_command
 from gearwhine.from_case.rotors import build_bearings, build_gear, build_rotor
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 ROTOR = Rotor("fan", [Segment(0.5, 0.05, 0.0, STEEL), Segment(0.5, 0.06, 0.02, STEEL)], [Disc(0.5, 20.0, 0.4, 0.22)])

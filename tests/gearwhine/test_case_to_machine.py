@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from lopsided_case import AXES, GEARS, MODULE, PAIRS, SPEEDS, START, STIFFNESS, UNBALANCES, lopsided
 
-from coupling import CoupledMachine, GapLaw, Torque
-from coupling.machine.base_motion import BaseHarmonic
-from coupling.machine.loads import TorqueRipple
 from gearwhine.case import Case, parse_case
+from gearwhine.coupling import CoupledMachine, GapLaw, Torque
+from gearwhine.coupling.machine.base_motion import BaseHarmonic
+from gearwhine.coupling.machine.loads import TorqueRipple
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear
 from gearwhine.solve.housing_modes import solve_housing

@@ -10,12 +10,12 @@ import pytest
 
 from gearwhine.analyses.housing import compare
 from gearwhine.case import load_case
+from gearwhine.housing.correlation.comparison import Comparison, ModePair
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
+from gearwhine.housing.measured.survey_data import SurveyData
+from gearwhine.housing.measured.survey_files import write_survey
 from gearwhine.solve.comparison import comparison_warnings
 from gearwhine.solve.housing_modes import solve_housing
-from housing.correlation.comparison import Comparison, ModePair
-from housing.measured import MeasuredGeometry, MeasuredModes
-from housing.measured.survey_data import SurveyData
-from housing.measured.survey_files import write_survey
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

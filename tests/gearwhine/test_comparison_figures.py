@@ -15,10 +15,10 @@ from gearwhine.figures import (
     save,
     save_all,
 )
+from gearwhine.housing import compare_by_shapes
+from gearwhine.housing.correlation.comparison import Comparison, ModePair
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
 from gearwhine.results.comparison import dof_names, write_comparison
-from housing import compare_by_shapes
-from housing.correlation.comparison import Comparison, ModePair
-from housing.measured import MeasuredGeometry, MeasuredModes
 
 HERTZ = 2.0 * np.pi
 # TM-104434, Table II: measured, analytical, difference in per cent as printed.

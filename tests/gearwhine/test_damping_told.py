@@ -11,9 +11,9 @@ import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.results.check import sections
 from gearwhine.results.motion import amplitude_words, band_words, level_words
+from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, catalogue_bearing
 from gearwhine.solve.damping import damping_warnings, part_dampings
 from gearwhine.solve.machine import solve_machine
-from rotors.rolling_bearings import ROLLING_DAMPING_TIME, catalogue_bearing
 
 BALLS = {"catalogue": {"type": "deep-groove", "bore": "30 mm", "outer_diameter": "72 mm", "width": "19 mm"}}
 

@@ -10,21 +10,21 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from coupling.gears.loaded.contact_pressure import mesh_pressure
-from coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
 from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.rotors import Campbell
 from gearwhine.solve.coupled_system import solve_system
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.signature import SolvedSignature, solve_signature
 from gearwhine.solve.transient import SolvedTransient, solve_transient
-from rotors import Campbell
 
 
 class Drawn(NamedTuple):

@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from coupling.signals.spectrum import Spectrum
+from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.figures.spectra import draw_lines
 
 

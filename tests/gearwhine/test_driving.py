@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.machine.loads import TorqueHistory, TorqueRipple, TorqueSlope, largest_torques
-from coupling.machine.speed_profile import free_speed
-from coupling.signals.spectrum import lines_at
-from coupling.statics.mean_mesh import mean_meshes
-from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
+from gearwhine.coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.machine.loads import TorqueHistory, TorqueRipple, TorqueSlope, largest_torques
+from gearwhine.coupling.machine.speed_profile import free_speed
+from gearwhine.coupling.signals.spectrum import lines_at
+from gearwhine.coupling.statics.mean_mesh import mean_meshes
+from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.from_case.driving import driving, train_inertia
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine

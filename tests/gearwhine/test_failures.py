@@ -5,11 +5,11 @@ import os
 
 import pytest
 
-from coupling.errors import CouplingError, EquilibriumNotFoundError, ModesError, PeriodicError, TransientError
-from coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.case import CaseError, Problem
+from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError, ModesError, PeriodicError, TransientError
+from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
 from gearwhine.failures import PartlyFailedError, WorkersError, explain
-from housing.errors import (
+from gearwhine.housing.errors import (
     EncoderUnavailableError,
     FactorizationError,
     HealthError,
@@ -18,9 +18,9 @@ from housing.errors import (
     ReductionError,
     RendererUnavailableError,
 )
-from meshes.errors import GeometryError, MesherUnavailableError
-from rotors.errors import EquilibriumError, RotorError
-from rotors.errors import IncompleteModesError as RotorIncompleteModesError
+from gearwhine.meshes.errors import GeometryError, MesherUnavailableError
+from gearwhine.rotors.errors import EquilibriumError, RotorError
+from gearwhine.rotors.errors import IncompleteModesError as RotorIncompleteModesError
 
 INPUT = [
     CouplingError,

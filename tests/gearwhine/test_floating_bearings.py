@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling.errors import CouplingError
 from gearwhine.case import CaseError
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.from_case.rotors import build_bearings
 
 BALLS = {"type": "deep-groove", "bore": "40 mm", "outer_diameter": "80 mm", "width": "18 mm"}

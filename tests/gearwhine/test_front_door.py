@@ -17,7 +17,7 @@ from gearwhine.case import Bearing, Material, Rotor
 from gearwhine.cli import run_command
 from gearwhine.failures import explain
 from gearwhine.output.manifest import MANIFEST
-from rotors.rolling_bearings import catalogue_bearing
+from gearwhine.rotors.rolling_bearings import catalogue_bearing
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -197,7 +197,7 @@ def test_the_machine_of_a_case_is_the_one_that_its_analyses_solve() -> None:
     machine = study.machine
     assert isinstance(machine, gw.Machine)
     assert machine.speeds == pytest.approx({"input": gw.rpm(5500.0), "output": -gw.rpm(5500.0)})
-    from coupling import coupled_modes
+    from gearwhine.coupling import coupled_modes
 
     found = coupled_modes(machine.assemble().system).frequencies_hz
     assert found == pytest.approx(study.system().dataset["system_frequency"].values, rel=1e-9)
@@ -217,7 +217,13 @@ def test_wrong_input_is_a_value_error_and_a_failed_proof_a_runtime_error() -> No
     exported = (gw.CaseError, gw.GeometryError, gw.HousingError, gw.RotorError, gw.GearError, gw.CouplingError)
     assert all(issubclass(one, ValueError) for one in exported)
     wrong = proofs = 0
-    for name in ("meshes.errors", "housing.errors", "rotors.errors", "coupling.errors", "coupling.gears.errors"):
+    for name in (
+        "gearwhine.meshes.errors",
+        "gearwhine.housing.errors",
+        "gearwhine.rotors.errors",
+        "gearwhine.coupling.errors",
+        "gearwhine.coupling.gears.errors",
+    ):
         for error in vars(import_module(name)).values():
             if isinstance(error, type) and issubclass(error, Exception) and error.__module__ == name:
                 code, message = explain(error("why"))

@@ -12,10 +12,10 @@ import gearwhine as gw
 from gearwhine import workers
 from gearwhine.cli import run_command
 from gearwhine.failures import WorkersError, explain
+from gearwhine.housing.storage.netcdf import reserve_space, write_netcdf
 from gearwhine.output import staging
 from gearwhine.output.manifest import require_as_written
 from gearwhine.solve.transient_record import stored_record
-from housing.storage.netcdf import reserve_space, write_netcdf
 
 
 @contextmanager

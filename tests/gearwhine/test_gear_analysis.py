@@ -12,15 +12,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coupling.gears import Gear, GearPairGeometry, HelixDeviation, TipRelief, loaded_transmission_error, tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT
-from coupling.gears.loaded.optimal_relief import transmission_error_harmonics
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.linear.sensor_level import SensorLevel
-from coupling.statics.mean_mesh import mean_contact
 from gearwhine.case import Case, load_case, parse_case
+from gearwhine.coupling.gears import (
+    Gear,
+    GearPairGeometry,
+    HelixDeviation,
+    TipRelief,
+    loaded_transmission_error,
+    tooth_contact,
+)
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT
+from gearwhine.coupling.gears.loaded.optimal_relief import transmission_error_harmonics
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.linear.sensor_level import SensorLevel
+from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.output.dataset import arrays_of, labelled
 from gearwhine.output.terminal import show

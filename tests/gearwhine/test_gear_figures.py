@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-from coupling.gears import (
+from gearwhine.case import load_case
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     HelixDeviation,
@@ -24,9 +25,8 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.contact_pressure import mesh_pressure
-from gearwhine.case import load_case
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.figures import draw_gear_pairs, save, save_all
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from gearwhine.case import CaseError, load_case
+from gearwhine.housing.correlation.comparison import Pairing
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
 from gearwhine.output import finite, json_text
 from gearwhine.output.terminal import shown_by
 from gearwhine.results.comparison import comparison_document, sections
 from gearwhine.solve.comparison import compare_housing, pair_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from housing.correlation.comparison import Pairing
-from housing.measured import MeasuredGeometry, MeasuredModes
 
 CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
 

@@ -15,8 +15,8 @@ from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load
 from gearwhine.cli import run_command
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import fitted_case
-from meshes import Mesh, write_mesh
-from rotors import Bearing, Rotor, Segment, ShaftMaterial, write_ross
+from gearwhine.meshes import Mesh, write_mesh
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, write_ross
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 

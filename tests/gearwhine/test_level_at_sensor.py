@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from coupling.errors import CouplingError
-from coupling.gears import TipRelief, loaded_transmission_error
-from coupling.gears.loaded.gear_pair import LoadedGearPair
-from coupling.gears.loaded.optimal_relief import PeakToPeak
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.linear.line_sensitivity import LineModel
-from coupling.linear.sensor_level import SensorLevel
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.case.gears import ReliefAim
+from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.gears import TipRelief, loaded_transmission_error
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims, solve_over_torques

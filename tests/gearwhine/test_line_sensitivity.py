@@ -9,21 +9,28 @@ import pytest
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
-from coupling import MachineLoads, assemble_machine, machine_description
-from coupling.gears.contact.face_slices import face_stations
-from coupling.gears.loaded.transmission_error import loaded_transmission_error, mesh_period_phases, period_mean
-from coupling.linear import line_sensitivity
-from coupling.linear.housing_rates import HousingRates
-from coupling.linear.line_sensitivity import Line, LineModel
-from coupling.machine.mounted_parts import MountedBearing
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import adjoint
-from coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.coupling import MachineLoads, assemble_machine, machine_description
+from gearwhine.coupling.gears.contact.face_slices import face_stations
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    loaded_transmission_error,
+    mesh_period_phases,
+    period_mean,
+)
+from gearwhine.coupling.linear import line_sensitivity
+from gearwhine.coupling.linear.housing_rates import HousingRates
+from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import adjoint
+from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing.material import element_constants
+from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
+from gearwhine.meshes import Mesh
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
@@ -32,9 +39,6 @@ from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity import ranking
 from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
-from housing.material import element_constants
-from housing.updating.static_sensitivity import harmonic_surface_density
-from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,14 +5,14 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from coupling import periodic_response
-from coupling.gears import ToothContact
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.loaded.transmission_error import loaded_transmission_error
-from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.line_sensitivity import LineModel
-from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import Case, case_document, load_case, parse_case
+from gearwhine.coupling import periodic_response
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.loaded.transmission_error import loaded_transmission_error
+from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.housing_modes import solve_housing

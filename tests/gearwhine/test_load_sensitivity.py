@@ -8,12 +8,14 @@ import numpy.typing as npt
 import pytest
 
 import gearwhine as gw
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, pair_adjoints
 from gearwhine.case import Case, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.case.box import FACES
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
+from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
@@ -25,8 +27,6 @@ from gearwhine.solve.sensitivity.housing_changes import (
     housing_fields,
     housing_parameters,
 )
-from housing.updating.static_sensitivity import StaticSensitivity
-from meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,19 +11,19 @@ import pytest
 import xarray as xr
 
 import gearwhine as gw
-from coupling.errors import EquilibriumNotFoundError
-from coupling.gears import loaded_transmission_error
 from gearwhine.analyses import machine as analyses
 from gearwhine.case import CaseError, dump_case, load_case, parse_case, swept_keys
 from gearwhine.cli import run_command
+from gearwhine.coupling.errors import EquilibriumNotFoundError
+from gearwhine.coupling.gears import loaded_transmission_error
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
+from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibrium
 from gearwhine.solve.machine import solve_machine, solve_pairs
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.solution import solve_point
-from rotors.rolling_bearings import RollingBearing, rolling_equilibrium
 
 pytestmark = pytest.mark.usefixtures("unrendered")
 
@@ -75,7 +75,7 @@ def case() -> gw.Case:
 
 def test_bearings_are_linearised_where_the_machine_rests(case: gw.Case) -> None:
     """The coupled machine's mean bearing forces are those of the operating point, its stiffness the tangent there."""
-    from coupling.statics.static_equilibrium import static_equilibrium
+    from gearwhine.coupling.statics.static_equilibrium import static_equilibrium
 
     point = describe_machine(case).operating_point()
     _, _, machine = solve_machine(case)
@@ -235,7 +235,7 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     def none_found(*parts: Any) -> None:
         raise EquilibriumNotFoundError("no static equilibrium of the machine")
 
-    monkeypatch.setattr("coupling.machine_description.solve_operating_point", none_found)
+    monkeypatch.setattr("gearwhine.coupling.machine_description.solve_operating_point", none_found)
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
+from gearwhine.housing.measured.survey_planning import survey_grid
+from gearwhine.meshes import Mesh
 from gearwhine.results.check import check_document, measured_document
 from gearwhine.results.comparison import survey_document
 from gearwhine.solve.comparison import map_measured, read_measured
-from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
-from housing.measured.survey_planning import survey_grid
-from meshes import Mesh
 
 RIG: dict[str, Any] = case_document(load_case("nasa-gear-noise-rig").case)
 COARSE = np.array([[-0.1395, 0.0, -0.165], [0.1395, 0.254, 0.165]])

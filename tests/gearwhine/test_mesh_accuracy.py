@@ -7,9 +7,9 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case import CaseError
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.solve.housing_modes import mode_cache_inputs, solve_housing
 from gearwhine.solve.mesh_refinement import RefinementStep, next_size
-from housing.storage.netcdf import content_key
 
 CASE = """
 [material.steel]

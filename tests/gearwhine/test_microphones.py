@@ -5,10 +5,10 @@ import numpy.typing as npt
 import pytest
 from sounding_gearbox import quick_run
 
-from coupling import CoupledMachine
-from coupling.signals.transfer_paths import housing_paths
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.signals.transfer_paths import housing_paths
+from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 from gearwhine.solve.sound.microphones import FADE, fading_weights, microphone_histories
-from housing.acoustics.modal_radiation import ModalRadiation
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,12 +11,12 @@ import pytest
 import gearwhine
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.housing.modes import eigensolver
+from gearwhine.housing.modes.eigensolver import arpack_modes
+from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.meshes import write_mesh
 from gearwhine.output.files import _source_files, source_digest
 from gearwhine.solve.housing_modes import MODES_CODE, mode_cache_inputs, solve_housing
-from housing.modes import eigensolver
-from housing.modes.eigensolver import arpack_modes
-from housing.storage.netcdf import content_key
-from meshes import write_mesh
 
 CASE = "nasa-gear-noise-rig"
 

@@ -9,8 +9,9 @@ import pytest
 from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sounding_housing, swept_point
 
 import gearwhine as gw
-from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import CaseError, load_case, swept_keys
+from gearwhine.coupling.signals.spectrum import amplitude_spectrum
+from gearwhine.housing.pictures.drawn_shapes import drawn_housing
 from gearwhine.results.motion import _line as motion_words
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
 from gearwhine.solve.sound.acoustics_checks import microphones_of
@@ -19,7 +20,6 @@ from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep import SweptPoint, sweep_points
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
-from housing.pictures.drawn_shapes import drawn_housing
 
 FloatArray = npt.NDArray[np.float64]
 

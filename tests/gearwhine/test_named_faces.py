@@ -8,12 +8,12 @@ import pytest
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.surface_velocity import surface_velocity
+from gearwhine.housing.acoustics.wrapping import wrap
+from gearwhine.housing.fem.surface import flat_face_names
+from gearwhine.meshes import Mesh, write_mesh
 from gearwhine.solve.sensitivity.housing_changes import face_changes
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.surface_velocity import surface_velocity
-from housing.acoustics.wrapping import wrap
-from housing.fem.surface import flat_face_names
-from meshes import Mesh, write_mesh
 
 CASE = """
 [material.steel]

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from gearwhine.housing.updating import NullFit
 from gearwhine.solve.updating import NullTest
-from housing.updating import NullFit
 
 
 def fit(rms: float, largest: float, gap: float = 0.5, *, agree: bool = True, met: bool = False) -> NullFit:

@@ -10,13 +10,13 @@ import pytest
 from odd_but_sound import MACHINES, on_balls
 
 import gearwhine as gw
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.loaded.gear_pair import GearPair, load_gear_pair
 from gearwhine.analyses.case import check
 from gearwhine.case import parse_case
-from housing.material import STEEL
-from rotors import Bearing, Rotor, Segment
-from rotors.analyses.rest_frequencies import rest_frequencies
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair, load_gear_pair
+from gearwhine.housing.material import STEEL
+from gearwhine.rotors import Bearing, Rotor, Segment
+from gearwhine.rotors.analyses.rest_frequencies import rest_frequencies
 
 
 def test_there_are_sixty() -> None:

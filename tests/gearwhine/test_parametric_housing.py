@@ -8,8 +8,8 @@ import pytest
 from gearwhine.case import case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import ParametricHousing, _followed, fitted_case
-from housing import HousingError, assemble
-from housing.updating.parameters import coordinate_bounds, values_at
+from gearwhine.housing import HousingError, assemble
+from gearwhine.housing.updating.parameters import coordinate_bounds, values_at
 
 NUMBERS: list[tuple[list[str], list[Any], Any]] = [
     (["housing.box.wall.top"], ["6 mm", "20 mm"], "3 mm"),

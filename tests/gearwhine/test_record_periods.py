@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling.signals.spectrum import Spectrum, amplitude_spectrum
-from coupling.signals.tones import hann_tones
 from gearwhine.case import CaseError, load_case
+from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
+from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.solve.machine import solve_machine
 from gearwhine.solve.transient_record import Sampling, sampling
 

@@ -13,11 +13,11 @@ from looked_at import HOSTILE, brightness, in_sight, look_at, moved
 from PIL import Image
 
 from gearwhine.case import load_case
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
+from gearwhine.housing.pictures.gltf import light_model
 from gearwhine.output.report import Contents, MovingShape, report_page
 from gearwhine.results import chapters_of
 from gearwhine.results.first_page import first_page
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-from housing.pictures.gltf import light_model
 
 PROGRAM = find_chromium()
 pytestmark = pytest.mark.skipif(

@@ -8,8 +8,8 @@ import pytest
 
 from gearwhine.case import CadFile, load_case
 from gearwhine.from_case.mesh import bores_along_axes, build_mesh
-from meshes import GeometryError, find_bores, mesh_cad
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes import GeometryError, find_bores, mesh_cad
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 

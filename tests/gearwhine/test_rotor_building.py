@@ -20,7 +20,7 @@ from gearwhine.case import (
     whirl_speeds,
 )
 from gearwhine.from_case.rotors import build_bearings, build_rotor
-from rotors import Coupling, Rotor, Segment, ShaftMaterial
+from gearwhine.rotors import Coupling, Rotor, Segment, ShaftMaterial
 
 RPM = math.pi / 30.0
 STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}

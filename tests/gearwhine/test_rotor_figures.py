@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
-import rotors
+from gearwhine import rotors
 from gearwhine.figures import RotorAssembly, draw_lateral_modes, draw_shaft, save
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnProbe, DrawnUnbalance
 from gearwhine.figures.rotors.mode_shapes import (

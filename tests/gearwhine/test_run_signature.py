@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from idler_case import idler
 
-from coupling import SpeedProfile
-from coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.case import Case, load_case, mesh_frequencies
+from gearwhine.coupling import SpeedProfile
+from gearwhine.coupling.signals.spectrum import amplitude_spectrum
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run
 from gearwhine.figures.machine.transient import _speed
 from gearwhine.from_case.gear_pairs import solve_gears

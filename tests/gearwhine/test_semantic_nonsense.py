@@ -16,19 +16,19 @@ from odd_but_sound import bundled, changed, shaft
 from semantic_nonsense import NONSENSE
 
 import gearwhine as gw
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
-from coupling.errors import TransientError
-from coupling.gears import Gear
-from coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.analyses.case import check
 from gearwhine.case import CaseError, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.case.load import bundled_names, load_case
+from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.errors import TransientError
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.from_case.parametric_housing import fitted_case
-from housing import Support
-from housing.material import STEEL, Material
-from rotors import Bearing, Disc, Rotor, Segment
-from rotors.rolling_bearings import BallRow, RollerRow, paired
+from gearwhine.housing import Support
+from gearwhine.housing.material import STEEL, Material
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment
+from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, paired
 
 
 def test_there_are_a_hundred() -> None:

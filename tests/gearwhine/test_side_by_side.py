@@ -4,8 +4,8 @@ import os
 
 import pytest
 
+from gearwhine.housing import HousingError
 from gearwhine.solve.updating import in_parallel
-from housing import HousingError
 
 
 def test_results_come_in_the_order_of_the_tasks_from_other_processes() -> None:

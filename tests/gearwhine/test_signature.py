@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coupling import coupled_modes
 from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.coupling import coupled_modes
 from gearwhine.results.run import transient_document
 from gearwhine.solve import transient_record
 from gearwhine.solve.machine import solve_machine

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coupling import SpeedProfile
-from coupling.signals import LineName, order_map, resample_by_angle, spectrogram
+from gearwhine.coupling import SpeedProfile
+from gearwhine.coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.gears.transmission_error import _name
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_map

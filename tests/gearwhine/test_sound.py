@@ -12,6 +12,7 @@ from sounding_gearbox import swept_point
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.cli.command_line import run_command
+from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 from gearwhine.output.export import write_sounds
 from gearwhine.output.files import staging
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
@@ -20,7 +21,6 @@ from gearwhine.solve.sound.microphones import microphone_histories
 from gearwhine.solve.sound.solution import build_radiation
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
-from housing.acoustics.modal_radiation import ModalRadiation
 
 pytestmark = pytest.mark.slow
 

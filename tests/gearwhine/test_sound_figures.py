@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from sounding_box import sound_of_lines, sound_of_modes
 
 from gearwhine.figures import draw_sound, draw_sweep
+from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
 from gearwhine.solve.sound.solution import SolvedSound
-from housing.acoustics.sound_levels import a_weighting
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,9 @@ from sounding_gearbox import TOP, quick_run, sounding_gearbox, sounding_housing,
 
 import gearwhine as gw
 from gearwhine.case import Case, swept_keys
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics import boundary_elements, radiation, wrapping
+from gearwhine.housing.acoustics.radiation import counting
 from gearwhine.solve.sound.motion_lines import MotionLines
 from gearwhine.solve.sound.proofs import (
     doubts,
@@ -23,9 +26,6 @@ from gearwhine.solve.sound.proofs import (
 from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
-from housing import HousingError
-from housing.acoustics import boundary_elements, radiation, wrapping
-from housing.acoustics.radiation import counting
 
 
 def sound(power: float, surface_power: float) -> Any:

@@ -8,6 +8,8 @@ import pytest
 from sounding_box import COARSE, sound_of_lines, sound_of_modes
 
 import gearwhine as gw
+from gearwhine.housing.acoustics.boundary_elements import SoundField
+from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.output.dataset import labelled
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results import chapters_of, run
@@ -17,8 +19,6 @@ from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.sound.motion_lines import LeftOut
 from gearwhine.solve.sound.proofs import doubts
 from gearwhine.solve.sound.solution import SolvedSound, SoundLine
-from housing.acoustics.boundary_elements import SoundField
-from housing.acoustics.radiation import HousingRadiation
 
 
 @pytest.fixture(scope="module")

@@ -9,15 +9,19 @@ import pytest
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
-from coupling.linear.housing_rates import HousingRates
-from coupling.linear.line_sensitivity import LineModel
-from coupling.machine_description import Machine
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import adjoint
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
+from gearwhine.coupling.linear.housing_rates import HousingRates
+from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.acoustics.sound_levels import a_weighting
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.shape_functions import shape_functions
 from gearwhine.output.sections import Table
 from gearwhine.progress import silent
 from gearwhine.results.operating_point import sections
@@ -29,10 +33,6 @@ from gearwhine.solve.sensitivity.influences import LineChange
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
 from gearwhine.solve.sound import solution
 from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
-from housing.acoustics.radiation import HousingRadiation
-from housing.acoustics.sound_levels import a_weighting
-from meshes import Mesh
-from meshes.shape_functions import shape_functions
 
 FloatArray = npt.NDArray[np.float64]
 

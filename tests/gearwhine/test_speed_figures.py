@@ -8,12 +8,12 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import rotors
+from gearwhine import rotors
 from gearwhine.figures import ProbeResponse, draw_campbell, draw_critical_map, draw_unbalance_response
 from gearwhine.figures.rotors.critical_speed_map import map_intersections
 from gearwhine.figures.rotors.responses import phase_lag
-from rotors import Campbell
-from rotors.analyses.campbell import stability_onset
+from gearwhine.rotors import Campbell
+from gearwhine.rotors.analyses.campbell import stability_onset
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEEDS = np.linspace(0.0, 400.0, 21)

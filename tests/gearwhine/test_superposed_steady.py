@@ -9,15 +9,15 @@ import pytest
 import xarray as xr
 from reducer_case import reducer
 
-from coupling import CoupledMachine, PeriodicError, amplitude_spectrum
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.periodic import orbit, periodic_response, shooting, superposed_response
-from coupling.periodic.response import PeriodicResponse
-from coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
-from coupling.time.histories import histories, transient_outputs
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli import run_command
+from gearwhine.coupling import CoupledMachine, PeriodicError, amplitude_spectrum
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.periodic import orbit, periodic_response, shooting, superposed_response
+from gearwhine.coupling.periodic.response import PeriodicResponse
+from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
+from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results import chapters_of
 from gearwhine.results.steady_state import steady_document

@@ -17,6 +17,7 @@ from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import build_machine, reduce_housing
 from gearwhine.solve.transient import solve_transient
@@ -24,7 +25,6 @@ from gearwhine.sweep import PointFailure, PointResult, SweptPoint, collected_swe
 from gearwhine.sweep.points import code_digest
 from gearwhine.sweep.run import run_sweep
 from gearwhine.sweep.solution import outdated_points, read_point, solve_point, write_point
-from meshes import read_mesh, write_mesh
 
 COARSE = ("housing.box.mesh_size=50 mm", "transient.revolutions=2", "transient.discard=1", "transient.tolerance=1e-3")
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from coupling import amplitude_spectrum
 from gearwhine.case import SweptKey, case_document, dump_case
 from gearwhine.case.swept_keys import parse_over
+from gearwhine.coupling import amplitude_spectrum
 from gearwhine.output.quantity import document_of
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results.first_page import first_page

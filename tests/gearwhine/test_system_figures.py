@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from coupling.linear.campbell import SystemCampbell, SystemCrossing
-from coupling.linear.excitation_orders import ExcitationLine
-from coupling.linear.frequency_response import FrequencyResponse
+from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
+from gearwhine.coupling.linear.excitation_orders import ExcitationLine
+from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.figures.machine.system import KIND_COLORS, draw_system_campbell, draw_transmissibility
 
 RPM = 60.0 / (2.0 * math.pi)

@@ -55,7 +55,7 @@ def test_a_session_waits_for_that_of_another_thread() -> None:
     done = _python(
         """
 import threading
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 order, opened, ended = [], threading.Event(), threading.Event()
 
 def other():
@@ -81,8 +81,8 @@ def test_a_session_of_other_code_is_refused_and_keeps_its_models() -> None:
     done = _python(
         """
 import gmsh
-from meshes.errors import MesherUnavailableError
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes.errors import MesherUnavailableError
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 gmsh.initialize()
 gmsh.model.add("mine")
 try:
@@ -103,7 +103,7 @@ def test_the_sparse_solver_outlives_the_thread_that_needed_it_first() -> None:
 import threading
 import numpy as np
 from scipy import sparse
-from housing.fem.factorization import Factorizer
+from gearwhine.housing.fem.factorization import Factorizer
 
 def solve(found):
     matrix = sparse.diags_array([-1.0, 4.0, -1.0], offsets=[-1, 0, 1], shape=(300, 300), format="csr")

@@ -12,9 +12,9 @@ import pytest
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
+from gearwhine.housing import HousingError, assemble, solve_modes
+from gearwhine.housing.updating import ModeCount, Target, measure
 from gearwhine.solve.updating import update_housing
-from housing import HousingError, assemble, solve_modes
-from housing.updating import ModeCount, Target, measure
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from gearwhine.housing.updating import UNPAIRED, Misfit
 from gearwhine.solve.updating import noise_warnings
-from housing.updating import UNPAIRED, Misfit
 
 
 def misfit(*errors: float) -> Misfit:

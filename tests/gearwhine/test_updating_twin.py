@@ -17,8 +17,8 @@ from scipy.stats import chi2
 
 from gearwhine.case import Case, parse_case
 from gearwhine.from_case.parametric_housing import HousingAtParameters, ParametricHousing, fitted_case
-from housing.measured.survey_planning import survey_grid
-from housing.updating import (
+from gearwhine.housing.measured.survey_planning import survey_grid
+from gearwhine.housing.updating import (
     UNPAIRED,
     Effort,
     ModalState,
@@ -30,8 +30,8 @@ from housing.updating import (
     posterior,
     search,
 )
-from housing.updating.parameters import coordinate_bounds
-from meshes import Mesh
+from gearwhine.housing.updating.parameters import coordinate_bounds
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from gearwhine.case import load_case
+from gearwhine.meshes import Mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
-from meshes import Mesh, write_mesh
 
 CASE = """
 title = "block"

@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import Material, assemble
-from housing.fem.matrices import Matrices
-from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.housing import Material, assemble
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 _EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
 

@@ -10,11 +10,11 @@ import skfem
 from scipy import sparse
 from skfem.helpers import ddot, div, dot, sym_grad, trace
 
-from housing import HousingError, Material, assemble
-from housing.fem.matrices import Matrices
-from meshes import ElementBlock, Mesh
-from meshes.elements import KINDS, SOLIDS, facet_nodes
-from meshes.shape_functions import node_order, quadrature, reference_element
+from gearwhine.housing import HousingError, Material, assemble
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import KINDS, SOLIDS, facet_nodes
+from gearwhine.meshes.shape_functions import node_order, quadrature, reference_element
 
 
 def _skfem_mesh(kind: str) -> tuple[type, type]:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import (
+from gearwhine.housing import (
     Bushing,
     HousingError,
     Joint,
@@ -19,11 +19,11 @@ from housing import (
     attach_fixtures,
     solve_modes,
 )
-from housing.fem.matrices import Matrices
-from housing.model.bushings import Axial, axes_along
-from housing.model.fixtures import MOST_PATCH_NODES, port_fixture_matrices
-from housing.model.patches import rigid_motions
-from meshes import Mesh
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.bushings import Axial, axes_along
+from gearwhine.housing.model.fixtures import MOST_PATCH_NODES, port_fixture_matrices
+from gearwhine.housing.model.patches import rigid_motions
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 SIDES = (0.10, 0.08, 0.06)

@@ -10,8 +10,8 @@ from dataclasses import astuple
 import numpy as np
 import pytest
 
-from housing import HousingError, Material, bolted_joint
-from housing.model.bolted_joints import bolt_stiffness, frustum_stiffness, stress_area
+from gearwhine.housing import HousingError, Material, bolted_joint
+from gearwhine.housing.model.bolted_joints import bolt_stiffness, frustum_stiffness, stress_area
 
 INCH, MLBF_PER_INCH, MPSI = 0.0254, 1e6 * 4.4482216152605 / 0.0254, 6894.757293168e6
 STEEL, IRON = 30 * MPSI, 14.5 * MPSI

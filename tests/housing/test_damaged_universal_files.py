@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from universal_surveys import FUNCTION, POINTS, SHAPE, by_pyuff, one_function, survey
 
-from housing import HousingError
-from housing.errors import MeasuredDataError
-from housing.measured import read_universal, write_universal
+from gearwhine.housing import HousingError
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured import read_universal, write_universal
 
 
 def damaged(path: Path, change: Callable[[bytes], bytes]) -> Path:

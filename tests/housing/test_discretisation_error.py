@@ -7,13 +7,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import Housing, LumpedMass, Material, Support, assemble, solve_modes
-from housing.material import element_constants
-from housing.modes.discretisation_error import discretisation_errors, fixture_nodes
-from housing.modes.natural_modes import ModeSet
-from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
-from meshes.box import WallThickness
-from meshes.elements import SOLIDS, facet_nodes
+from gearwhine.housing import Housing, LumpedMass, Material, Support, assemble, solve_modes
+from gearwhine.housing.material import element_constants
+from gearwhine.housing.modes.discretisation_error import discretisation_errors, fixture_nodes
+from gearwhine.housing.modes.natural_modes import ModeSet
+from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
+from gearwhine.meshes.box import WallThickness
+from gearwhine.meshes.elements import SOLIDS, facet_nodes
 
 STEEL = Material(207e9, 0.3, 7850.0)
 FloatArray = npt.NDArray[np.float64]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from housing import HousingError, compare_by_dominance
-from housing.modes.dominance import Dominance
+from gearwhine.housing import HousingError, compare_by_dominance
+from gearwhine.housing.modes.dominance import Dominance
 
 FREQUENCIES = np.array([100.0, 205.0, 290.0, 310.0, 420.0, 900.0])
 STRENGTHS = np.array([7.0, 5.0, 1.0, 6.0, 2.0, 50.0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from housing.modes.dominance import Dominance, dominance
+from gearwhine.housing.modes.dominance import Dominance, dominance
 
 
 def test_strength_of_two_modes_by_hand() -> None:

@@ -7,13 +7,13 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-from housing import HousingError, Material, ModeSet, Seat, Support, assemble, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.seats import seat_matrix
-from housing.model.supports import fixed_freedoms
-from housing.modes.natural_modes import ModeSetExtension
-from housing.modes.residual_modes import leading_residual_modes
-from meshes import Mesh
+from gearwhine.housing import HousingError, Material, ModeSet, Seat, Support, assemble, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import seat_matrix
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes.natural_modes import ModeSetExtension
+from gearwhine.housing.modes.residual_modes import leading_residual_modes
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,11 +7,11 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import Certificate, Housing, Material, ModeSet, Support, assemble, effective_mass, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.patches import rigid_body, rigid_motions
-from housing.model.supports import fixed_freedoms
-from meshes import Mesh
+from gearwhine.housing import Certificate, Housing, Material, ModeSet, Support, assemble, effective_mass, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.patches import rigid_body, rigid_motions
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

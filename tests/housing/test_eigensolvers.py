@@ -6,11 +6,11 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
-import housing.modes.eigensolver
-from housing import Housing, HousingError, IncompleteModesError, Material, assemble, solve_modes
-from housing.fem.matrices import Matrices
-from housing.modes.eigensolver import Solver, arpack_modes
-from meshes import ElementBlock, Mesh
+from gearwhine.housing import Housing, HousingError, IncompleteModesError, Material, assemble, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes import eigensolver
+from gearwhine.housing.modes.eigensolver import Solver, arpack_modes
+from gearwhine.meshes import ElementBlock, Mesh
 
 SOLVERS = pytest.mark.parametrize("solver", get_args(Solver))
 SIDE, WALL, LENGTH, CELLS, SLICES = 0.1, 0.01, 0.3, 6, 6
@@ -72,7 +72,7 @@ def test_certificate_catches_eigsh_that_misses_one_of_a_double_mode(
         values, vectors = arpack_modes(*arguments, **options)
         return np.delete(values, pair), np.delete(vectors, pair, axis=1)
 
-    monkeypatch.setattr(housing.modes.eigensolver, "arpack_modes", missing)
+    monkeypatch.setattr(eigensolver, "arpack_modes", missing)
     with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
         solve_modes(square_tube, frequency_limit=honest.certificate.limit, solver="eigsh")
 
@@ -88,7 +88,7 @@ def test_eigsh_that_does_not_converge_is_tried_again_and_then_refused(
         tried.append(ncv)
         raise ArpackNoConvergence("No convergence", np.empty(0), np.empty((0, 0)))
 
-    monkeypatch.setattr(housing.modes.eigensolver, "eigsh", stuck)
+    monkeypatch.setattr(eigensolver, "eigsh", stuck)
     with pytest.raises(IncompleteModesError, match="eigsh did not converge to 44 modes"):
         solve_modes(square_tube, count=12, solver="eigsh")
     assert tried == sorted(set(tried))
@@ -109,7 +109,7 @@ def test_a_housing_hands_the_choice_on(
         calls.append(options)
         return arpack_modes(*arguments, **options)
 
-    monkeypatch.setattr(housing.modes.eigensolver, "arpack_modes", counted)
+    monkeypatch.setattr(eigensolver, "arpack_modes", counted)
     solid = Housing(block((0.10, 0.07, 0.05), (2, 1, 1)), steel)
     own = solid.modes(count=9)
     assert not calls

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy import linalg, sparse
 
-import housing.fem.factorization
-from housing.errors import FactorizationError
-from housing.fem.factorization import Factorizer, default_backend
-from housing.fem.matrices import Matrices
-from meshes import Mesh
+from gearwhine.housing.errors import FactorizationError
+from gearwhine.housing.fem import factorization
+from gearwhine.housing.fem.factorization import Factorizer, default_backend
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.meshes import Mesh
 
 Backend = Literal["rslab", "superlu"]
 BACKENDS = pytest.mark.parametrize("backend", ["rslab", "superlu"])
@@ -68,7 +68,7 @@ def test_a_free_body_at_rest_is_singular_even_where_rounding_hides_it(box_matric
 
 
 def test_a_backend_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(housing.fem.factorization, "can_import", lambda module: False)
+    monkeypatch.setattr(factorization, "can_import", lambda module: False)
     with pytest.raises(FactorizationError, match="rslab needs the package rslab, which is not installed"):
         Factorizer(backend="rslab")
     assert Factorizer().backend == "superlu"

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from housing.storage.atomic_file import checksum_holds, write_checksum
+from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 
 anywhere = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 

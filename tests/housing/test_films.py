@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from housing.errors import EncoderUnavailableError, RendererUnavailableError
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
-from housing.pictures.images import animate_shapes, find_encoder
-from housing.pictures.scene import find_renderer
-from meshes import Mesh
+from gearwhine.housing.errors import EncoderUnavailableError, RendererUnavailableError
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
+from gearwhine.housing.pictures.images import animate_shapes, find_encoder
+from gearwhine.housing.pictures.scene import find_renderer
+from gearwhine.meshes import Mesh
 
 
 @pytest.fixture(scope="module")

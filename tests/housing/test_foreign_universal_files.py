@@ -8,7 +8,7 @@ import pytest
 import pyuff
 from universal_surveys import FUNCTION, MILLIMETRES, POINTS, SHAPE, SIX_DIGITS, by_pyuff, one_function
 
-from housing.measured import read_universal, write_universal
+from gearwhine.housing.measured import read_universal, write_universal
 
 # Public files are read where they are at hand: the folder `data` of https://github.com/ladisk/pyuff (MIT).
 PUBLIC = Path(os.environ.get("GEARWHINE_PYUFF_DATA", "")) / "TestLab 161 164 18 15 82.uff"

@@ -13,11 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from housing import HousingError, LumpedMass, Material, Patch, assemble, attach_fixtures
-from housing.fem import linear_algebra as symmetric
-from housing.fem.linear_algebra import SymmetricMatrix
-from housing.fem.matrices import FreeMass, FreeSystem, Matrices
-from meshes import Mesh
+from gearwhine.housing import HousingError, LumpedMass, Material, Patch, assemble, attach_fixtures
+from gearwhine.housing.fem import linear_algebra as symmetric
+from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
+from gearwhine.housing.fem.matrices import FreeMass, FreeSystem, Matrices
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

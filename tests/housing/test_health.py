@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import (
+from gearwhine.housing import (
     Certificate,
     HealthReport,
     Material,
@@ -18,13 +18,13 @@ from housing import (
     health_report,
     solve_modes,
 )
-from housing.errors import HealthError
-from housing.fem.matrices import Matrices
-from housing.material import enclosed_volume
-from housing.model.seats import seat_matrix
-from housing.model.supports import grounding
-from housing.modes.health import HealthLine
-from meshes import Mesh
+from gearwhine.housing.errors import HealthError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.material import enclosed_volume
+from gearwhine.housing.model.seats import seat_matrix
+from gearwhine.housing.model.supports import grounding
+from gearwhine.housing.modes.health import HealthLine
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -65,7 +65,7 @@ def test_a_sound_housing_passes(box: Mesh, box_matrices: Matrices, sprung: Matri
 
 def test_volume_and_centroid_of_a_cylinder_bored_box(box: Mesh) -> None:
     """Against the sums of the elements' own volumes, whose corners' part is exact for the straight ones."""
-    from housing.fem.assembly import assemble as sum_elements
+    from gearwhine.housing.fem.assembly import assemble as sum_elements
 
     body = sum_elements(box, Material(207e9, 0.3, 1.0))  # of unit density: its mass is its volume
     volume, center = enclosed_volume(box)

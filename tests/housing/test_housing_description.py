@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
-from housing.housing import bearing_port, cover_joints
-from housing.model.bushings import Bushing
-from meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
-from meshes.box import Bore, Cover, CoverBolts, WallThickness
+from gearwhine.housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
+from gearwhine.housing.housing import bearing_port, cover_joints
+from gearwhine.housing.model.bushings import Bushing
+from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
+from gearwhine.meshes.box import Bore, Cover, CoverBolts, WallThickness
 
 STEEL = Material(207e9, 0.3, 7850.0)
 FOOT = Support("floor", surface="bottom", fixed=(True, True, True))

@@ -4,9 +4,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError
-from housing.errors import MeasuredDataError
-from housing.measured import MeasuredGeometry, MeasuredResponses, StabilityRule, identify_modes
+from gearwhine.housing import HousingError
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredResponses, StabilityRule, identify_modes
 
 FREQUENCIES_HZ = np.array([120.3, 180.0, 196.0, 401.7, 610.2, 890.5])
 RATIOS = np.array([0.01, 0.008, 0.012, 0.005, 0.02, 0.003])

@@ -7,10 +7,10 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
-from housing import HousingError, LumpedMass, Material, Patch, Support, assemble, attach_fixtures, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.patches import RigidBody, rigid_body
-from meshes import Mesh
+from gearwhine.housing import HousingError, LumpedMass, Material, Patch, Support, assemble, attach_fixtures, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.patches import RigidBody, rigid_body
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 INERTIA = ((0.020, 0.003, -0.001), (0.003, 0.030, 0.002), (-0.001, 0.002, 0.025))

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import LumpedMass, Material, Patch, assemble, attach_fixtures
-from housing.fem.matrices import Matrices
-from housing.material import mass_properties
-from housing.model.patches import rigid_body
-from meshes import Mesh
-from meshes.elements import SOLIDS
+from gearwhine.housing import LumpedMass, Material, Patch, assemble, attach_fixtures
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.material import mass_properties
+from gearwhine.housing.model.patches import rigid_body
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import SOLIDS
 
 
 @pytest.mark.parametrize("kind", SOLIDS)

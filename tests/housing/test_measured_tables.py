@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from housing.errors import MeasuredDataError
-from housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, read_survey, read_table, write_table
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, SurveyData, read_survey, read_table, write_table
 
 
 def table(tmp_path: Path, text: str, name: str = "modes.csv") -> Path:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-import housing.fem.factorization
 from gearwhine.failures import explain
-from housing.fem.factorization import available_memory, check_memory
+from gearwhine.housing.fem import factorization
+from gearwhine.housing.fem.factorization import available_memory, check_memory
 
 GB = 1e9
 
@@ -42,7 +42,7 @@ def test_the_first_version_of_control_groups_is_read_as_well(tmp_path: Path) -> 
 
 
 def test_what_does_not_fit_is_refused_with_both_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(housing.fem.factorization, "available_memory", lambda: 2.0 * GB)
+    monkeypatch.setattr(factorization, "available_memory", lambda: 2.0 * GB)
     check_memory(2.0 * GB, "the factor")
     with pytest.raises(
         MemoryError, match=r"the factor needs 3 GB of memory, and 2 GB are available; .*mesh_size"
@@ -60,8 +60,8 @@ _FACTOR = """
 import resource
 import numpy as np
 from scipy import sparse
-from housing.fem.factorization import Factorizer
-from housing.fem.linear_algebra import SymmetricMatrix
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.housing.fem.linear_algebra import SymmetricMatrix
 
 n = 16
 line = sparse.diags_array([-np.ones(n - 1), 2.0 * np.ones(n), -np.ones(n - 1)], offsets=[-1, 0, 1])

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import (
+from gearwhine.housing import (
     Bushing,
     Material,
     ModeSet,
@@ -18,8 +18,8 @@ from housing import (
     modal_damping,
     solve_modes,
 )
-from housing.modes.effective_mass import damping_ratios
-from meshes import Mesh
+from gearwhine.housing.modes.effective_mass import damping_ratios
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,12 +7,12 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
-from housing.fem.matrices import Matrices
-from housing.material import element_constants
-from housing.model.supports import fixed_freedoms
-from housing.updating import ModelSensitivity, modal_sensitivities
-from meshes import BoxGeometry, BoxMorph, Mesh
+from gearwhine.housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.material import element_constants
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.updating import ModelSensitivity, modal_sensitivities
+from gearwhine.meshes import BoxGeometry, BoxMorph, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

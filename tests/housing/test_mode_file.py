@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from housing import Certificate, HousingError, ModeSet, Seat, Sensor, read_modes, solve_modes, write_modes
-from housing.errors import ModeFileError
-from housing.fem.matrices import Matrices
-from housing.model.seats import seat_matrix, sensor_port
-from housing.storage.mesh_arrays import mesh_digest
-from housing.storage.mode_file import ModeRecord, with_sensors
-from housing.storage.netcdf import LabelledArray
-from meshes import ElementBlock, Mesh
-from meshes.elements import Facets
+from gearwhine.housing import Certificate, HousingError, ModeSet, Seat, Sensor, read_modes, solve_modes, write_modes
+from gearwhine.housing.errors import ModeFileError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.storage.mesh_arrays import mesh_digest
+from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
+from gearwhine.housing.storage.netcdf import LabelledArray
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import Facets
 
 SEATS = (Seat("front-seat", (-0.03, 0.08, 0.12)), Seat("back-seat", (0.0, 0.08, -0.12)))
 

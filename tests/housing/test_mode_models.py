@@ -11,12 +11,19 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from housing import HousingError, ModeSet, solve_modes
-from housing.fem.matrices import Matrices
-from housing.pictures.drawn_shapes import _CUTS, DRAWN_SCALE, DrawnShape, drawn_housing, outer_skin, peak_displacement
-from housing.pictures.gltf import light_model, write_mode_models
-from meshes import Mesh
-from meshes.elements import facet_nodes
+from gearwhine.housing import HousingError, ModeSet, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.pictures.drawn_shapes import (
+    _CUTS,
+    DRAWN_SCALE,
+    DrawnShape,
+    drawn_housing,
+    outer_skin,
+    peak_displacement,
+)
+from gearwhine.housing.pictures.gltf import light_model, write_mode_models
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import facet_nodes
 
 COMPONENTS = {5126: "<f4", 5125: "<u4"}
 WIDTHS = {"SCALAR": 1, "VEC3": 3}

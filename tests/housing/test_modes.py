@@ -9,8 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-import housing.modes.eigensolver
-from housing import (
+from gearwhine.housing import (
     HousingError,
     IncompleteModesError,
     Material,
@@ -20,13 +19,14 @@ from housing import (
     attach_fixtures,
     solve_modes,
 )
-from housing.errors import FactorizationError
-from housing.fem.matrices import Matrices
-from housing.model.seats import Seat, seat_matrix
-from housing.model.supports import fixed_freedoms
-from housing.modes.certificate import NOT_COUNTED
-from housing.modes.eigensolver import block_lanczos
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box
+from gearwhine.housing.errors import FactorizationError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import Seat, seat_matrix
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes import eigensolver
+from gearwhine.housing.modes.certificate import NOT_COUNTED
+from gearwhine.housing.modes.eigensolver import block_lanczos
+from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box
 
 BACKENDS = pytest.mark.parametrize("backend", ["rslab", "superlu"])
 
@@ -186,7 +186,7 @@ def test_certificate_catches_a_solver_that_misses_a_mode(
     box_matrices: Matrices, monkeypatch: pytest.MonkeyPatch, asked: dict[str, Any]
 ) -> None:
     spoiled = _solver_that(lambda values, vectors: (np.delete(values, 7), np.delete(vectors, 7, axis=1)))
-    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", spoiled)
+    monkeypatch.setattr(eigensolver, "block_lanczos", spoiled)
     with pytest.raises(IncompleteModesError, match=r"modes found below .* Hz where the inertia demands"):
         solve_modes(box_matrices, **asked)
 
@@ -198,7 +198,7 @@ def test_certificate_catches_a_solver_that_finds_one_mode_twice_and_misses_anoth
         values[8], vectors[:, 8] = values[7], vectors[:, 7]
         return values, vectors
 
-    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(repeat))
+    monkeypatch.setattr(eigensolver, "block_lanczos", _solver_that(repeat))
     with pytest.raises(IncompleteModesError, match=r"largest overlap 1\.0e\+00"):
         solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
 
@@ -208,7 +208,7 @@ def test_certificate_catches_a_mode_that_is_not_one(box_matrices: Matrices, monk
         vectors[:, 8] += 1e-4 * vectors[:, 9]
         return values, vectors
 
-    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(blur))
+    monkeypatch.setattr(eigensolver, "block_lanczos", _solver_that(blur))
     with pytest.raises(IncompleteModesError, match="largest residual"):
         solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
 
@@ -222,7 +222,7 @@ def test_a_search_that_succeeds_the_second_time_is_enough(
         calls.append(len(values))
         return (values[:-1], vectors[:, :-1]) if len(calls) == 1 else (values, vectors)
 
-    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", _solver_that(once))
+    monkeypatch.setattr(eigensolver, "block_lanczos", _solver_that(once))
     modes = solve_modes(box_matrices, frequency_limit=2 * np.pi * 6000.0)
     assert len(calls) == 2
     np.testing.assert_allclose(modes.frequencies, box_modes.frequencies, rtol=1e-10)

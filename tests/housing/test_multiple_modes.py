@@ -19,12 +19,12 @@ import pytest
 from scipy import linalg
 from scipy.spatial import KDTree
 
-import housing.modes.eigensolver
-from housing import IncompleteModesError, Material, ModeSet, assemble, solve_modes
-from housing.fem.matrices import Matrices
-from housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
-from meshes import ElementBlock, Mesh
-from meshes.gmsh_meshing import collect, gmsh_session, mesh_solids
+from gearwhine.housing import IncompleteModesError, Material, ModeSet, assemble, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes import eigensolver
+from gearwhine.housing.modes.certificate import OVERLAP_BOUND, RESIDUAL_BOUND
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.gmsh_meshing import collect, gmsh_session, mesh_solids
 
 FloatArray = npt.NDArray[np.float64]
 Blocks = Callable[..., Mesh]
@@ -248,7 +248,7 @@ def test_certificate_catches_a_solver_that_loses_members_of_multiple_modes(
         return values[:count], basis @ mixture[:, :count]
 
     honest = solve_modes(cube[1], count=11)
-    monkeypatch.setattr(housing.modes.eigensolver, "block_lanczos", single_vector)
+    monkeypatch.setattr(eigensolver, "block_lanczos", single_vector)
     with pytest.raises(IncompleteModesError, match="where the inertia demands 11,") as caught:
         solve_modes(cube[1], frequency_limit=honest.certificate.limit)
     assert int(str(caught.value).split()[0]) < len(honest.frequencies) == 11

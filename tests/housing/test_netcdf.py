@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from housing.storage.netcdf import read_netcdf, write_netcdf
+from gearwhine.housing.storage.netcdf import read_netcdf, write_netcdf
 
 LEVEL = {"units": "m/s2", "long_name": "amplitude"}
 COORDINATES = {

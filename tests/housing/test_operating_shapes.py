@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from housing import HousingError, ModeSet, solve_modes
-from housing.fem.matrices import Matrices
-from housing.modes.receptance import OperatingShape
-from housing.pictures.drawn_shapes import DrawnShape, peak_displacement, widest_angle
+from gearwhine.housing import HousingError, ModeSet, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.modes.receptance import OperatingShape
+from gearwhine.housing.pictures.drawn_shapes import DrawnShape, peak_displacement, widest_angle
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 3601)
 

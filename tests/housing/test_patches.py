@@ -6,10 +6,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError, Patch
-from housing.fem.nearest_point import surface_point
-from housing.model.patches import patch_center, patch_matrix, point_matrix, rigid_motions
-from meshes import GeometryError, Mesh
+from gearwhine.housing import HousingError, Patch
+from gearwhine.housing.fem.nearest_point import surface_point
+from gearwhine.housing.model.patches import patch_center, patch_matrix, point_matrix, rigid_motions
+from gearwhine.meshes import GeometryError, Mesh
 
 
 @pytest.mark.parametrize("center", [None, (0.3, -0.7, 0.2), (0.0, 0.0, 50.0)])

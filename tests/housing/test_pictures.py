@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from housing import HousingError, ModeSet, solve_modes
-from housing.errors import RendererUnavailableError
-from housing.fem.matrices import Matrices
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
-from housing.pictures.images import render_gallery, render_modes, render_shapes
-from housing.pictures.scene import STRIP, find_renderer
-from housing.pictures.views import VIEWS
-from meshes import Mesh
-from meshes.elements import facet_nodes
+from gearwhine.housing import HousingError, ModeSet, solve_modes
+from gearwhine.housing.errors import RendererUnavailableError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
+from gearwhine.housing.pictures.images import render_gallery, render_modes, render_shapes
+from gearwhine.housing.pictures.scene import STRIP, find_renderer
+from gearwhine.housing.pictures.views import VIEWS
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import facet_nodes
 
 
 @pytest.fixture(scope="module")
@@ -175,8 +175,8 @@ def test_without_egl_and_osmesa_the_packages_to_install_are_named() -> None:
             if event == "ctypes.dlopen" and arguments[0] and ("EGL" in arguments[0] or "OSMesa" in arguments[0]):
                 raise OSError(f"{arguments[0]}: cannot open shared object file")
         sys.addaudithook(refuse)
-        from housing.errors import RendererUnavailableError
-        from housing.pictures.scene import load_pyvista
+        from gearwhine.housing.errors import RendererUnavailableError
+        from gearwhine.housing.pictures.scene import load_pyvista
         try:
             load_pyvista()
         except RendererUnavailableError as error:
@@ -189,7 +189,7 @@ def test_without_egl_and_osmesa_the_packages_to_install_are_named() -> None:
 
 def test_importing_the_room_brings_no_heavy_library() -> None:
     done = _run("""
-        import housing
+        import gearwhine.housing
         heavy = ["gmsh", "vtk", "vtkmodules", "pyvista", "matplotlib", "skfem", "numba", "rslab", "PIL"]
         heavy += ["scipy.optimize", "scipy.spatial"]
         print([name for name in heavy if name in sys.modules])

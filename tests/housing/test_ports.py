@@ -4,10 +4,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError, Seat, Sensor
-from housing.model.seats import seat_matrix, sensor_port
-from meshes import Mesh
-from meshes.elements import facet_nodes
+from gearwhine.housing import HousingError, Seat, Sensor
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import facet_nodes
 
 FRONT = Seat("front-seat", (-0.03, 0.08, 0.115))
 

@@ -9,12 +9,12 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from housing import HousingError, Material, ModeSet, Seat, Sensor, Support, assemble, receptance, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.seats import seat_matrix, sensor_port
-from housing.model.supports import fixed_freedoms
-from housing.modes.receptance import residues, select_modes
-from meshes import Mesh
+from gearwhine.housing import HousingError, Material, ModeSet, Seat, Sensor, Support, assemble, receptance, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes.receptance import residues, select_modes
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

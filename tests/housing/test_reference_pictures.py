@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from housing import Material, ModeSet, assemble, solve_modes
-from housing.errors import RendererUnavailableError
-from housing.pictures.images import render_modes
-from housing.pictures.scene import find_renderer
-from meshes import Mesh
+from gearwhine.housing import Material, ModeSet, assemble, solve_modes
+from gearwhine.housing.errors import RendererUnavailableError
+from gearwhine.housing.pictures.images import render_modes
+from gearwhine.housing.pictures.scene import find_renderer
+from gearwhine.meshes import Mesh
 
 REFERENCES = Path(__file__).parent / "references"
 NUMBERS = (7, 8, 9, 10)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import linalg, sparse
 
-from housing import (
+from gearwhine.housing import (
     HousingError,
     Material,
     ModeSet,
@@ -21,12 +21,12 @@ from housing import (
     attach_fixtures,
     solve_modes,
 )
-from housing.errors import ReductionError
-from housing.fem.matrices import Matrices
-from housing.model.seats import seat_matrix
-from housing.model.supports import fixed_freedoms
-from housing.modes.residual_modes import residual_attachment_modes
-from meshes import Mesh
+from gearwhine.housing.errors import ReductionError
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import seat_matrix
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes.residual_modes import residual_attachment_modes
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
-from housing.fem.matrices import Matrices
-from housing.model.supports import fixed_freedoms
-from meshes import GeometryError, Mesh
-from meshes.elements import facet_nodes
+from gearwhine.housing import HousingError, Material, Support, assemble, attach_fixtures, solve_modes
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.meshes import GeometryError, Mesh
+from gearwhine.meshes.elements import facet_nodes
 
 STIFFNESS = (5e8, 9e9, 3e8)
 

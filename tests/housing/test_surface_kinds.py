@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures
-from housing.fem.nearest_point import NearestOnSurface, surface_point
-from housing.fem.surface import surface_quadrature
-from housing.model.seats import seat_matrix, sensor_port
-from meshes import Mesh
-from meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facet_normals, pick_facets
+from gearwhine.housing import Material, Seat, Sensor, Support, assemble, attach_fixtures
+from gearwhine.housing.fem.nearest_point import NearestOnSurface, surface_point
+from gearwhine.housing.fem.surface import surface_quadrature
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facet_normals, pick_facets
 
 SIZE = (1.2, 0.8, 0.5)
 

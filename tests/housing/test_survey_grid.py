@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from housing import HousingError
-from housing.measured.survey_planning import SURVEY_COUNTS, Survey, survey_grid
-from meshes import BoxGeometry, Mesh
+from gearwhine.housing import HousingError
+from gearwhine.housing.measured.survey_planning import SURVEY_COUNTS, Survey, survey_grid
+from gearwhine.meshes import BoxGeometry, Mesh
 
 NORMALS = {"top": (0, 1, 0), "left": (-1, 0, 0), "right": (1, 0, 0), "back": (0, 0, -1), "front": (0, 0, 1)}
 BOX = np.array([[-0.10, 0.0, -0.12], [0.10, 0.16, 0.12]])

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from housing.errors import MeasuredDataError
-from housing.measured import MeasuredGeometry, align_landmarks, align_to_surface, map_survey, outer_facets
-from housing.measured.alignment import fit_points
-from housing.measured.survey_planning import Survey, survey_grid
-from meshes import BoxGeometry, Mesh
-from meshes.elements import facet_centers, facet_normals
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured import MeasuredGeometry, align_landmarks, align_to_surface, map_survey, outer_facets
+from gearwhine.housing.measured.alignment import fit_points
+from gearwhine.housing.measured.survey_planning import Survey, survey_grid
+from gearwhine.meshes import BoxGeometry, Mesh
+from gearwhine.meshes.elements import facet_centers, facet_normals
 
 FloatArray = npt.NDArray[np.float64]
 BOX = np.array([[-0.10, 0.0, -0.12], [0.10, 0.16, 0.12]])

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from housing import HousingError
-from housing.measured import candidate_points, map_survey, plan_survey, planned_geometry
-from meshes import Mesh
+from gearwhine.housing import HousingError
+from gearwhine.housing.measured import candidate_points, map_survey, plan_survey, planned_geometry
+from gearwhine.meshes import Mesh
 
 
 def beam(modes: int, places: int) -> np.ndarray:

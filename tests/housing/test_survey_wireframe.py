@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from housing.measured import MeasuredGeometry
-from housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
+from gearwhine.housing.measured import MeasuredGeometry
+from gearwhine.housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
 
 
 def _grid(columns: int, rows: int, lines: tuple[tuple[int, ...], ...] = ()) -> MeasuredGeometry:

@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from universal_surveys import SIX_DIGITS, motion, same_motion, survey
 
-from housing.errors import MeasuredDataError
-from housing.measured import (
+from gearwhine.housing.errors import MeasuredDataError
+from gearwhine.housing.measured import (
     MeasuredGeometry,
     MeasuredModes,
     SurveyData,

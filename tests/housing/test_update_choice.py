@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from housing.modes.dominance import Dominance
-from housing.updating import Target, measure
-from housing.updating.mode_choice import GAP_SCALE, choice_shortfall, choose_modes
-from housing.updating.surrogate import ModalState
+from gearwhine.housing.modes.dominance import Dominance
+from gearwhine.housing.updating import Target, measure
+from gearwhine.housing.updating.mode_choice import GAP_SCALE, choice_shortfall, choose_modes
+from gearwhine.housing.updating.surrogate import ModalState
 
 FloatArray = npt.NDArray[np.float64]
 

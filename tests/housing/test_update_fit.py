@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from housing import HousingError
-from housing.updating import (
+from gearwhine.housing import HousingError
+from gearwhine.housing.updating import (
     UNPAIRED,
     Effort,
     ModalState,
@@ -26,10 +26,10 @@ from housing.updating import (
     search,
     values_at,
 )
-from housing.updating.cross_validation import random_frequencies
-from housing.updating.misfit import is_met
-from housing.updating.parameters import coordinate_bounds
-from housing.updating.trust_region import Design
+from gearwhine.housing.updating.cross_validation import random_frequencies
+from gearwhine.housing.updating.misfit import is_met
+from gearwhine.housing.updating.parameters import coordinate_bounds
+from gearwhine.housing.updating.trust_region import Design
 
 FloatArray = npt.NDArray[np.float64]
 

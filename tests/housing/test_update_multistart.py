@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import HousingError
-from housing.updating import (
+from gearwhine.housing import HousingError
+from gearwhine.housing.updating import (
     Effort,
     MeshBias,
     Meshes,
@@ -22,9 +22,9 @@ from housing.updating import (
     search,
     serial_map,
 )
-from housing.updating.mesh_bias import Debiased, debiased
-from housing.updating.sensitivities import ModalSensitivities
-from housing.updating.trust_region import Design
+from gearwhine.housing.updating.mesh_bias import Debiased, debiased
+from gearwhine.housing.updating.sensitivities import ModalSensitivities
+from gearwhine.housing.updating.trust_region import Design
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import linalg
 
-from housing import HousingError
-from housing.updating import ModalState, Surrogate
-from housing.updating.sensitivities import ModalSensitivities
+from gearwhine.housing import HousingError
+from gearwhine.housing.updating import ModalState, Surrogate
+from gearwhine.housing.updating.sensitivities import ModalSensitivities
 
 FloatArray = npt.NDArray[np.float64]
 

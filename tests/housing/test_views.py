@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing.errors import HousingError
-from housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
-from housing.pictures.gltf import _upright
-from housing.pictures.views import _turn, check_view, view_of_most_motion, viewing_direction
-from meshes import Mesh
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
+from gearwhine.housing.pictures.gltf import _upright
+from gearwhine.housing.pictures.views import _turn, check_view, view_of_most_motion, viewing_direction
+from gearwhine.meshes import Mesh
 
 X, Y, Z = np.eye(3)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pyuff
 
-from housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_universal
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_universal
 
 SIX_DIGITS = 1e-5  # of E13.5, in which shapes and frequencies are written
 

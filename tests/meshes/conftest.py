@@ -2,7 +2,7 @@
 
 import pytest
 
-from meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.meshes import Bore, Boss, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 
 @pytest.fixture(scope="session")

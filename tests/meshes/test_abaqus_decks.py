@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from housing.model.patches import patch_center
-from meshes import GeometryError, mesh_quality, read_mesh, write_mesh
-from meshes.elements import KINDS, facet_nodes
-from meshes.formats.companions import companion_files
+from gearwhine.housing.model.patches import patch_center
+from gearwhine.meshes import GeometryError, mesh_quality, read_mesh, write_mesh
+from gearwhine.meshes.elements import KINDS, facet_nodes
+from gearwhine.meshes.formats.companions import companion_files
 
 # Two unit cubes side by side along x, node numbers with gaps.
 CUBES = """\

@@ -2,8 +2,20 @@
 
 import pytest
 
-from meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, GeometryError, Rib, WallThickness
-from meshes.box.geometry import BoxMisfitError
+from gearwhine.meshes import (
+    Bore,
+    Boss,
+    BoxGeometry,
+    Cover,
+    CoverBolts,
+    Feet,
+    Fillets,
+    Flange,
+    GeometryError,
+    Rib,
+    WallThickness,
+)
+from gearwhine.meshes.box.geometry import BoxMisfitError
 
 BOLTS = CoverBolts(0.006, (3, 3), patch_diameter=0.0095)
 TOP = Cover("top", bolts=BOLTS)

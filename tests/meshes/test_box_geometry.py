@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from meshes import Bore, Boss, BoxGeometry, Feet, GeometryError, WallThickness, mesh_box
+from gearwhine.meshes import Bore, Boss, BoxGeometry, Feet, GeometryError, WallThickness, mesh_box
 
 WALL = WallThickness.uniform(0.02)
 SIZE = (0.20, 0.16, 0.24)

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
-from meshes.elements import facet_nodes
+from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box, mesh_quality
+from gearwhine.meshes.elements import facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

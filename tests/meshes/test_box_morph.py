@@ -5,9 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes import Bore, Boss, BoxGeometry, BoxMorph, Feet, Fillets, Mesh, Rib, WallThickness, mesh_box, mesh_quality
-from meshes.box.morph import MorphError
-from meshes.elements import facet_corners, facet_nodes
+from gearwhine.meshes import (
+    Bore,
+    Boss,
+    BoxGeometry,
+    BoxMorph,
+    Feet,
+    Fillets,
+    Mesh,
+    Rib,
+    WallThickness,
+    mesh_box,
+    mesh_quality,
+)
+from gearwhine.meshes.box.morph import MorphError
+from gearwhine.meshes.elements import facet_corners, facet_nodes
 
 BEFORE = BoxGeometry(
     size=(0.20, 0.16, 0.24),

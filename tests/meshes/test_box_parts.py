@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from meshes import (
+from gearwhine.meshes import (
     Bore,
     BoxGeometry,
     Cover,
@@ -19,8 +19,8 @@ from meshes import (
     find_bores,
     mesh_box,
 )
-from meshes.elements import Facets, facet_nodes
-from meshes.shape_functions import quadrature, shape_functions
+from gearwhine.meshes.elements import Facets, facet_nodes
+from gearwhine.meshes.shape_functions import quadrature, shape_functions
 
 SIZE = (0.20, 0.16, 0.24)
 WALL = WallThickness(left=0.010, right=0.012, bottom=0.015, top=0.011, back=0.013, front=0.014)

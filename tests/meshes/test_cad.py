@@ -14,11 +14,11 @@ import numpy as np
 import psutil
 import pytest
 
-from meshes import GeometryError, cylinder_facets, find_bores, mesh_cad, plane_facets
-from meshes.cad.reading import _errors_of, _reading_limit
-from meshes.elements import facet_centers
-from meshes.errors import MeshSizeError
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes import GeometryError, cylinder_facets, find_bores, mesh_cad, plane_facets
+from gearwhine.meshes.cad.reading import _errors_of, _reading_limit
+from gearwhine.meshes.elements import facet_centers
+from gearwhine.meshes.errors import MeshSizeError
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 SIZE, WALL, BORE = np.array([200.0, 150.0, 120.0]), 10.0, 40.0  # mm
 # The box without its cavity and without two discs of the walls.
@@ -199,7 +199,7 @@ def test_files_of_other_kinds_and_missing_ones_are_refused(tmp_path: Path) -> No
 
 _PARENT = """
 import subprocess, sys
-worker = "import sys, time; from pathlib import Path; from meshes.cad.worker import end_with; " \\
+worker = "import sys, time; from pathlib import Path; from gearwhine.meshes.cad.worker import end_with; " \\
     "end_with(int(sys.argv[2]), Path(sys.argv[1])); print(flush=True); time.sleep(60)"
 import os
 child = subprocess.Popen([sys.executable, "-c", worker, sys.argv[1], str(os.getpid())], stdout=subprocess.PIPE)

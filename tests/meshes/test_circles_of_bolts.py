@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshes import GeometryError, circle_facets, diagnose, mesh_cad
-from meshes.elements import facet_centers, facet_normals
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes import GeometryError, circle_facets, diagnose, mesh_cad
+from gearwhine.meshes.elements import facet_centers, facet_normals
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshes import BoxGeometry, Mesh, WallThickness, mesh_box, read_mesh, write_mesh
-from meshes.formats.companions import companion_files
+from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box, read_mesh, write_mesh
+from gearwhine.meshes.formats.companions import companion_files
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes import ElementBlock, GeometryError, Mesh, MeshDefect, diagnose
-from meshes.diagnosis import bodies
-from meshes.elements import KINDS, SOLIDS
+from gearwhine.meshes import ElementBlock, GeometryError, Mesh, MeshDefect, diagnose
+from gearwhine.meshes.diagnosis import bodies
+from gearwhine.meshes.elements import KINDS, SOLIDS
 
 
 def _join(first: Mesh, second: Mesh, offset: tuple[float, float, float], *, merge: bool) -> Mesh:

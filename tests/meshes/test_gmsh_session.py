@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from meshes import BoxGeometry, GeometryError, WallThickness, mesh_box
-from meshes.gmsh_meshing import SYSTEM_PACKAGES, gmsh_session
+from gearwhine.meshes import BoxGeometry, GeometryError, WallThickness, mesh_box
+from gearwhine.meshes.gmsh_meshing import SYSTEM_PACKAGES, gmsh_session
 
 
 def _run(script: str) -> subprocess.CompletedProcess[str]:
@@ -18,7 +18,7 @@ def _run(script: str) -> subprocess.CompletedProcess[str]:
 
 def test_importing_the_room_brings_neither_gmsh_nor_meshio() -> None:
     done = _run("""
-        import meshes
+        import gearwhine.meshes
         print([name for name in ("gmsh", "meshio", "vtk", "matplotlib", "skfem") if name in sys.modules])
     """)
     assert done.stdout.strip() == "[]", done.stderr
@@ -31,8 +31,8 @@ def test_a_gmsh_that_cannot_be_loaded_is_answered_with_the_packages_to_install()
                 if name == "gmsh":
                     raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
         sys.meta_path.insert(0, Blocker())
-        from meshes import BoxGeometry, WallThickness, mesh_box
-        from meshes.errors import MesherUnavailableError
+        from gearwhine.meshes import BoxGeometry, WallThickness, mesh_box
+        from gearwhine.meshes.errors import MesherUnavailableError
         try:
             mesh_box(BoxGeometry((0.2, 0.2, 0.2), WallThickness.uniform(0.02)), 0.1)
         except MesherUnavailableError as error:

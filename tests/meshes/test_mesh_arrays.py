@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshes import GeometryError, Mesh, mesh_quality
+from gearwhine.meshes import GeometryError, Mesh, mesh_quality
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]])
 CELLS = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])

@@ -8,11 +8,11 @@ import meshio
 import numpy as np
 import pytest
 
-from meshes import ElementBlock, GeometryError, Mesh, diagnose, mesh_quality, read_mesh, write_mesh
-from meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facets_of, pick_facets
-from meshes.formats.files import WRITABLE
-from meshes.gmsh_meshing import gmsh_session
-from meshes.shape_functions import shape_functions
+from gearwhine.meshes import ElementBlock, GeometryError, Mesh, diagnose, mesh_quality, read_mesh, write_mesh
+from gearwhine.meshes.elements import KINDS, SOLIDS, facet_centers, facet_nodes, facets_of, pick_facets
+from gearwhine.meshes.formats.files import WRITABLE
+from gearwhine.meshes.gmsh_meshing import gmsh_session
+from gearwhine.meshes.shape_functions import shape_functions
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 

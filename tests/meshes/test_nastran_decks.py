@@ -6,9 +6,9 @@ import meshio
 import numpy as np
 import pytest
 
-from meshes import GeometryError, Mesh, read_mesh
-from meshes.elements import KINDS
-from meshes.formats.companions import companion_files
+from gearwhine.meshes import GeometryError, Mesh, read_mesh
+from gearwhine.meshes.elements import KINDS
+from gearwhine.meshes.formats.companions import companion_files
 
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 BRICK = "CHEXA,1,4,1,2,3,4,5,6\n,7,8\n"

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from meshes import (
+from gearwhine.meshes import (
     Bore,
     Boss,
     BoxGeometry,
@@ -22,7 +22,7 @@ from meshes import (
     plane_facets,
     with_bore,
 )
-from meshes.elements import Facets, facet_nodes
+from gearwhine.meshes.elements import Facets, facet_nodes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from housing import Material, assemble, solve_modes
-from meshes import Mesh, resolution_defects
-from meshes.quality import WaveCarrier, edge_lengths, locking_excess, wall_thickness
+from gearwhine.housing import Material, assemble, solve_modes
+from gearwhine.meshes import Mesh, resolution_defects
+from gearwhine.meshes.quality import WaveCarrier, edge_lengths, locking_excess, wall_thickness
 
 STEEL = Material(207e9, 0.3, 7850.0)
 

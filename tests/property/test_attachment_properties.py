@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from housing import (
+from gearwhine.housing import (
     Bushing,
     Joint,
     LumpedMass,
@@ -22,9 +22,9 @@ from housing import (
     modal_damping,
     solve_modes,
 )
-from housing.model.fixtures import Fixture
-from housing.model.patches import rigid_body
-from meshes import BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.housing.model.fixtures import Fixture
+from gearwhine.housing.model.patches import rigid_body
+from gearwhine.meshes import BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]
 STEEL = Material(207e9, 0.3, 7850.0)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from housing.correlation import (
+from gearwhine.housing.correlation import (
     PairingRule,
     auto_mac,
     comac,
@@ -20,7 +20,7 @@ from housing.correlation import (
     real_shapes,
     span_mac,
 )
-from housing.correlation.modal_assurance_criterion import mean_phase
+from gearwhine.housing.correlation.modal_assurance_criterion import mean_phase
 
 SEEDS = st.integers(0, 2**32 - 1)
 SIZES = st.tuples(st.integers(1, 4), st.integers(1, 4), st.integers(6, 12))

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledSystem,
     TransientOutputs,
     TransientSettings,
@@ -16,13 +16,13 @@ from coupling import (
     simulate,
     static_equilibrium,
 )
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.statics.mean_mesh import linear_matrices, mean_contact
-from coupling.time.transient import EnergyBalance, TransientResult
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
+from gearwhine.coupling.time.transient import EnergyBalance, TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearError,
     GearPairGeometry,
@@ -19,8 +19,8 @@ from coupling.gears import (
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
 PHASES = np.arange(12) / 12.0
 SMALL = st.floats(-15e-6, 15e-6)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -19,10 +19,10 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.geometry.involute import inverse_involute, involute
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 RELIEF_START = 0.75
 """Fraction of the tip's roll angle where the reliefs drawn here begin."""

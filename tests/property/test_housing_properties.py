@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from housing import Material, Seat, Sensor, Support, assemble, attach_fixtures, solve_modes
-from housing.fem.factorization import Factorizer
-from housing.fem.matrices import Matrices
-from housing.model.seats import seat_matrix, sensor_port
-from meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
-from meshes.elements import facet_corners
+from gearwhine.housing import Material, Seat, Sensor, Support, assemble, attach_fixtures, solve_modes
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.meshes import Bore, BoxGeometry, Mesh, WallThickness, mesh_box
+from gearwhine.meshes.elements import facet_corners
 
 STEEL = Material(207e9, 0.3, 7850.0)
 few = settings(max_examples=12, deadline=None)

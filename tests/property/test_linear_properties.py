@@ -8,12 +8,12 @@ import scipy.linalg
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling import CoupledSystem, coupled_modes, receptance, stability
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.statics.mean_mesh import linear_matrices, mean_contact
+from gearwhine.coupling import CoupledSystem, coupled_modes, receptance, stability
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.statics.mean_mesh import linear_matrices, mean_contact
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,7 +1,7 @@
 """Laws of motion of whole machines: Newton's third law through gears and bearings, and no frame that counts.
 
 Two geared rotors with gyroscopic discs on unsymmetric bearings in a free rigid housing, put together by
-:func:`coupling.assemble_machine` and marched in time, teeth entering and leaving contact.
+:func:`gearwhine.coupling.assemble_machine` and marched in time, teeth entering and leaving contact.
 """
 
 from functools import cache
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     GearMesh,
     MachineLoads,
@@ -24,11 +24,20 @@ from coupling import (
     assemble_machine,
     simulate,
 )
-from coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.machine.components import HousingComponent, RotorComponent, rotor_component
-from coupling.time.histories import Histories, histories, transient_outputs
-from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.machine.components import HousingComponent, RotorComponent, rotor_component
+from gearwhine.coupling.time.histories import Histories, histories, transient_outputs
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    ModalRotor,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,13 +11,13 @@ import numpy.typing as npt
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate, static_equilibrium
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector, LinearConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.time.transient import TransientResult
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate, static_equilibrium
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 

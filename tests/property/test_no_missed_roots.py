@@ -25,7 +25,7 @@ from finite_element_rotor import PlaneModel, bending_model, rod_model
 from hypothesis import HealthCheck, assume, given, reject, settings
 from hypothesis import strategies as st
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Bearing,
     Coupling,

@@ -14,13 +14,13 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
-from coupling.errors import PeriodicError
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.periodic import PeriodicResponse, periodic_response
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.errors import PeriodicError
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.periodic import PeriodicResponse, periodic_response
 
 FloatArray = npt.NDArray[np.float64]
 

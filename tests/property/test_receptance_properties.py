@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
-from housing import (
+from gearwhine.housing import (
     Bushing,
     Joint,
     LumpedMass,
@@ -34,12 +34,12 @@ from housing import (
     receptance,
     solve_modes,
 )
-from housing.fem.matrices import Matrices
-from housing.model.fixtures import Fixture
-from housing.model.seats import seat_matrix, sensor_port
-from housing.model.supports import fixed_freedoms
-from housing.modes.effective_mass import damping_ratios
-from meshes import Bore, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
+from gearwhine.housing.fem.matrices import Matrices
+from gearwhine.housing.model.fixtures import Fixture
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.model.supports import fixed_freedoms
+from gearwhine.housing.modes.effective_mass import damping_ratios
+from gearwhine.meshes import Bore, BoxGeometry, Feet, Mesh, WallThickness, mesh_box
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

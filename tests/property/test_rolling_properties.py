@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rotors import EquilibriumError
-from rotors.rolling_bearings import (
+from gearwhine.rotors import EquilibriumError
+from gearwhine.rotors.rolling_bearings import (
     COORDINATES,
     BallRow,
     FourPointRow,

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     RadialSupport,
@@ -27,7 +27,7 @@ from rotors import (
     solve_torsional_modes,
     solve_whirl,
 )
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 BRASS = ShaftMaterial(100e9, 37e9, 8500.0)

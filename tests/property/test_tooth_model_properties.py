@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     CornellStiffness,
     ElasticRingStiffness,
     Gear,
@@ -17,8 +17,8 @@ from coupling.gears import (
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
 )
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.foundation import within_fitted_range
+from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from gearwhine.coupling.gears.stiffness.foundation import within_fitted_range
 
 MODELS: list[CompliantTeeth] = [
     PotentialEnergyStiffness("trochoid"),

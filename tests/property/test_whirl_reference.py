@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 
-from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
 
 CLOSE = 1e-10
 COUNT = 8

@@ -15,7 +15,7 @@ from inertia_count import negative_pivots
 from lobatto_elements import DEGREE, REACH, Elements, Matrices, bending_matrices, cut, rod_matrices
 from scipy import linalg
 
-from rotors import Coupling, RadialSupport, Rotor
+from gearwhine.rotors import Coupling, RadialSupport, Rotor
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

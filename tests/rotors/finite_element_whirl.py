@@ -15,7 +15,7 @@ from finite_element_rotor import PlaneModel, bending_model, condensed, rod_model
 from lobatto_elements import DEGREE, REACH
 from scipy import linalg
 
-from rotors import Bearing, Rotor
+from gearwhine.rotors import Bearing, Rotor
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

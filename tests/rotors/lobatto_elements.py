@@ -25,8 +25,8 @@ import numpy as np
 import numpy.typing as npt
 from double_double import DoubleDouble
 
-from rotors import Coupling, Rotor, Segment
-from rotors.model.material import Section
+from gearwhine.rotors import Coupling, Rotor, Segment
+from gearwhine.rotors.model.material import Section
 
 FloatArray = npt.NDArray[np.float64]
 

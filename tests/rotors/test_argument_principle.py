@@ -4,11 +4,20 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_lateral_modes, solve_whirl
-from rotors.whirl.argument_principle import count_by_argument_principle
-from rotors.whirl.completeness import oscillating
-from rotors.whirl.eigenvalues import constant_speed
-from rotors.whirl.equations import whirl_equations
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    rest_frequencies,
+    solve_lateral_modes,
+    solve_whirl,
+)
+from gearwhine.rotors.whirl.argument_principle import count_by_argument_principle
+from gearwhine.rotors.whirl.completeness import oscillating
+from gearwhine.rotors.whirl.eigenvalues import constant_speed
+from gearwhine.rotors.whirl.equations import whirl_equations
 
 ComplexArray = npt.NDArray[np.complex128]
 

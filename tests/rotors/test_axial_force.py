@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Coupling,
     Disc,
@@ -21,8 +21,8 @@ from rotors import (
     static_deflection,
     unbalance_response,
 )
-from rotors.model.loads import Bow
-from rotors.modes.lateral import buckling_factor
+from gearwhine.rotors.model.loads import Bow
+from gearwhine.rotors.modes.lateral import buckling_factor
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 LENGTH, DIAMETER = 0.8, 0.04

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Rotor,
     Segment,
@@ -18,7 +18,7 @@ from rotors import (
     solve_whirl,
     unbalance_response,
 )
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 SHAFT = Rotor("shaft", [Segment(0.1, 0.04, 0.0, STEEL)] * 4)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rotors import RotorError
-from rotors.rolling_bearings import (
+from gearwhine.rotors import RotorError
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     TaperedRollerRow,

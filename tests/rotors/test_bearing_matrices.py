@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_whirl
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_whirl
 
 # So stiff that the shaft is rigid to a millionth.
 RIGID = Rotor(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.special import iv, jv
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Disc,
     RadialSupport,
@@ -21,7 +21,7 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.model.shaft import station_inertias
+from gearwhine.rotors.model.shaft import station_inertias
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 

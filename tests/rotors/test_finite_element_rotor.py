@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy import special
 from scipy.optimize import brentq
 
-from rotors import Coupling, Disc, RadialSupport, Rotor, Segment, ShaftMaterial
+from gearwhine.rotors import Coupling, Disc, RadialSupport, Rotor, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 SPRING = ShaftMaterial(211e9, 81.2e9, 0.0)

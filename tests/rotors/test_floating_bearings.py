@@ -8,8 +8,8 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import minimize_scalar
 
-from rotors import RotorError
-from rotors.rolling_bearings import (
+from gearwhine.rotors import RotorError
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,
@@ -22,7 +22,7 @@ from rotors.rolling_bearings import (
     rolling_equilibrium,
     rolling_state,
 )
-from rotors.rolling_bearings.life import equivalent_load, reference_revolutions
+from gearwhine.rotors.rolling_bearings.life import equivalent_load, reference_revolutions
 
 FloatArray = npt.NDArray[np.float64]
 

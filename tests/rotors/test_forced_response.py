@@ -9,7 +9,7 @@ from finite_element_whirl import spatial_matrices
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Bearing,
     Coupling,
@@ -25,11 +25,11 @@ from rotors import (
     torsional_response,
     unbalance_response,
 )
-from rotors.analyses.harmonic_response import at_positive_frequency, frequency_response, harmonic_response
-from rotors.analyses.statics import StaticForce
-from rotors.analyses.torsional_response import Torque, TorsionalDashpot
-from rotors.analyses.unbalance import bow_shape
-from rotors.model.loads import Bow, HarmonicForce
+from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency, frequency_response, harmonic_response
+from gearwhine.rotors.analyses.statics import StaticForce
+from gearwhine.rotors.analyses.torsional_response import Torque, TorsionalDashpot
+from gearwhine.rotors.analyses.unbalance import bow_shape
+from gearwhine.rotors.model.loads import Bow, HarmonicForce
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 SPRING = ShaftMaterial(211e9, 81.2e9, 0.0)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.whirl.completeness import NO_OSCILLATION
-from rotors.whirl.eigenvalues import refine_each
-from rotors.whirl.equations import whirl_equations_in_runs
-from rotors.whirl.modal_projection import Pencil, pencils
-from rotors.whirl.planar_basis import planar_basis
+from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.rotors.whirl.completeness import NO_OSCILLATION
+from gearwhine.rotors.whirl.eigenvalues import refine_each
+from gearwhine.rotors.whirl.equations import whirl_equations_in_runs
+from gearwhine.rotors.whirl.modal_projection import Pencil, pencils
+from gearwhine.rotors.whirl.planar_basis import planar_basis
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, diameter, 0.05, STEEL.density) for at, diameter in ((0.5, 0.28), (1.0, 0.35))]

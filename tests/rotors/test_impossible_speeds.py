@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rotors import Bearing, Rotor, RotorError, Segment, ShaftMaterial, Unbalance, campbell, solve_whirl
-from rotors import unbalance_response as response
+from gearwhine.rotors import Bearing, Rotor, RotorError, Segment, ShaftMaterial, Unbalance, campbell, solve_whirl
+from gearwhine.rotors import unbalance_response as response
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 ROTOR = Rotor("shaft", [Segment(0.1, 0.03, 0.0, STEEL), Segment(0.1, 0.04, 0.0, STEEL)])

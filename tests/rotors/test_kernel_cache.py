@@ -10,26 +10,27 @@ from typing import Any
 
 import pytest
 
-from coupling.collocation.switch_kernels import by_pairs
-from coupling.connector_forces.contact_kernels import evaluate_contact
-from coupling.gears.contact.lookup_tables import law_table
-from coupling.gears.contact.tooth_force_kernels import friction_history, penetration
-from rotors.numerics import compiled
-from rotors.numerics.banded_kernels import factor
-from rotors.numerics.compiled import counted
+from gearwhine.coupling.collocation.switch_kernels import by_pairs
+from gearwhine.coupling.connector_forces.contact_kernels import evaluate_contact
+from gearwhine.coupling.gears.contact.lookup_tables import law_table
+from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history, penetration
+from gearwhine.rotors.numerics import compiled
+from gearwhine.rotors.numerics.banded_kernels import factor
+from gearwhine.rotors.numerics.compiled import counted
 
 COMPILED = Path(compiled.__file__).parent
 HOME = compiled.__name__.rpartition(".")[0]
-ROOT = COMPILED.parents[HOME.count(".")]
+ROOMS = COMPILED.resolve().parents[1]
 
 
 def packages(root: Path) -> Path:
     """Copies of the decorators, and a kernel in one file that calls one in another and reads a constant of a third."""
-    package = root / "rotors"
-    package.mkdir()
-    (root / "coupling").mkdir()
+    package = root / "gearwhine" / "rotors"
+    package.mkdir(parents=True)
+    (root / "gearwhine" / "coupling").mkdir()
+    (package.parent / "__init__.py").touch()
     (package / "__init__.py").touch()
-    home = root / COMPILED.relative_to(ROOT)
+    home = package / COMPILED.name
     home.mkdir(parents=True, exist_ok=True)
     (home / "__init__.py").touch()
     (home / "compiled.py").write_bytes((COMPILED / "compiled.py").read_bytes())
@@ -47,7 +48,7 @@ def packages(root: Path) -> Path:
 def run(root: Path) -> tuple[float, int]:
     """What the calling kernel gives in a process of its own, and how often it was read from the cache."""
     environment = {key: value for key, value in os.environ.items() if key != "NUMBA_CACHE_DIR"}
-    code = "from rotors.caller import g; print(g(1.0), sum(g.stats.cache_hits.values()))"
+    code = "from gearwhine.rotors.caller import g; print(g(1.0), sum(g.stats.cache_hits.values()))"
     done = subprocess.run(
         [sys.executable, "-c", code],
         cwd=root,
@@ -74,9 +75,8 @@ def test_a_changed_called_kernel_or_constant_is_compiled_anew(tmp_path: Path) ->
 
 def test_kernels_are_logged_when_they_are_compiled_not_when_read(tmp_path: Path) -> None:
     packages(tmp_path)
-    code = (
-        "import logging; logging.basicConfig(level='INFO', format='%(message)s'); from rotors.caller import g; g(1.0)"
-    )
+    code = "import logging; logging.basicConfig(level='INFO', format='%(message)s')\n"
+    code += "from gearwhine.rotors.caller import g; g(1.0)"
     environment = {key: value for key, value in os.environ.items() if key != "NUMBA_CACHE_DIR"}
     said = [
         subprocess.run(
@@ -94,10 +94,10 @@ def test_kernels_are_logged_when_they_are_compiled_not_when_read(tmp_path: Path)
 
 def test_the_digest_covers_every_kernel_and_what_it_imports() -> None:
     kernels = [factor, evaluate_contact, friction_history, penetration, by_pairs]
-    files = {Path(kernel.py_func.__code__.co_filename) for kernel in kernels}  # type: ignore[attr-defined]
-    files |= {Path(function.__code__.co_filename) for function in (counted, law_table)}
+    files = {Path(kernel.py_func.__code__.co_filename).resolve() for kernel in kernels}  # type: ignore[attr-defined]
+    files |= {Path(function.__code__.co_filename).resolve() for function in (counted, law_table)}
     assert len(files) >= 6
-    assert files <= set(compiled.kernel_sources(ROOT))
+    assert files <= set(compiled.kernel_sources(ROOMS))
 
 
 def test_folders_not_used_for_a_month_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

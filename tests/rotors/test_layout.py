@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial
-from rotors.whirl.circular_coordinates import coupled_motions
-from rotors.whirl.equations import WhirlEquations, whirl_equations
+from gearwhine.rotors import Bearing, Disc, Pedestal, Rotor, Segment, ShaftMaterial
+from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
+from gearwhine.rotors.whirl.equations import WhirlEquations, whirl_equations
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISCS = [Disc.from_dimensions(at, 0.07, 0.28, 0.05, STEEL.density) for at in (0.5, 1.0)]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Coupling,
     Disc,
@@ -20,7 +20,7 @@ from rotors import (
     solve_torsional_modes,
     solve_whirl,
 )
-from rotors.modes.residual_modes import add_rod_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_rod_attachment_modes
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 BAR = Segment(0.25, 0.05, 0.0, STEEL)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotors import (
+from gearwhine.rotors import (
     Disc,
     IncompleteModesError,
     RadialSupport,
@@ -16,8 +16,8 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.certificate import certify
-from rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.rotors.certificate import certify
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 PIN = math.inf

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.whirl.eigenvalues import random_vectors, refine_alone
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.rotors.whirl.eigenvalues import random_vectors, refine_alone
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 ROTOR = Rotor("rotor", [Segment(1.5, 0.05, 0.0, STEEL)], [Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, STEEL.density)])

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rotors import RotorError
-from rotors.rolling_bearings import RingFit, operating_clearance, thermal_offset
+from gearwhine.rotors import RotorError
+from gearwhine.rotors.rolling_bearings import RingFit, operating_clearance, thermal_offset
 
 BEARING = {"bore": 45e-3, "inner_raceway": 54e-3, "outer_raceway": 76e-3, "outer_diameter": 85e-3}
 STEEL_ALPHA = 11.7e-6

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from rotors.rolling_bearings import (
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,
@@ -18,7 +18,7 @@ from rotors.rolling_bearings import (
     rolling_equilibrium,
     spherical_groove,
 )
-from rotors.rolling_bearings.life import (
+from gearwhine.rotors.rolling_bearings.life import (
     _LARGE_ANGLES,
     _SMALL_ANGLES,
     equivalent_load,

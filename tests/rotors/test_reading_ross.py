@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import tomli_w
 
-from rotors import Coupling, Disc, RotorError, Segment, ShaftMaterial, read_ross, rest_frequencies
-from rotors.model.material import shear_coefficient
+from gearwhine.rotors import Coupling, Disc, RotorError, Segment, ShaftMaterial, read_ross, rest_frequencies
+from gearwhine.rotors.model.material import shear_coefficient
 
 Document = dict[str, Any]
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize, special
 
-from rotors import EquilibriumError, RotorError
-from rotors.rolling_bearings import (
+from gearwhine.rotors import EquilibriumError, RotorError
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     ContactElasticity,
     FourPointRow,

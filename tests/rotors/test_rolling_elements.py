@@ -8,9 +8,9 @@ import numpy.typing as npt
 import pytest
 from scipy import optimize
 
-from rotors import EquilibriumError, RotorError
-from rotors.numerics.trust_region import Local, minimise
-from rotors.rolling_bearings import (
+from gearwhine.rotors import EquilibriumError, RotorError
+from gearwhine.rotors.numerics.trust_region import Local, minimise
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,

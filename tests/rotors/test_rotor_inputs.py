@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-import rotors
-from coupling.gears import Gear
-from rotors import (
+from gearwhine import rotors
+from gearwhine.coupling.gears import Gear
+from gearwhine.rotors import (
     Bearing,
     Disc,
     RadialSupport,
@@ -21,8 +21,8 @@ from rotors import (
     solve_lateral_modes,
     solve_torsional_modes,
 )
-from rotors.model.material import shear_coefficient
-from rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.rotors.model.material import shear_coefficient
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
 STEEL = ShaftMaterial.from_poisson_ratio(207e9, 0.3, 7850.0)
 BAR = Segment(0.4, 0.03, 0.01, STEEL)
@@ -146,7 +146,8 @@ def test_bearings_are_values() -> None:
 
 
 def test_import_pulls_in_no_meshing_and_no_pictures() -> None:
-    script = "import sys, rotors; print([m for m in ('gmsh', 'vtk', 'matplotlib', 'numba') if m in sys.modules])"
+    heavy = "('gmsh', 'vtk', 'matplotlib', 'numba')"
+    script = f"import sys, gearwhine.rotors; print([m for m in {heavy} if m in sys.modules])"
     answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "[]"
 

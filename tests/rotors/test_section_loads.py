@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rotors import Disc, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial, solve_lateral_modes
+from gearwhine.rotors import Disc, RadialSupport, Rotor, RotorError, Segment, ShaftMaterial, solve_lateral_modes
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.1e11, 0.3, 7850.0)
 BAR = Segment(0.5, 0.06, 0.02, STEEL)

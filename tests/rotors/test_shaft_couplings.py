@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Coupling,
     Disc,
@@ -19,10 +19,10 @@ from rotors import (
     solve_torsional_modes,
     torsional_response,
 )
-from rotors.analyses.torsional_response import Torque
-from rotors.modes.torsional_and_axial import solve_torsional_chain
-from rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
-from rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies
+from gearwhine.rotors.analyses.torsional_response import Torque
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
+from gearwhine.rotors.transfer_matrix.wittrick_williams import lowest_natural_frequencies
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 # Without mass, and so stiff that it moves as a rigid body.

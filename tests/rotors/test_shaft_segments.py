@@ -5,13 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Rotor, RotorError, Segment, ShaftMaterial, WhirlSolver, campbell, solve_whirl
-from rotors.model.shaft import MassModel
-from rotors.whirl.circular_coordinates import coupled_motions
-from rotors.whirl.eigenvalues import constant_speed, refine_roots
-from rotors.whirl.equations import MOST_GROWTH, WhirlEquations, whirl_equations, whirl_reach
-from rotors.whirl.motion import ShaftMotion
-from rotors.whirl.whirl_modes import MOST_HELD
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    WhirlSolver,
+    campbell,
+    solve_whirl,
+)
+from gearwhine.rotors.model.shaft import MassModel
+from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
+from gearwhine.rotors.whirl.eigenvalues import constant_speed, refine_roots
+from gearwhine.rotors.whirl.equations import MOST_GROWTH, WhirlEquations, whirl_equations, whirl_reach
+from gearwhine.rotors.whirl.motion import ShaftMotion
+from gearwhine.rotors.whirl.whirl_modes import MOST_HELD
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 DISC = Disc.from_dimensions(0.5, 0.07, 0.28, 0.05, 7810.0)

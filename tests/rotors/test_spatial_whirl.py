@@ -8,7 +8,7 @@ import pytest
 from finite_element_whirl import spatial_matrices
 from scipy.optimize import linear_sum_assignment
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     IncompleteModesError,
@@ -24,11 +24,11 @@ from rotors import (
     solve_lateral_modes,
     solve_whirl,
 )
-from rotors.analyses.critical_speeds import critical_speed_map
-from rotors.whirl.circular_coordinates import coupled_motions
-from rotors.whirl.completeness import certified_roots, count_roots, oscillating
-from rotors.whirl.eigenvalues import constant_speed, refine_roots
-from rotors.whirl.equations import whirl_equations, whirl_reach
+from gearwhine.rotors.analyses.critical_speeds import critical_speed_map
+from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
+from gearwhine.rotors.whirl.completeness import certified_roots, count_roots, oscillating
+from gearwhine.rotors.whirl.eigenvalues import constant_speed, refine_roots
+from gearwhine.rotors.whirl.equations import whirl_equations, whirl_reach
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
 ZERO = np.zeros((2, 2))

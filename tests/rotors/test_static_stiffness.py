@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import quad
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Coupling,
     Disc,
@@ -21,8 +21,8 @@ from rotors import (
     solve_lateral_modes,
     static_deflection,
 )
-from rotors.analyses.static_stiffness import StaticShaft, static_shaft
-from rotors.analyses.statics import StaticForce
+from gearwhine.rotors.analyses.static_stiffness import StaticShaft, static_shaft
+from gearwhine.rotors.analyses.statics import StaticForce
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

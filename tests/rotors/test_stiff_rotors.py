@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from finite_element_rotor import bending_model, rod_model
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Disc,
     RadialSupport,

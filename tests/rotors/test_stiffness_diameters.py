@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Coupling,
     Disc,
@@ -24,8 +24,8 @@ from rotors import (
     static_deflection,
     write_ross,
 )
-from rotors.analyses.static_stiffness import static_shaft
-from rotors.model.profile import StiffnessDiameter
+from gearwhine.rotors.analyses.static_stiffness import static_shaft
+from gearwhine.rotors.model.profile import StiffnessDiameter
 
 FloatArray = npt.NDArray[np.float64]
 

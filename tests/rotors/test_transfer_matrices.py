@@ -7,10 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from rotors.model.material import ShaftMaterial
-from rotors.model.profile import BENDING, restricted, shaft_profile
-from rotors.model.segment import Segment
-from rotors.transfer_matrix.timoshenko import ShaftElements
+from gearwhine.rotors.model.material import ShaftMaterial
+from gearwhine.rotors.model.profile import BENDING, restricted, shaft_profile
+from gearwhine.rotors.model.segment import Segment
+from gearwhine.rotors.transfer_matrix.timoshenko import ShaftElements
 
 # 1/κGA, 1/EI, ρA, ρI of a short fat steel bar in units of its own length and stiffness.
 SHEAR, BEND, MASS, ROTARY = 0.4, 1.3, 0.9, 0.2

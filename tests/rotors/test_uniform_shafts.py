@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotors import RadialSupport, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.transfer_matrix.rotor_shafts import free_bending_shaft
+from gearwhine.rotors import RadialSupport, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
+from gearwhine.rotors.transfer_matrix.rotor_shafts import free_bending_shaft
 
 STEEL = ShaftMaterial(207e9, 79.6e9, 7850.0)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     RadialSupport,
@@ -18,7 +18,7 @@ from rotors import (
     solve_lateral_modes,
     solve_whirl,
 )
-from rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
 
 # A shaft without mass, stiff enough that a force of the bearings' size bends it by 1e-11 of their deflection.
 RIGID = ShaftMaterial(2e20, 8e19, 0.0)

@@ -8,7 +8,7 @@ import pytest
 from finite_element_whirl import spatial_matrices
 from scipy import linalg
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     Pedestal,

@@ -13,7 +13,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotors import Bearing, Coupling, Disc, Pedestal, Rotor, RotorError, Segment, ShaftMaterial, read_ross, write_ross
+from gearwhine.rotors import (
+    Bearing,
+    Coupling,
+    Disc,
+    Pedestal,
+    Rotor,
+    RotorError,
+    Segment,
+    ShaftMaterial,
+    read_ross,
+    write_ross,
+)
 
 OURS = ShaftMaterial(211e9, 81.2e9, 7810.0)
 PLAIN = Rotor("plain", [Segment(0.4, 0.05, 0.0, OURS), Segment(0.6, 0.06, 0.02, OURS)], [Disc(0.7, 5.0, 0.1, 0.06)])

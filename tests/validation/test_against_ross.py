@@ -28,7 +28,7 @@ import numpy.typing as npt
 import pytest
 from scipy import linalg
 
-from rotors import (
+from gearwhine.rotors import (
     AxisSpring,
     Bearing,
     Coupling,

@@ -16,13 +16,13 @@ import numpy.typing as npt
 import pytest
 from scipy import sparse
 
-from coupling.gears import Gear
-from coupling.gears.geometry.profile import root_half_angle
-from coupling.gears.stiffness.body_over_face import uneven_shares
-from coupling.gears.stiffness.ring_body import neighbour_compliance
-from housing import Material, assemble
-from housing.fem.factorization import Factorizer
-from meshes import Mesh
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.profile import root_half_angle
+from gearwhine.coupling.gears.stiffness.body_over_face import uneven_shares
+from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance
+from gearwhine.housing import Material, assemble
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

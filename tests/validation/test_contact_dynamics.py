@@ -15,12 +15,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.time.transient import TransientResult
+from gearwhine.coupling import CoupledSystem, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.time.transient import TransientResult
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

@@ -14,13 +14,13 @@ import numpy.typing as npt
 import pytest
 from scipy import sparse
 
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, tooth_coupling
-from coupling.gears.geometry.profile import tooth_outline
-from coupling.gears.stiffness.hertz import line_contact
-from housing import Material, assemble
-from housing.fem.factorization import Factorization, Factorizer
-from meshes import Mesh
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, tooth_coupling
+from gearwhine.coupling.gears.geometry.profile import tooth_outline
+from gearwhine.coupling.gears.stiffness.hertz import line_contact
+from gearwhine.housing import Material, assemble
+from gearwhine.housing.fem.factorization import Factorization, Factorizer
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

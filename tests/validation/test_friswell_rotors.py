@@ -12,8 +12,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, rest_frequencies, solve_torsional_modes, solve_whirl
-from rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    rest_frequencies,
+    solve_torsional_modes,
+    solve_whirl,
+)
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
 Published = Callable[..., None]
 

@@ -15,10 +15,10 @@ from decimal import Decimal, localcontext
 
 import pytest
 
-from coupling.gears import Gear, GearPairGeometry
-from coupling.gears.geometry.involute import involute
-from coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance
-from coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
+from gearwhine.coupling.gears import Gear, GearPairGeometry
+from gearwhine.coupling.gears.geometry.involute import involute
+from gearwhine.coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance
+from gearwhine.coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
 
 Published = Callable[..., None]
 

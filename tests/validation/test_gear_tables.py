@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -25,9 +25,9 @@ from coupling.gears import (
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.loaded.transmission_error import mesh_period_phases
-from coupling.gears.stiffness.hertz import hertz_compliance
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 Published = Callable[..., None]
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import (
+from gearwhine.coupling import (
     CoupledMachine,
     CoupledSystem,
     GearMesh,
@@ -26,16 +26,25 @@ from coupling import (
     coupled_modes,
     stability,
 )
-from coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.geometry.involute import module_from_base_radius
-from coupling.linear.frequency_response import mesh_error_response
-from coupling.machine.components import Component, rotor_component
-from coupling.machine.connectors import ContactConnector
-from coupling.statics.mean_mesh import contact_at
-from rotors import Bearing, Disc, ModalRotor, Rotor, Segment, ShaftMaterial, solve_lateral_modes, solve_torsional_modes
-from rotors.modes.residual_modes import add_attachment_modes
-from rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.coupling.gears import ConstantStiffness, Gear, GearPairGeometry, ToothContact, tooth_contact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.geometry.involute import module_from_base_radius
+from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.machine.components import Component, rotor_component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.statics.mean_mesh import contact_at
+from gearwhine.rotors import (
+    Bearing,
+    Disc,
+    ModalRotor,
+    Rotor,
+    Segment,
+    ShaftMaterial,
+    solve_lateral_modes,
+    solve_torsional_modes,
+)
+from gearwhine.rotors.modes.residual_modes import add_attachment_modes
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

@@ -24,18 +24,18 @@ from scipy.linalg import block_diag
 from scipy.optimize import nnls
 from scipy.sparse.linalg import splu
 
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
-from coupling.gears import ConstantStiffness, HelixDeviation, TipRelief, tooth_contact
-from coupling.gears.contact.face_slices import FaceSlices, face_slices
-from coupling.gears.geometry.toothed_section import toothed_section
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.statics.operating_point import OperatingPoint
-from housing import Housing, HousingModes, Material, Seat, Support
-from meshes import BoxGeometry, mesh_box
-from meshes.box.parts import Bore, WallThickness
-from rotors import Pedestal, Rotor, Segment
-from rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, paired
+from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.gears import ConstantStiffness, HelixDeviation, TipRelief, tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_slices
+from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.housing import Housing, HousingModes, Material, Seat, Support
+from gearwhine.meshes import BoxGeometry, mesh_box
+from gearwhine.meshes.box.parts import Bore, WallThickness
+from gearwhine.rotors import Pedestal, Rotor, Segment
+from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, RollingBearing, paired
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -329,7 +329,7 @@ def test_the_wind_up_of_a_pinion(monkeypatch: pytest.MonkeyPatch, torque_at: flo
     has its slope in the middle, F r_b² / 2 G J. The end where the torque leaves the shaft lags.
     """
     for length in ("_END_LENGTH", "_SPREAD_BENDING", "_SPREAD_TORSION"):
-        monkeypatch.setattr(f"coupling.gears.geometry.toothed_section.{length}", 0.0)
+        monkeypatch.setattr(f"gearwhine.coupling.gears.geometry.toothed_section.{length}", 0.0)
     width = 40e-3
     machine = overhung(width, torque_at)
     beside = [

@@ -18,13 +18,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, newton
 
-from coupling import CoupledSystem
-from coupling.gears import ToothContact
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.machine.components import Component
-from coupling.machine.connectors import ContactConnector
-from coupling.machine.coupled_system import HarmonicLoad
-from coupling.periodic import PeriodicResponse, periodic_response
+from gearwhine.coupling import CoupledSystem
+from gearwhine.coupling.gears import ToothContact
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.machine.components import Component
+from gearwhine.coupling.machine.connectors import ContactConnector
+from gearwhine.coupling.machine.coupled_system import HarmonicLoad
+from gearwhine.coupling.periodic import PeriodicResponse, periodic_response
 
 Published = Callable[..., None]
 

@@ -18,12 +18,12 @@ import numpy as np
 import pytest
 from own_statics import MODULE, PRESSURE, STEEL, distance, linear_bearing, toothed
 
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
-from coupling.gears import ConstantStiffness
-from coupling.gears.geometry.toothed_section import toothed_section
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.statics.operating_point import PairLoad
-from rotors import Rotor, Segment
+from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftGear
+from gearwhine.coupling.gears import ConstantStiffness
+from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.statics.operating_point import PairLoad
+from gearwhine.rotors import Rotor, Segment
 
 Published = Callable[..., None]
 Remark = Callable[[str, str], None]
@@ -112,13 +112,13 @@ def test_a_slender_pinion_between_its_bearings(published: Published, remark: Rem
 def endless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Gears that are as stiff at the ends of the face as within, as the closed forms have them."""
     for length in ("_END_LENGTH", "_SPREAD_BENDING", "_SPREAD_TORSION"):
-        monkeypatch.setattr(f"coupling.gears.geometry.toothed_section.{length}", 0.0)
+        monkeypatch.setattr(f"gearwhine.coupling.gears.geometry.toothed_section.{length}", 0.0)
 
 
 @pytest.fixture
 def unbuildable(monkeypatch: pytest.MonkeyPatch) -> None:
     """Machines that nobody can build: a closed form of twisting alone takes bearings within the face."""
-    monkeypatch.setattr("coupling.machine_description.machine_findings", lambda *_: iter(()))
+    monkeypatch.setattr("gearwhine.coupling.machine_description.machine_findings", lambda *_: iter(()))
 
 
 def twisted(stiffness: float) -> tuple[PairLoad, float]:
@@ -164,7 +164,7 @@ def test_a_twisted_pinion(published: Published, remark: Remark, stiffness: float
 def test_more_stations_come_closer_to_the_twisted_pinion(
     monkeypatch: pytest.MonkeyPatch, stations: int, within: float
 ) -> None:
-    monkeypatch.setattr("coupling.gears.contact.face_slices.FACE_STATIONS", stations)
+    monkeypatch.setattr("gearwhine.coupling.gears.contact.face_slices.FACE_STATIONS", stations)
     pair, size = twisted(1e9)
     assert pair.k_h_beta - 1.0 == pytest.approx(size / math.tanh(size) - 1.0, rel=within)
 

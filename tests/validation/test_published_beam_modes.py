@@ -4,14 +4,14 @@ sdypy-EMA, tests/test_data.py (MIT, https://github.com/sdypy/sdypy-EMA): natural
 constants `complex_modes_true` of six places to one accelerometer, auto-MAC `mac_true`; damping ratios from its
 showcase notebook. The measured responses themselves (data/acc_data.npy) are neither in its wheel nor in its source
 archive, so that they cannot be read here: accelerances are synthesised from the published constants, and the modes
-found in them by the rule of :mod:`housing.measured.identification`. What this proves is that the rule and the
+found in them by the rule of :mod:`gearwhine.housing.measured.identification`. What this proves is that the rule and the
 estimators give the published modes back at their true spacing, damping and complexity; not that they do so from
 the noise of that test.
 """
 
 import numpy as np
 
-from housing.measured import MeasuredGeometry, MeasuredResponses, identify_modes
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredResponses, identify_modes
 
 FREQUENCIES_HZ = np.array(
     [176.07332578, 476.4634351, 932.28540465, 1534.78951957, 2286.31989538, 3162.15866336, 4181.71710178]

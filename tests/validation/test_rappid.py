@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
-from rotors.model.shaft import station_inertias
+from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, solve_whirl
+from gearwhine.rotors.model.shaft import station_inertias
 
 SOURCE = "RAPPID, after the ROSS validation notebook"
 REMARK = (

@@ -24,16 +24,16 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
-from coupling.gears import Gear
-from coupling.gears.contact.contact_law import tooth_contact
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.face_load import FaceContact, face_load_factor
-from coupling.gears.loaded.gear_pair import GearPair
-from coupling.gears.stiffness.models import stiffness_under_load
-from coupling.statics.operating_point import OperatingPoint, PairLoad
-from rotors import Bearing, Rotor, Segment, ShaftMaterial
-from rotors.rolling_bearings import RollingBearing, catalogue_bearing, catalogue_row
+from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.contact.contact_law import tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.face_load import FaceContact, face_load_factor
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears.stiffness.models import stiffness_under_load
+from gearwhine.coupling.statics.operating_point import OperatingPoint, PairLoad
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial
+from gearwhine.rotors.rolling_bearings import RollingBearing, catalogue_bearing, catalogue_row
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

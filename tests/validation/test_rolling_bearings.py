@@ -33,7 +33,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from rotors.rolling_bearings import (
+from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,
     RollerRow,
@@ -50,7 +50,7 @@ from rotors.rolling_bearings import (
     spherical_groove,
     static_rating,
 )
-from rotors.rolling_bearings.life import reference_revolutions
+from gearwhine.rotors.rolling_bearings.life import reference_revolutions
 
 FloatArray = npt.NDArray[np.float64]
 Published = Callable[..., None]

@@ -23,10 +23,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from housing import Material, ModeSet, Support, assemble, attach_fixtures, solve_modes
-from meshes import ElementBlock, Mesh, read_mesh, write_mesh
-from meshes.formats.files import WRITABLE
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.housing import Material, ModeSet, Support, assemble, attach_fixtures, solve_modes
+from gearwhine.meshes import ElementBlock, Mesh, read_mesh, write_mesh
+from gearwhine.meshes.formats.files import WRITABLE
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 Published = Callable[..., None]
 FloatArray = npt.NDArray[np.float64]

@@ -19,7 +19,7 @@ from finite_element_rotor import bending_model, condensed, rod_model
 from finite_element_whirl import spatial_matrices
 from scipy import linalg
 
-from rotors import (
+from gearwhine.rotors import (
     Bearing,
     Disc,
     Rotor,
@@ -30,7 +30,7 @@ from rotors import (
     solve_torsional_modes,
     solve_whirl,
 )
-from rotors.modes.torsional_and_axial import solve_torsional_chain
+from gearwhine.rotors.modes.torsional_and_axial import solve_torsional_chain
 
 FloatArray = npt.NDArray[np.float64]
 

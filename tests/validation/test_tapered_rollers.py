@@ -25,7 +25,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from rotors.rolling_bearings import (
+from gearwhine.rotors.rolling_bearings import (
     RollingBearing,
     RollingState,
     TaperedRollerRow,
@@ -33,7 +33,7 @@ from rotors.rolling_bearings import (
     rolling_equilibrium,
     rolling_state,
 )
-from rotors.rolling_bearings.hertz import STEEL
+from gearwhine.rotors.rolling_bearings.hertz import STEEL
 
 Published = Callable[..., None]
 Remark = Callable[[str, str], None]

@@ -18,16 +18,16 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
-from coupling.signals.peaks import spectral_peaks
-from coupling.signals.spectrum import Spectrum
-from coupling.time.histories import histories, modal_rows, transient_outputs
 from gearwhine.case import Case, load_case
+from gearwhine.coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
+from gearwhine.coupling.signals.peaks import spectral_peaks
+from gearwhine.coupling.signals.spectrum import Spectrum
+from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
 from gearwhine.from_case.gear_pairs import pair_geometries, solve_gears
 from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.rotors import rest_frequencies, solve_torsional_modes
 from gearwhine.solve.machine import build_machine
 from gearwhine.solve.transient import starting_state
-from rotors import rest_frequencies, solve_torsional_modes
 
 FloatArray = npt.NDArray[np.float64]
 

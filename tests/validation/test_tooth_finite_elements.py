@@ -30,7 +30,7 @@ import skfem
 from scipy.sparse.linalg import SuperLU, splu
 from skfem.helpers import ddot, div, sym_grad, trace
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ElasticRingStiffness,
     Gear,
     GearPairGeometry,
@@ -39,9 +39,9 @@ from coupling.gears import (
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.geometry.profile import flank_points, load_angle, tooth_outline
-from coupling.gears.stiffness.beam import PlaneState
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle, tooth_outline
+from gearwhine.coupling.gears.stiffness.beam import PlaneState
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 pytestmark = pytest.mark.slow
 

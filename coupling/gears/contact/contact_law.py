@@ -1,6 +1,7 @@
 r"""Tooth contact law of a gear pair: contact force, mesh stiffness and stored energy by the compression of the mesh.
 
-:class:`ToothContact` holds the law; :func:`coupling.gears.contact.tooth_force_kernels.tooth_force` evaluates its force.
+:class:`ToothContact` holds the law; :func:`gearwhine.coupling.gears.contact.tooth_force_kernels.tooth_force` evaluates
+its force.
 
 At phase ``p`` (mesh periods of the driver) pairs are at ``s_j = frac(p) + j``, j all whole numbers with positions
 in the range of contact.  Each has a stiffness ``k(s)`` and a profile deviation ``d(s)``, its gap in
@@ -10,10 +11,10 @@ nominal motion.  With the compression ``delta`` of the mesh along the line of ac
     U = sum_j 1/2 k'(s_j) max(0, x - d(s_j))^2 + 1/2 C E^2,            r = min(1, max_j(x - d(s_j)) / depth)
 
 C is the compliance that the pairs share: the twist of both gears' bodies, which moves all teeth of a gear alike, and
-the dent of the body under a neighbouring tooth (:mod:`coupling.gears.stiffness.ring_body`). It carries the whole load,
-so it is in series with the pairs, which are in parallel, and x is their compression without it. One pair alone has its
-own k again; the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With C = 0, of
-models that state a pair's stiffness without its bodies, k' = k and x = delta.
+the dent of the body under a neighbouring tooth (:mod:`gearwhine.coupling.gears.stiffness.ring_body`). It carries the
+whole load, so it is in series with the pairs, which are in parallel, and x is their compression without it. One pair
+alone has its own k again; the compliance of two pairs is the matrix with 1/k(s_j) on its diagonal and C beside it. With
+C = 0, of models that state a pair's stiffness without its bodies, k' = k and x = delta.
 
 The damping fades in over the first ``depth`` of compression: full at first touch, the force would jump at every
 impact, and would pull just before the teeth part.  ``dU/d delta = F - c r v``; the rotation of the teeth also does the
@@ -24,8 +25,9 @@ mesh may separate, and returns through the same law.
 
 Pitch deviations add a gap ``f_n`` to the pair that enters at phase n, so to the pair j at phase p the gap of
 ``n = floor(p) - j``: ``d(s_j) + f_n`` then stands for ``d(s_j)`` above
-(:mod:`coupling.gears.geometry.pitch_deviations`).  It is constant while the pair is in contact, so ``dU/dp``, at a
-fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j) dd/dp``, keeps its form, and repeats with the hunting period.
+(:mod:`gearwhine.coupling.gears.geometry.pitch_deviations`).  It is constant while the pair is in contact, so ``dU/dp``,
+at a fixed delta ``sum_j 1/2 dk'/dp (x - d_j)^2 - k' (x - d_j) dd/dp``, keeps its form, and repeats with the hunting
+period.
 
 Backlash is two one-sided contacts, of the drive flanks and of the back flanks, each with this law; between them lies a
 clearance. The back flanks are the same law in a mirror: phase ``back_flank_offset - p``, their own compression (the
@@ -34,17 +36,18 @@ pitch gaps come with `ToothContact.back_flanks`.
 
 Where contact is held to the theoretical path, ``0 <= s < eps``, a deflected tooth without relief comes in and goes
 out with a step in force, as in the sources.  The step is exactly at `event_phases`.  With corner contact
-(:mod:`coupling.gears.geometry.path_of_contact`) pairs touch beyond the path too, over a gap that grows with the
-distance from it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
+(:mod:`gearwhine.coupling.gears.geometry.path_of_contact`) pairs touch beyond the path too, over a gap that grows with
+the distance from it, and the force has no steps; ``k`` is held there at what it is at the end of the path.
 
-Pairs of damaged teeth (:mod:`coupling.gears.geometry.faults`) have a ``k`` and a ``d`` of their own. `tooth_contact`
-makes the law of two gears from a tooth stiffness model.
+Pairs of damaged teeth (:mod:`gearwhine.coupling.gears.geometry.faults`) have a ``k`` and a ``d`` of their own.
+`tooth_contact` makes the law of two gears from a tooth stiffness model.
 
 Where the load is uneven across the face, the bodies that pairs share also tilt and bend over it
-(:mod:`coupling.gears.stiffness.body_over_face`). Static solutions
-(:func:`coupling.gears.loaded.transmission_error.loaded_transmission_error`) have that at every load. The table that
-motion follows holds one pair alone, and pairs of which each tilts the bodies under the others are no sum of such pairs.
-There the tilt counts at the mean load F of the mesh: a deflection g(p) that repeats with the mesh adds to all gaps,
+(:mod:`gearwhine.coupling.gears.stiffness.body_over_face`). Static solutions
+(:func:`gearwhine.coupling.gears.loaded.transmission_error.loaded_transmission_error`) have that at every load. The
+table that motion follows holds one pair alone, and pairs of which each tilts the bodies under the others are no sum of
+such pairs. There the tilt counts at the mean load F of the mesh: a deflection g(p) that repeats with the mesh adds to
+all gaps,
 
     g(p) = delta_tilting(p; F) - delta_even(p; F),
 
@@ -64,10 +67,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, face_equilibrium
-from coupling.gears.contact.lookup_tables import FaceSliceStates, face_force_table, face_slice_states, law_table
-from coupling.gears.contact.tooth_pair import (
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.face_slices import DEFAULT_SLICES, FaceSlices, face_equilibrium
+from gearwhine.coupling.gears.contact.lookup_tables import (
+    FaceSliceStates,
+    face_force_table,
+    face_slice_states,
+    law_table,
+)
+from gearwhine.coupling.gears.contact.tooth_pair import (
     Flattening,
     ToothPairCurves,
     is_whole_mesh,
@@ -76,13 +84,13 @@ from coupling.gears.contact.tooth_pair import (
     tooth_pair_curves,
     without_shared_compliance,
 )
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.pair import GearPairGeometry, IntArray
-from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
-from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth
-from coupling.gears.stiffness.hertz import hertz_compliance
-from coupling.gears.stiffness.models import GIVEN_SPRINGS, StiffnessModel, shared_compliance
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray
+from gearwhine.coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pair_variants, pitch_gaps
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
+from gearwhine.coupling.gears.stiffness.models import GIVEN_SPRINGS, StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -244,7 +252,7 @@ class ToothContact:
     def kernel_arguments(self) -> KernelArguments:
         """Arguments of `coupling.gears.contact.tooth_force_kernels.tooth_force` after phase, compression and rate.
 
-        The row of numbers of `coupling.gears.contact.lookup_tables`, and the index at which it begins.
+        The row of numbers of `gearwhine.coupling.gears.contact.lookup_tables`, and the index at which it begins.
         """
         return self._law, 0
 
@@ -600,7 +608,7 @@ def tooth_contact(
     ----------
     geometry : GearPairGeometry
     model : StiffnessModel
-        See `coupling.gears.stiffness.models`.  A model of the whole mesh (range exactly one base pitch, when
+        See `gearwhine.coupling.gears.stiffness.models`.  A model of the whole mesh (range exactly one base pitch, when
         the contact ratio is not) has no single pairs: the profile deviation is then zero.  Pitch deviations remain,
         one pair for each mesh period.
     damping : float

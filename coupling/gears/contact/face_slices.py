@@ -44,13 +44,13 @@ import numpy.typing as npt
 from scipy.linalg import solveh_banded
 from scipy.linalg.lapack import dptsv
 
-from coupling.gears.errors import ContactAccuracyError
-from coupling.gears.geometry.faults import Spall
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.geometry.profile import tooth_side
-from coupling.gears.stiffness.beam import shear_modulus
-from coupling.gears.stiffness.hertz import hertz_compliance
+from gearwhine.coupling.gears.errors import ContactAccuracyError
+from gearwhine.coupling.gears.geometry.faults import Spall
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.geometry.profile import tooth_side
+from gearwhine.coupling.gears.stiffness.beam import shear_modulus
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
 
 FloatArray = npt.NDArray[np.float64]
 

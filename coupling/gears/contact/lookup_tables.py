@@ -1,9 +1,9 @@
 r"""Lookup tables of the tooth contact law for the compiled kernels: bicubic cells and their memory layout.
 
 Where the load is uneven across the face, force, tangent and energy of such a pair
-(:mod:`coupling.gears.contact.face_slices`) depend on its position s and on the compression ``u`` beyond its first
-touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where contact begins, a cell's force is
-``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is that force's integral
+(:mod:`gearwhine.coupling.gears.contact.face_slices`) depend on its position s and on the compression ``u`` beyond its
+first touch. On a grid of both they are bicubic: with ``u = a r^2`` the grid is fine where contact begins, a cell's
+force is ``f = sum c_mn p^m rho^n`` with p and rho from 0 to 1 across it, and its energy is that force's integral
 ``U = U_0 + int f 2 a r dr``, term by term. So the force is exactly the energy's derivative, whatever the error of the
 table, and motion on it conserves energy. Beyond the last ``u`` the force goes on with its tangent t, which is a cell
 too, ``f = f_end + t a (r^2 - d^2)`` with rho from 0 upward. Where a corner of the profiles, such as a spall's edge,
@@ -42,10 +42,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.face_slices import FaceSlices, face_loads, slice_stiffness
-from coupling.gears.contact.tooth_pair import ToothPairCurves, slope_jumps
-from coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_loads, slice_stiffness
+from gearwhine.coupling.gears.contact.tooth_pair import ToothPairCurves, slope_jumps
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

@@ -8,7 +8,7 @@ line of action by
 
 (speeds w by their magnitude), which reverses at the pitch point. Coulomb's friction on the pair's normal force
 ``F_j / cos(beta_b)``, F_j in the transverse plane, is ``mu F_j / cos(beta_b) sgn(w(s_j))``; see
-:mod:`coupling.gears.contact.tooth_force_kernels` for the sum over the pairs.
+:mod:`gearwhine.coupling.gears.contact.tooth_force_kernels` for the sum over the pairs.
 
 On a helical face every slice has its own position x on the path, its own load q and its own reversal. The
 contributions of a pair to the sums are then integrals over its line of contact,
@@ -16,8 +16,8 @@ contributions of a pair to the sums are then integrals over its line of contact,
     E_j = int q dz,      int q sgn(x - s_C) dz,      int q x sgn(x - s_C) dz,
 
 functions of the position of the face's middle and of the compression beyond first touch alone, as the force itself is:
-they are tables of the same kind (:mod:`coupling.gears.contact.lookup_tables`). A slice that contains the pitch point
-counts by its parts before and behind it.
+they are tables of the same kind (:mod:`gearwhine.coupling.gears.contact.lookup_tables`). A slice that contains the
+pitch point counts by its parts before and behind it.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.contact.lookup_tables import Weight, face_force_table, law_table
-from coupling.gears.errors import GearError, require_finite
-from coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.contact.contact_law import ToothContact
+from gearwhine.coupling.gears.contact.lookup_tables import Weight, face_force_table, law_table
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -51,8 +51,9 @@ class SlidingFriction:
     path_end : float
         End of the path of contact, where corners slide [base pitches].
     shares : ndarray
-        Numbers of `coupling.gears.contact.lookup_tables` for the three integrals over a line of contact that reverses
-        slice by slice, in three variants of pairs for each variant; empty where lines of contact reverse as a whole.
+        Numbers of `gearwhine.coupling.gears.contact.lookup_tables` for the three integrals over a line of contact that
+        reverses slice by slice, in three variants of pairs for each variant; empty where lines of contact reverse as a
+        whole.
     """
 
     coefficient: float

@@ -1,7 +1,7 @@
 r"""Tooth contact force and tooth friction, compiled: scalars and a row of numbers in, scalars out, no allocation.
 
-The law is derived in :mod:`coupling.gears.contact.contact_law`; the contact's row of numbers is laid out by
-:mod:`coupling.gears.contact.lookup_tables` and comes from `ToothContact.kernel_arguments`:
+The law is derived in :mod:`gearwhine.coupling.gears.contact.contact_law`; the contact's row of numbers is laid out by
+:mod:`gearwhine.coupling.gears.contact.lookup_tables` and comes from `ToothContact.kernel_arguments`:
 ``tooth_force(phase, compression, rate, *contact.kernel_arguments)``.
 
 The overhead of calls costs more time here than the arithmetic. Each argument is copied at every call: hence one array.
@@ -18,9 +18,9 @@ are taken to share as they share the elastic one, friction pushes with
 
 along the directions in which a pair at s slides, ``a + s b``. Where a line of contact lies across the path, its slices
 reverse one after another, each under its own load: sums over slices replace the E_j
-(:mod:`coupling.gears.contact.sliding_friction`). With A and B go their slopes by the compression, so that Newton's
-tangent, no longer symmetric, is exact: k_j being that of each pair by the pairs' own compression x, ``A' = (sum_j k_j
-sgn(...) - A k) / E dx/d delta``.
+(:mod:`gearwhine.coupling.gears.contact.sliding_friction`). With A and B go their slopes by the compression, so that
+Newton's tangent, no longer symmetric, is exact: k_j being that of each pair by the pairs' own compression x, ``A' =
+(sum_j k_j sgn(...) - A k) / E dx/d delta``.
 
 Importing this module imports numba.
 """
@@ -32,7 +32,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.lookup_tables import (
+from gearwhine.coupling.gears.contact.lookup_tables import (
     CELL,
     CELLS_AT,
     DAMPING,
@@ -56,7 +56,7 @@ from coupling.gears.contact.lookup_tables import (
     SHARED,
     VARIANT_STEP,
 )
-from rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]
@@ -116,8 +116,8 @@ def face_force(
 ) -> tuple[float, float, float, float]:
     """Force, tangent, energy and the energy's derivative by p of a pair with an uneven load across its face.
 
-    ``cell``: index of its numbers, see :mod:`coupling.gears.contact.lookup_tables`; ``unit (begin + rho)^2`` is the
-    compression beyond first touch, ``per_unit`` is 1 / ``unit``.
+    ``cell``: index of its numbers, see :mod:`gearwhine.coupling.gears.contact.lookup_tables`; ``unit (begin + rho)^2``
+    is the compression beyond first touch, ``per_unit`` is 1 / ``unit``.
     """
     # The force's cubic in rho at this p, and how it changes with p: Horner's scheme for both at once.
     top = law_value(law, cell + 12)
@@ -390,7 +390,7 @@ def tooth_force(phase: float, compression: float, rate: float, law: FloatArray, 
     compression, rate : float
         Compression of the contact [m] and its rate [m/s].
     law : ndarray
-        Numbers of `coupling.gears.contact.lookup_tables`, of one law or of several laws in a row.
+        Numbers of `gearwhine.coupling.gears.contact.lookup_tables`, of one law or of several laws in a row.
     at : int
         Index at which the numbers of this law begin.
 
@@ -524,14 +524,14 @@ def friction_shares(
     Parameters
     ----------
     phase, compression : float
-        Phase and compression as for `coupling.gears.contact.tooth_force_kernels.tooth_force`.
+        Phase and compression as for `gearwhine.coupling.gears.contact.tooth_force_kernels.tooth_force`.
     law : ndarray
     at : int
         Index at which the numbers begin of the contact law or, with ``by_slices``, of `SlidingFriction.shares`.
     by_slices : bool
         Whether the sliding of a line of contact reverses slice by slice.
     pitch_point, path_end : float
-        Distances as in `coupling.gears.contact.sliding_friction.SlidingFriction`.
+        Distances as in `gearwhine.coupling.gears.contact.sliding_friction.SlidingFriction`.
     """
     number, interval, u, _ = locate(law, at, phase)
     # Compression of the pairs without that of the gears' bodies.

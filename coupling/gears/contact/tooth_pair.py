@@ -15,19 +15,19 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.faults import MissingTooth
-from coupling.gears.geometry.gear import Fault, Gear
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.geometry.path_of_contact import (
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.faults import MissingTooth
+from gearwhine.coupling.gears.geometry.gear import Fault, Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.geometry.path_of_contact import (
     LARGEST_GAP,
     LONGEST_REACH,
     corner_contact_range,
     flank_contact_points,
 )
-from coupling.gears.geometry.pitch_deviations import PairFaults
-from coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears.geometry.pitch_deviations import PairFaults
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
 
 FloatArray = npt.NDArray[np.float64]
 Flattening = Callable[[FloatArray], FloatArray]

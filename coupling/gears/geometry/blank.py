@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coupling.gears.geometry.gear import Gear, Inertia
+from gearwhine.coupling.gears.geometry.gear import Gear, Inertia
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact for the quartics of a cone
 

@@ -1,4 +1,4 @@
-"""Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`coupling.gears.stiffness.crack`.
+"""Tooth faults: wear, spalls, missing teeth; cracks are in :mod:`gearwhine.coupling.gears.stiffness.crack`.
 
 A fault changes the pairs that its tooth belongs to: it takes material off the flank, makes the contact softer, or
 both. All are given on the gear, by the number of the tooth in the order in which teeth come into mesh.
@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, require_finite
-from coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.geometry.gear import Gear
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -49,11 +49,11 @@ class Wear:
             raise GearError(f"wear shape must be 'sliding' or 'uniform', got {self.shape!r}")
 
     def require_fit(self, gear: Gear) -> None:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         if self.shape == "uniform":
             return np.full_like(roll_angle, self.depth)
         ends = gear.roll_angle(gear.form_radius), gear.roll_angle(gear.tip_radius)
@@ -113,7 +113,7 @@ class Spall:
             require_finite("spall width", self.width, minimum=0.0)
 
     def require_fit(self, gear: Gear) -> None:
-        """Require that the spall lies on the flank; see `coupling.gears.geometry.gear.Fault`."""
+        """Require that the spall lies on the flank; see `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
         tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
         if not (self.start_roll_angle < tip and self.end_roll_angle > form):
@@ -124,7 +124,7 @@ class Spall:
             )
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         return self.depth * self._inside(roll_angle) if self.across_face(face_width) else np.zeros_like(roll_angle)
 
     def extra_compliance(self, gear: Gear, roll_angle: FloatArray) -> FloatArray:
@@ -132,7 +132,7 @@ class Spall:
         return np.zeros_like(roll_angle)
 
     def more_flattening(self, roll_angle: FloatArray, face_width: float) -> FloatArray:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         if self.across_face(face_width):
             return np.zeros_like(roll_angle)
         part = self._part_of_face(face_width)
@@ -169,7 +169,7 @@ class MissingTooth:
         check_tooth_number("missing tooth", self.tooth)
 
     def require_fit(self, gear: Gear) -> None:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:

@@ -14,14 +14,14 @@ A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the sa
 deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning / (2 m tan(alpha))``, the tip does not.
 
 The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
-over (see :mod:`coupling.gears.geometry.rack`, :mod:`coupling.gears.geometry.profile`).
+over (see :mod:`gearwhine.coupling.gears.geometry.rack`, :mod:`gearwhine.coupling.gears.geometry.profile`).
 
 Mass and moments of inertia are those of the gear blank, the body that carries the teeth. The teeth count as a ring out
 to the reference circle, where they fill half the circumference. A gear without a rim is a disc as wide as its face,
 down to its bore. A gear with a rim is a ring of the full width down to the inside of the rim, and a web of its own
 thickness in the middle of the face from there to the bore; without a web the ring is alone, and its carrier is given as
 a disc of the rotor. A disc without a bore reaches down to the axis; on a shaft its core is part of the shaft
-(:mod:`coupling.gears.geometry.blank`).
+(:mod:`gearwhine.coupling.gears.geometry.blank`).
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
-from coupling.gears.geometry.involute import involute
-from coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
-from coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
-from housing.material import STEEL
-from housing.own_copies import keep_tuples
-from numerics.findings import Finding, refuse
-from numerics.materials import material_findings
+from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTipError, UndercutError, require_finite
+from gearwhine.coupling.gears.geometry.involute import involute
+from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
+from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
+from gearwhine.housing.material import STEEL
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.findings import Finding, refuse
+from gearwhine.numerics.materials import material_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -133,7 +133,7 @@ class Gear:
         sin(alpha))``, or the full tip radius where that is smaller.
     bore : float
         Diameter of the bore [m]; 0 for a gear made from its shaft, which then has the mass of the core
-        (:mod:`coupling.gears.geometry.blank`).
+        (:mod:`gearwhine.coupling.gears.geometry.blank`).
     youngs_modulus, poisson_ratio, density : float
         Material [Pa], [-], [kg/m^3]; steel where not given.
     tip_relief : TipRelief or None
@@ -154,7 +154,7 @@ class Gear:
     helix_deviation : HelixDeviation or None
         Deviation of all flanks from their design across the face.
     faults : tuple of Fault
-        Damaged teeth (:mod:`coupling.gears.geometry.faults`).
+        Damaged teeth (:mod:`gearwhine.coupling.gears.geometry.faults`).
     helix_angle : float
         Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear.
     rim_thickness : float or None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.errors import GearError, require_finite
 
 
 def involute(angle: float) -> float:

@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, require_finite
-from housing.own_copies import keep_tuples
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.housing.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ReliefShape = Literal["linear", "parabolic"]

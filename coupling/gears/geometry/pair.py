@@ -29,10 +29,16 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, InterferenceError, MismatchedGearsError, NoContactError, require_finite
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.involute import inverse_involute, involute
-from numerics.findings import Finding
+from gearwhine.coupling.gears.errors import (
+    GearError,
+    InterferenceError,
+    MismatchedGearsError,
+    NoContactError,
+    require_finite,
+)
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
+from gearwhine.numerics.findings import Finding
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -153,8 +159,8 @@ class GearPairGeometry:
         """Driver and driven gear, each with its effective face width for the load on the common face.
 
         Teeth beside the common face of width b support those in it: as a foundation with shear coupling
-        (:mod:`coupling.gears.contact.face_slices`), whose deflection decays over the length λ. Overhangs o at both ends
-        make a tooth under an even load on b as stiff as one of the width
+        (:mod:`gearwhine.coupling.gears.contact.face_slices`), whose deflection decays over the length λ. Overhangs o at
+        both ends make a tooth under an even load on b as stiff as one of the width
 
             b / (1 - Σ w / b),        w = λ/2 (1 - exp(-2 o / λ)).
         """

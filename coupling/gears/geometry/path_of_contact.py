@@ -33,7 +33,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.geometry.gear import Fault, Gear
-from coupling.gears.geometry.pair import GearPairGeometry, IntArray
+from gearwhine.coupling.gears.geometry.gear import Fault, Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, IntArray
 
 FloatArray = npt.NDArray[np.float64]
 

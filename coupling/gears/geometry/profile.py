@@ -10,8 +10,8 @@ flank
     height = rb ((tau + psi) sin(tau) + cos(tau)).
 fillet
     the angle ``gamma`` between the rack's pitch line and the common normal of rack and gear, see
-    :mod:`coupling.gears.geometry.rack`.  It runs from pi/2 (bottom of the space) to `Gear.fillet_end` (start of the
-    involute), which is the transverse pressure angle but for undercut teeth.
+    :mod:`gearwhine.coupling.gears.geometry.rack`.  It runs from pi/2 (bottom of the space) to `Gear.fillet_end` (start
+    of the involute), which is the transverse pressure angle but for undercut teeth.
 
 All of it is in the transverse plane; tip relief, a few micrometres, is not drawn.
 
@@ -33,9 +33,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -130,7 +130,7 @@ def tooth_outline(gear: Gear, points: int = 60) -> FloatArray:
 
     See Also
     --------
-    coupling.gears.geometry.profile.gear_outline : all teeth, at any rotation and place.
+    gearwhine.coupling.gears.geometry.profile.gear_outline : all teeth, at any rotation and place.
     """
     across, along = tooth_side(gear, points)
     left = np.column_stack([-across, along])

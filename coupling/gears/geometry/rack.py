@@ -42,7 +42,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from coupling.gears.geometry.involute import involute
+from gearwhine.coupling.gears.geometry.involute import involute
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from coupling.gears.errors import GearError, require_finite
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.involute import inverse_involute, involute
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
 
 CUSTOMARY_BALL = 1.728
 """Diameter of measuring balls and wires in modules: for external gears by the American custom."""

@@ -31,8 +31,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import gear_outline
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import gear_outline
 
 _POINTS = 6  # number of outline points on each fillet and each flank
 _TORSION_DEPTH = 0.335  # transverse modules, by finite elements of sections

@@ -27,10 +27,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.contact_law import ToothContact
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.gears.contact.contact_law import ToothContact
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ the pitch point is
 y_j the approach at stations of the face along the line of action, N_j Lagrange's polynomials over them, y_t the
 relative tilt of the two shafts in the plane of action [rad], and h the axial part of the tooth force over its
 transverse part. The conjugate loads follow by virtual work, ``f_j = sum q w N_j`` and ``f_t = -h sum q w xi``, with q
-the load per width on slices of the width w (:mod:`coupling.gears.contact.face_slices`).
+the load per width on slices of the width w (:mod:`gearwhine.coupling.gears.contact.face_slices`).
 
 Over a mesh period the number of pairs in contact changes while the torques, and so the mesh force ``F = sum_j f_j``,
 stay, and so does the shape of the shafts. With the approach split into its mean over the face and its shape,
@@ -31,8 +31,8 @@ that approach evenly, without helix modifications,
     K_Hβ = max w(z) / w_0(z).
 
 w_0 of spur gears is the mean of w. A load that tilts over the face twists the teeth, and a twisted tooth presses back
-at its ends, over sqrt(T / (k_b + k_h)), some third of a module (:mod:`coupling.gears.contact.face_slices`). The middles
-of the slices stop short of the end; a parabola through the last three gives the load there.
+at its ends, over sqrt(T / (k_b + k_h)), some third of a module (:mod:`gearwhine.coupling.gears.contact.face_slices`).
+The middles of the slices stop short of the end; a parabola through the last three gives the load there.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
-from coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
-from coupling.gears.errors import ContactAccuracyError, GearError
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.gears.contact.contact_law import ToothContact, places_on_line_of_action
+from gearwhine.coupling.gears.contact.face_slices import FaceLoads, face_equilibrium, face_yield, lagrange
+from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 
 FloatArray = npt.NDArray[np.float64]
 

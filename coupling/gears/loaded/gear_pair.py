@@ -13,15 +13,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.gears.contact.contact_law import ToothContact, law_between_rims, slices_of_teeth, tooth_contact
-from coupling.gears.contact.face_slices import FaceSlices, face_slices
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.faults import MissingTooth
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, pair_label, turning_sense
-from coupling.gears.loaded.transmission_error import LoadedMesh, hunting_period_mesh, loaded_transmission_error
-from coupling.gears.stiffness.crack import ToothCrack
-from coupling.gears.stiffness.models import (
+from gearwhine.coupling.gears.contact.contact_law import ToothContact, law_between_rims, slices_of_teeth, tooth_contact
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_slices
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.faults import MissingTooth
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry, mesh_frequency, pair_label, turning_sense
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    LoadedMesh,
+    hunting_period_mesh,
+    loaded_transmission_error,
+)
+from gearwhine.coupling.gears.stiffness.crack import ToothCrack
+from gearwhine.coupling.gears.stiffness.models import (
     GIVEN_SPRINGS,
     SquareStiffness,
     StiffnessModel,
@@ -29,8 +33,8 @@ from coupling.gears.stiffness.models import (
     rim_compliances,
     stiffness_under_load,
 )
-from housing.own_copies import keep_tuples
-from numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 
 
 def equivalent_mass(
@@ -88,7 +92,8 @@ class GearPair:
     driver, driven : str
         Names of the gears.
     stiffness : StiffnessModel or str
-        Model of the teeth; a key of :data:`coupling.gears.STIFFNESS_MODELS` means that model at the load of the pair.
+        Model of the teeth; a key of :data:`gearwhine.coupling.gears.STIFFNESS_MODELS` means that model at the load of
+        the pair.
     damping_ratio : float
         Fraction of critical damping of the two rims rotating against each other.
     damping : float, optional
@@ -100,11 +105,11 @@ class GearPair:
         Coefficient of friction between the teeth.
     misalignment : float, optional
         Angle between the flanks in the plane of action, open towards +z [rad]; None: that of the machine's operating
-        point, see :meth:`coupling.Machine.at_operating_point`. Flanks of a pair apart from a machine, or in one
-        without such a point, are aligned then.
+        point, see :meth:`gearwhine.coupling.Machine.at_operating_point`. Flanks of a pair apart from a machine, or in
+        one without such a point, are aligned then.
     face_gap : tuple of float
         Gap of the flanks over the face that comes with the misalignment [m], at the stations of
-        :func:`coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
+        :func:`gearwhine.coupling.gears.contact.face_slices.face_stations`: that of bent and twisted shafts.
     corner_contact : bool, optional
         Whether teeth touch beyond their path of contact; None: with a stiffness model of pairs of teeth.
     """

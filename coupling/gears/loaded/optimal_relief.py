@@ -18,19 +18,19 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
-from coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, with_flanks_of
-from coupling.gears.contact.face_slices import FaceSlices
-from coupling.gears.errors import GearError, require_finite
-from coupling.gears.geometry.modifications import ReliefShape, TipRelief
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.loaded.transmission_error import (
+from gearwhine.coupling.gears.contact.contact_law import ToothContact, slices_of_teeth, tooth_contact, with_flanks_of
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.geometry.modifications import ReliefShape, TipRelief
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.loaded.transmission_error import (
     LoadedMesh,
     loaded_transmission_error,
     mesh_period_phases,
     transmission_error_phasors,
 )
-from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.models import StiffnessModel, shared_compliance
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears.stiffness.models import StiffnessModel, shared_compliance
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -4,8 +4,8 @@ At each phase the pairs' forces balance the load, ``sum_j k'_j max(0, x - d_j) =
 side is piecewise linear and increasing, so with the pairs sorted by deviation the answer is exact: with the n
 least relieved pairs touching ``x = (F + sum k'_j d_j) / sum k'_j``, and n is the number for which this lies
 above the n-th and not above the next deviation.  The shared compliance adds, ``delta = x + C F``
-(:mod:`coupling.gears.contact.contact_law`): under a constant load it is constant, and only shifts the transmission
-error.
+(:mod:`gearwhine.coupling.gears.contact.contact_law`): under a constant load it is constant, and only shifts the
+transmission error.
 
 Over the hunting period each different mesh period is solved once. Mesh periods differ by the pairs that can touch in
 them: by their pitch gaps and their damaged teeth. One cracked tooth makes a few mesh periods different from all others,
@@ -20,11 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.contact.contact_law import PairStates, ToothContact
-from coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, face_loads
-from coupling.gears.errors import ContactAccuracyError, GearError
-from coupling.gears.geometry.faults import NO_CONTACT_GAP
-from coupling.gears.geometry.pair import IntArray
+from gearwhine.coupling.gears.contact.contact_law import PairStates, ToothContact
+from gearwhine.coupling.gears.contact.face_slices import FaceSlices, face_equilibrium, face_loads
+from gearwhine.coupling.gears.errors import ContactAccuracyError, GearError
+from gearwhine.coupling.gears.geometry.faults import NO_CONTACT_GAP
+from gearwhine.coupling.gears.geometry.pair import IntArray
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -25,10 +25,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import ALLOWED_REACH
-from coupling.gears.geometry.profile import ProfilePoints, fillet_points, flank_points, load_angle
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import ALLOWED_REACH
+from gearwhine.coupling.gears.geometry.profile import ProfilePoints, fillet_points, flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -57,11 +57,11 @@ def beam_compliance(
     ----------
     gear : Gear
         A spur gear; pair models of helical gears take their normal section
-        (:mod:`coupling.gears.stiffness.compliant_teeth`).
+        (:mod:`gearwhine.coupling.gears.stiffness.compliant_teeth`).
     radius : ndarray
         Radii of the loaded points [m], from the form radius to the tip.
     foot : float
-        Parameter of `coupling.gears.geometry.profile.fillet_points` at which the beam is clamped [rad].
+        Parameter of `gearwhine.coupling.gears.geometry.profile.fillet_points` at which the beam is clamped [rad].
     state : {"plane-stress", "plane-strain"}
 
     Returns

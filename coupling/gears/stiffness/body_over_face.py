@@ -1,9 +1,9 @@
 r"""Deflection of a gear body that neighbouring teeth share, under a load that varies over the face: an elastic ring.
 
-:mod:`coupling.gears.stiffness.ring_body` is plane: the same load all over the face. Under a load that varies over the
-face the body yields less, the more so the narrower the face is against its radius: the sections of the ring hold each
-other by shear. The ring from the circle where it is held to the root circle is a solid here, of the face's width and
-with free ends. Its displacements are
+:mod:`gearwhine.coupling.gears.stiffness.ring_body` is plane: the same load all over the face. Under a load that varies
+over the face the body yields less, the more so the narrower the face is against its radius: the sections of the ring
+hold each other by shear. The ring from the circle where it is held to the root circle is a solid here, of the face's
+width and with free ends. Its displacements are
 
     u_r = U(r, z) cos n t,    u_t = V(r, z) sin n t,    u_z = W(r, z) cos n t
 
@@ -28,10 +28,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import load_angle, root_half_angle
-from coupling.gears.stiffness.foundation import held_radius
-from coupling.gears.stiffness.ring_body import SOLID_HOLD, Annulus, body_rings, kolosov, root_stamp
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import load_angle, root_half_angle
+from gearwhine.coupling.gears.stiffness.foundation import held_radius
+from gearwhine.coupling.gears.stiffness.ring_body import SOLID_HOLD, Annulus, body_rings, kolosov, root_stamp
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def uneven_shares(gear: Gear, radius: float, width: float, *, twists: bool = Tru
         Face width over the root radius.
     twists : bool
         Whether the twist of the whole body about its bore is shared, as for
-        `coupling.gears.stiffness.ring_body.neighbour_compliance`.
+        `gearwhine.coupling.gears.stiffness.ring_body.neighbour_compliance`.
 
     Returns
     -------

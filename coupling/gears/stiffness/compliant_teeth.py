@@ -10,16 +10,17 @@ Neighbouring pairs stand on the same two bodies.  A load on one moves the other'
 
     C(s) = c_k(s + 1, s) + c_i(s, s + 1),
 
-c_k and c_i the cross compliances of two neighbouring teeth of each gear (:mod:`coupling.gears.stiffness.ring_body`):
-the twist of the body about its bore, which both teeth feel in full, and the dent around the root.  As one load moves
-up its tooth the other moves down, so that C varies by less than 1 % while both pairs touch; the law takes its mean for
-all pairs. Under a load that varies over the face the bodies yield less (`CompliantTeeth.shared_over_face`).
+c_k and c_i the cross compliances of two neighbouring teeth of each gear
+(:mod:`gearwhine.coupling.gears.stiffness.ring_body`): the twist of the body about its bore, which both teeth feel in
+full, and the dent around the root.  As one load moves up its tooth the other moves down, so that C varies by less than
+1 % while both pairs touch; the law takes its mean for all pairs. Under a load that varies over the face the bodies
+yield less (`CompliantTeeth.shared_over_face`).
 
 A new tooth model is one subclass of `CompliantTeeth`: it gives the compliance of one tooth (`solve_tooth`) and, where
 neighbouring teeth share a body, that body (`shared_body`).  Its name in cases comes from the list in
-:mod:`coupling.gears.stiffness.models`.
+:mod:`gearwhine.coupling.gears.stiffness.models`.
 
-Helical teeth are treated in their normal section (:mod:`coupling.gears.stiffness.normal_section`).
+Helical teeth are treated in their normal section (:mod:`gearwhine.coupling.gears.stiffness.normal_section`).
 """
 
 from __future__ import annotations
@@ -34,17 +35,17 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.piecewise_cubic import PiecewiseCubic, chebyshev_interpolant
-from coupling.gears.stiffness.beam import PlaneState
-from coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneven_shares
-from coupling.gears.stiffness.hertz import hertz_compliance, line_contact
-from coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
-from coupling.gears.stiffness.rim_on_hub import shift_compliance
-from coupling.gears.stiffness.ring_body import neighbour_compliance, twist_compliance
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic, chebyshev_interpolant
+from gearwhine.coupling.gears.stiffness.beam import PlaneState
+from gearwhine.coupling.gears.stiffness.body_over_face import FACE_SHAPES, uneven_shares
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance, line_contact
+from gearwhine.coupling.gears.stiffness.normal_section import Compliance, largest_section, transverse_compliance
+from gearwhine.coupling.gears.stiffness.rim_on_hub import shift_compliance
+from gearwhine.coupling.gears.stiffness.ring_body import neighbour_compliance, twist_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -124,7 +125,7 @@ class CompliantTeeth(ABC):
     Parameters
     ----------
     contact : {"yang-sun", "weber"}
-        Contact compliance, see :mod:`coupling.gears.stiffness.hertz`.
+        Contact compliance, see :mod:`gearwhine.coupling.gears.stiffness.hertz`.
     force : float or None
         Load of the pair at which Weber's contact is frozen [N]; None for `REFERENCE_LINE_LOAD`.
 
@@ -191,8 +192,8 @@ class CompliantTeeth(ABC):
     def rim_compliances(self, geometry: GearPairGeometry) -> tuple[RimCompliance, RimCompliance]:
         """Parts of `shared_compliance` by which the rims of the driver and of the driven gear move on their hubs.
 
-        They lie between the shaft and the rim with its inertia (:mod:`coupling.gears.stiffness.rim_on_hub`); what else
-        neighbouring teeth share lies between the rim and the teeth.
+        They lie between the shaft and the rim with its inertia (:mod:`gearwhine.coupling.gears.stiffness.rim_on_hub`);
+        what else neighbouring teeth share lies between the rim and the teeth.
         """
         compliances = []
         for gear, shared in zip(geometry.carrying_gears, self._shared_by_gear(geometry), strict=True):
@@ -209,7 +210,7 @@ class CompliantTeeth(ABC):
         """Compliance that pairs share under loads that vary over the face like Legendre's polynomials p_m [m/N].
 
         A force F spread like p_l over the face, mean p_l² = 1, moves all flanks by ``F C_ml p_m`` of both gears
-        (:mod:`coupling.gears.stiffness.body_over_face`).
+        (:mod:`gearwhine.coupling.gears.stiffness.body_over_face`).
 
         Returns
         -------

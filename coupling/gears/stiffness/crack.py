@@ -9,9 +9,9 @@ With the half thickness x at height y, that at the root x_r, at the tip x_a, and
 
     t(y) = min(2 x, x + x_c + max(0, x_a - x_c) (y - y_r) / (y_a - y_r)),    x_c = x_r - q sin(a),
 
-takes the place of 2 x in the bending, shear and compression of :mod:`coupling.gears.stiffness.beam`. The flanks'
-contact and the body below are as in a sound tooth. The section is the normal one of helical teeth, as for sound teeth
-(:mod:`coupling.gears.stiffness.normal_section`): depth and angle of the crack are measured in it.
+takes the place of 2 x in the bending, shear and compression of :mod:`gearwhine.coupling.gears.stiffness.beam`. The
+flanks' contact and the body below are as in a sound tooth. The section is the normal one of helical teeth, as for sound
+teeth (:mod:`gearwhine.coupling.gears.stiffness.normal_section`): depth and angle of the crack are measured in it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError, require_finite
-from coupling.gears.geometry.faults import check_tooth_number, require_tooth
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
-from coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
-from coupling.gears.stiffness.normal_section import transverse_compliance
+from gearwhine.coupling.gears.errors import GearError, require_finite
+from gearwhine.coupling.gears.geometry.faults import check_tooth_number, require_tooth
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
+from gearwhine.coupling.gears.stiffness.beam import ROOT_CIRCLE, shear_modulus, tooth_sections
+from gearwhine.coupling.gears.stiffness.normal_section import transverse_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -64,7 +64,7 @@ class ToothCrack:
             raise GearError(f"crack angle must be above 0 and at most 90 degrees in rad, got {self.angle!r} rad")
 
     def require_fit(self, gear: Gear) -> None:
-        """See `coupling.gears.geometry.gear.Fault`."""
+        """See `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
 
     def gap(self, gear: Gear, roll_angle: FloatArray, *, pitch_roll_angle: float, face_width: float) -> FloatArray:

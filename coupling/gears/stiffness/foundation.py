@@ -21,8 +21,8 @@ the formula less that twist in closed form.  The dent hardly depends on the bore
 range for 28 teeth and more); it is taken at h = 3, in the middle of the range, where the twist is small.
 
 The formula takes the deflection at the middle of the root arc, and published cases take u to the loaded point of the
-flank.  Both make the body too soft: see :mod:`coupling.gears.stiffness.tooth_compliance` for the same ring without
-either.
+flank.  Both make the body too soft: see :mod:`gearwhine.coupling.gears.stiffness.tooth_compliance` for the same ring
+without either.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import flank_points, load_angle, root_half_angle
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle, root_half_angle
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -27,11 +27,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import GearError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.geometry.profile import flank_points, load_angle
-from coupling.gears.stiffness.normal_section import in_normal_section
+from gearwhine.coupling.gears.errors import GearError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle
+from gearwhine.coupling.gears.stiffness.normal_section import in_normal_section
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -25,11 +25,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
 
 _PER_MM_AND_UM = 1e9
 """Factor from N/(mm um) to N/m per metre of face width."""

@@ -32,20 +32,20 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.pair import GearPairGeometry
-from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth, RimCompliance
-from coupling.gears.stiffness.foundation import require_thick_ring
-from coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
-from coupling.gears.stiffness.tooth_compliance import (
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.pair import GearPairGeometry
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth, RimCompliance
+from gearwhine.coupling.gears.stiffness.foundation import require_thick_ring
+from gearwhine.coupling.gears.stiffness.iso6336 import Iso6336Stiffness, iso6336_stiffness
+from gearwhine.coupling.gears.stiffness.tooth_compliance import (
     CornellStiffness,
     ElasticRingStiffness,
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
 )
-from housing.own_copies import keep_arrays
+from gearwhine.housing.own_copies import keep_arrays
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.gear import Gear
 
 FloatArray = npt.NDArray[np.float64]
 OverRadii = Callable[..., FloatArray]

@@ -1,9 +1,9 @@
 r"""Rim of a gear on its hub: stiffness and inertia of its rotation and of its shift across the shaft.
 
 The body is the ring or the rings between the circle a where it is held and the root circle b
-(:mod:`coupling.gears.stiffness.ring_body`). What it yields between the two circles as a whole is strained near the
-bore, while its inertia is near the rim. With the static shape of each motion as the only one in dynamics (the static
-condensation of Guyan 1965) the rim is a rigid body on a spring, and energy and inertia are consistent.
+(:mod:`gearwhine.coupling.gears.stiffness.ring_body`). What it yields between the two circles as a whole is strained
+near the bore, while its inertia is near the rim. With the static shape of each motion as the only one in dynamics (the
+static condensation of Guyan 1965) the rim is a rigid body on a spring, and energy and inertia are consistent.
 
 *Rotation.* Under a torque from hub to rim the circle of radius r turns by the part
 
@@ -33,10 +33,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.stiffness.beam import PlaneState
-from coupling.gears.stiffness.foundation import held_radius
-from coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_motions, root_motion
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.stiffness.beam import PlaneState
+from gearwhine.coupling.gears.stiffness.foundation import held_radius
+from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, ring_motions, root_motion
 
 FloatArray = npt.NDArray[np.float64]
 

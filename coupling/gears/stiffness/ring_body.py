@@ -47,11 +47,11 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import load_angle, root_half_angle
-from coupling.gears.stiffness.beam import PlaneState, plane_modulus
-from coupling.gears.stiffness.foundation import held_radius
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import load_angle, root_half_angle
+from gearwhine.coupling.gears.stiffness.beam import PlaneState, plane_modulus
+from gearwhine.coupling.gears.stiffness.foundation import held_radius
 
 FloatArray = npt.NDArray[np.float64]
 

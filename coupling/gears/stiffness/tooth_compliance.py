@@ -1,8 +1,9 @@
 """Tooth compliance models: potential energy method, elastic ring, Cornell (1981), Weber-Banaschek (1953).
 
 **Potential energy method** (Ma et al. 2014) with Sainsot's gear body and Yang & Sun's contact: the tooth is a beam on
-the root circle (:mod:`coupling.gears.stiffness.beam`, in plane stress), the body a ring held at its bore
-(:mod:`coupling.gears.stiffness.foundation`); the rim's share is that of :mod:`coupling.gears.stiffness.ring_body`.
+the root circle (:mod:`gearwhine.coupling.gears.stiffness.beam`, in plane stress), the body a ring held at its bore
+(:mod:`gearwhine.coupling.gears.stiffness.foundation`); the rim's share is that of
+:mod:`gearwhine.coupling.gears.stiffness.ring_body`.
 
 **Elastic ring model**: the potential energy method with the tooth as a beam on an exact elastic ring.
 
@@ -15,29 +16,29 @@ the work of the load asks for, and the longer lever adds to it: tooth and body c
 finite-element model.  Here
 
 * the tooth is a beam on the root circle, plane sections, with the same integrals
-  (:mod:`coupling.gears.stiffness.beam`), from the height of the root circle up: what lies between the circle and
-  its chord belongs to the body;
+  (:mod:`gearwhine.coupling.gears.stiffness.beam`), from the height of the root circle up: what lies between the circle
+  and its chord belongs to the body;
 * its root section is the rigid arc that plane sections make it, and the body is the ring under that arc
-  (:mod:`coupling.gears.stiffness.ring_body`), loaded in full equilibrium with the load on the flank.
+  (:mod:`gearwhine.coupling.gears.stiffness.ring_body`), loaded in full equilibrium with the load on the flank.
 
 No number is fitted.  Against finite elements (tests/validation) the model is -2 to +8 % off, most where the load is
 near the root and the tooth is no beam; neighbouring teeth, which stiffen the root by some 2 %, are left out. The cross
-compliance of the next tooth is `coupling.gears.stiffness.ring_body.neighbour_compliance`.
+compliance of the next tooth is `gearwhine.coupling.gears.stiffness.ring_body.neighbour_compliance`.
 
 **Cornell's tooth model** (1981): a cantilever on an effective fillet section, and O'Donnell's foundation.
 
 R. W. Cornell, "Compliance and stress sensitivity of spur gear teeth", J. Mech. Design 103 (1981).  The beam's part is
-that of :mod:`coupling.gears.stiffness.beam` from the effective fillet section up to the load, which stands where the
-fillet's tangent leans by 75 degrees from the tooth's axis.  The body is a half plane under the bending moment, shear
-and thrust of that section (O'Donnell, J. Appl. Mechanics 27, 1960).  With ``l`` the lever from the section
-to where the line of action crosses the axis, and ``h`` the section's thickness:
+that of :mod:`gearwhine.coupling.gears.stiffness.beam` from the effective fillet section up to the load, which stands
+where the fillet's tangent leans by 75 degrees from the tooth's axis.  The body is a half plane under the bending
+moment, shear and thrust of that section (O'Donnell, J. Appl. Mechanics 27, 1960).  With ``l`` the lever from the
+section to where the line of action crosses the axis, and ``h`` the section's thickness:
 
     plane stress  cos(beta)^2 / (E b) (16.67/pi (l/h)^2 + 2 (1 - nu) l/h + 1.534 (1 + tan(beta)^2 / (2.4 (1 + nu))))
     plane strain  cos(beta)^2 (1 - nu^2) / (E b)
                   (16.67/pi (l/h)^2 + 2 (1 - nu - 2 nu^2)/(1 - nu^2) l/h + 1.534 (1 + tan(beta)^2 / (2.4 (1 + nu))))
 
 A tooth is wide, in plane strain, where its face is more than five thicknesses at the reference circle.  The contact is
-Weber's (:mod:`coupling.gears.stiffness.hertz`).
+Weber's (:mod:`gearwhine.coupling.gears.stiffness.hertz`).
 
 The paper itself was not at hand: the equations are in the form in which NASA's gear dynamics reports quote them, and
 the effective fillet angle is O'Donnell's fixed one, where Cornell derives it from the tooth.  A half plane knows no
@@ -55,9 +56,10 @@ line of action crossing it at ``y_p``, thickness ``d(y)`` and root thickness ``s
             (18/pi (y_p/s)^2 + 2 (1 - 2 nu)/(1 - nu) y_p/s + 4.8/pi (1 + (1 - nu)/2.4 tan(beta)^2))
 
 which for ``nu = 0.3`` is usually printed with the rounded numbers 10.92, 3.1 (1 + 0.294 tan(beta)^2) and
-5.2, 1, 1.4 (1 + 0.294 tan(beta)^2).  The tooth is :mod:`coupling.gears.stiffness.beam` in plane strain, from the root
-circle.  The body's constants are those of a half plane under a linear normal and a parabolic shear
-traction, by the work they do; a test finds them again.  The contact is Weber's (:mod:`coupling.gears.stiffness.hertz`).
+5.2, 1, 1.4 (1 + 0.294 tan(beta)^2).  The tooth is :mod:`gearwhine.coupling.gears.stiffness.beam` in plane strain, from
+the root circle.  The body's constants are those of a half plane under a linear normal and a parabolic shear
+traction, by the work they do; a test finds them again.  The contact is Weber's
+(:mod:`gearwhine.coupling.gears.stiffness.hertz`).
 
 The book was not at hand: the form is that of later papers that quote it, its constants read as functions of ``nu`` by
 the half plane they come from.
@@ -72,9 +74,9 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
-from coupling.gears.stiffness.beam import (
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
+from gearwhine.coupling.gears.stiffness.beam import (
     ROOT_CIRCLE,
     PlaneState,
     axis_crossing,
@@ -82,15 +84,15 @@ from coupling.gears.stiffness.beam import (
     foot_at_height,
     foot_at_slope,
 )
-from coupling.gears.stiffness.compliant_teeth import (
+from gearwhine.coupling.gears.stiffness.compliant_teeth import (
     CompliantTeeth,
     ContactModel,
     SharedBody,
     SolvedTooth,
     ToothCompliance,
 )
-from coupling.gears.stiffness.foundation import RootSection, foundation_compliance
-from coupling.gears.stiffness.ring_body import rim_compliance, ring_compliance
+from gearwhine.coupling.gears.stiffness.foundation import RootSection, foundation_compliance
+from gearwhine.coupling.gears.stiffness.ring_body import rim_compliance, ring_compliance
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -102,7 +104,7 @@ class PotentialEnergyStiffness(CompliantTeeth):
     Parameters
     ----------
     root_section : {"ma2014", "trochoid"}
-        See `coupling.gears.stiffness.foundation.root_section_angle`.
+        See `gearwhine.coupling.gears.stiffness.foundation.root_section_angle`.
     contact, force
         See `CompliantTeeth`.
     """

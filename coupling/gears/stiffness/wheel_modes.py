@@ -11,8 +11,8 @@ methods; Wilson 1965). Its strains are
     ε_r = U_r,  ε_θ = (U + n V)/r,  ε_z = W_z,  γ_rz = U_z + W_r,  γ_rθ = V_r - (V + n U)/r,  γ_θz = V_z - n W/r.
 
 A section that is symmetric about the middle of the face has motions in its plane and out of it, which do not couple.
-Those in the plane are in :mod:`coupling.gears.stiffness.rim_on_hub` and, beyond rotation and shift, in the static
-compliance of the teeth. Out of the plane, with U = V = 0 at z = 0, are
+Those in the plane are in :mod:`gearwhine.coupling.gears.stiffness.rim_on_hub` and, beyond rotation and shift, in the
+static compliance of the teeth. Out of the plane, with U = V = 0 at z = 0, are
 
 - n = 0, the *umbrella*: the rim moves along the axis, which exchanges a force with the hub,
 - n = 1, one nodal diameter: the rim tilts, which exchanges a moment with the hub,
@@ -45,8 +45,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from coupling.gears.geometry.gear import Gear
-from coupling.gears.stiffness.foundation import held_radius
+from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.stiffness.foundation import held_radius
 
 FloatArray = npt.NDArray[np.float64]
 

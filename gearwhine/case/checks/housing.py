@@ -18,7 +18,7 @@ from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
 
 if TYPE_CHECKING:
-    from meshes import BoxGeometry
+    from gearwhine.meshes import BoxGeometry
 
 _IN_THE_FILE = {"start": "from", "end": "to"}
 
@@ -28,10 +28,10 @@ def box_geometry(box: Box, seats: Sequence[Seat]) -> BoxGeometry:
 
     Raises
     ------
-    meshes.GeometryError
+    gearwhine.meshes.GeometryError
         Where its parts do not fit each other.
     """
-    from meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
+    from gearwhine.meshes import Bore, Boss, BoxGeometry, Cover, CoverBolts, Feet, Fillets, Flange, Rib, WallThickness
 
     walls, cover = box.walls, box.cover
     bores = []
@@ -67,9 +67,9 @@ def box_findings(box: Box, seats: Sequence[tuple[int, Seat]]) -> Iterator[Findin
     seats : sequence of (int, Seat)
         Seats of the box, each with its place in the case.
     """
-    from meshes import GeometryError, check_mesh_size
-    from meshes.box.geometry import BoxMisfitError
-    from meshes.errors import MeshSizeError
+    from gearwhine.meshes import GeometryError, check_mesh_size
+    from gearwhine.meshes.box.geometry import BoxMisfitError
+    from gearwhine.meshes.errors import MeshSizeError
 
     try:
         box_geometry(box, [seat for _, seat in seats])

@@ -3,7 +3,7 @@
 - Shafts: stations on their rotors, and rotor axes against bearing seats.
 - Bearings: tables over speed that fit and reach far enough, pedestals on the ground.
 - Gears: teeth that can be cut, gears that can mesh on their axes, loops that can turn. The geometry is that of
-  :mod:`coupling.gears`; its errors are put in the words of the case file.
+  :mod:`gearwhine.coupling.gears`; its errors are put in the words of the case file.
 - Operation: a train in which every shaft turns, balanced torques, a transient that can be run.
 """
 
@@ -26,8 +26,8 @@ from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, Torsi
 from gearwhine.case.speeds_and_torques import pair_torques
 
 if TYPE_CHECKING:
-    from coupling.gears import Gear as BuiltGear
-    from coupling.machine.gear_train import GearTrain
+    from gearwhine.coupling.gears import Gear as BuiltGear
+    from gearwhine.coupling.machine.gear_train import GearTrain
 
 NEAREST_POINTS = 1e-6
 """Distance between two points of a bow below which they are one, as a part of the rotor's length."""
@@ -127,7 +127,7 @@ _BORE_ERROR = 1e-3  # offset of a seat below which it is one of manufacture [m]
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
-    from coupling.machine.gear_train import LARGEST_OFFSET
+    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
 
     offset = math.hypot(rotor.axis[0] - seat.center[0], rotor.axis[1] - seat.center[1])
     if offset > LARGEST_OFFSET:
@@ -246,7 +246,7 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
     if not draft.gears:
         return
     # The package brings numpy and scipy: only a case with gears waits for them.
-    from coupling.gears import GearError
+    from gearwhine.coupling.gears import GearError
 
     built: dict[str, BuiltGear] = {}
     for index, gear in draft.gears:
@@ -283,10 +283,10 @@ def _check_pair(
     draft: Draft, index: int, pair: GearPair, tables: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
-    from coupling.gears import GearError, GearPairGeometry
-    from coupling.gears.errors import StiffnessModelError
-    from coupling.gears.stiffness.models import require_model_fit
-    from coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
+    from gearwhine.coupling.gears import GearError, GearPairGeometry
+    from gearwhine.coupling.gears.errors import StiffnessModelError
+    from gearwhine.coupling.gears.stiffness.models import require_model_fit
+    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
 
     try:
         require_model_fit(pair.stiffness.model, GearPairGeometry(*gears))
@@ -326,7 +326,7 @@ def _check_pair(
 
 def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
     """Yield a size in which the teeth of two gears do not fit each other."""
-    from coupling.gears.geometry.pair import mismatched_sizes
+    from gearwhine.coupling.gears.geometry.pair import mismatched_sizes
 
     modules, pressures, helices = (
         (driver.tooth_module, driven.tooth_module),
@@ -488,14 +488,14 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _lacks_input(operation: Operation) -> bool:
     """Whether outputs have torques and the input has none."""
-    from coupling.machine.gear_train import lacks_input
+    from gearwhine.coupling.machine.gear_train import lacks_input
 
     return lacks_input(operation.torque, [output.build() for output in operation.output])
 
 
 def _check_balance(operation: Operation, train: GearTrain) -> Iterator[Finding]:
     """Yield outputs that, through the gears, take another power than the input."""
-    from coupling.machine.gear_train import is_balanced, output_torque
+    from gearwhine.coupling.machine.gear_train import is_balanced, output_torque
 
     delivered = output_torque(train, [output.build() for output in operation.output])
     if not is_balanced(operation.torque, delivered):
@@ -510,7 +510,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts, none geared to another, whose own torques do not balance; the first output's takes the input."""
     if not operation.output:
         return
-    from coupling.machine.gear_train import imbalances_of_shafts
+    from gearwhine.coupling.machine.gear_train import imbalances_of_shafts
 
     kind = "rotor" if draft.rotors else "gear"
     for imbalance in imbalances_of_shafts(operation.torque, [output.build() for output in operation.output]):
@@ -523,7 +523,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
-    from coupling.machine.gear_train import carrying_flanks
+    from gearwhine.coupling.machine.gear_train import carrying_flanks
 
     names = draft.names("gear")
     if operation.torque == 0.0 or len(set(names)) < len(names):
@@ -549,7 +549,7 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _has_designed_backlash(case: Case, pair: GearPair) -> bool:
     """Whether tooth thicknesses and centre distance leave a backlash; gears that do not mesh are other findings."""
-    from coupling.gears import GearError, GearPairGeometry
+    from gearwhine.coupling.gears import GearError, GearPairGeometry
 
     driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
     try:

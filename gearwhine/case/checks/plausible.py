@@ -1,8 +1,8 @@
 """Findings of the library's parts, mapped to the keys of a case: what its machine cannot be, or hardly is.
 
 The parts check themselves: a gear its flanks, a disc its inertia, a pair its backlash, and
-:mod:`coupling.machine.solids` the places of all of them. Here they are made of a case's tables, and each finding's part
-and attribute become a key. A finding that is a warning can be accepted by the case, see `Case.unusual`.
+:mod:`gearwhine.coupling.machine.solids` the places of all of them. Here they are made of a case's tables, and each
+finding's part and attribute become a key. A finding that is a warning can be accepted by the case, see `Case.unusual`.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.speeds_and_torques import pair_torques, rotor_speeds
 
 if TYPE_CHECKING:
-    from coupling.gears import Gear as BuiltGear
-    from coupling.machine.mounted_parts import MountedBearing
-    from coupling.machine.parts import Shaft, ShaftGear
-    from coupling.machine.solids import Wall
-    from numerics.findings import Finding as PartFinding
-    from rotors.rolling_bearings import RollingBearing
+    from gearwhine.coupling.gears import Gear as BuiltGear
+    from gearwhine.coupling.machine.mounted_parts import MountedBearing
+    from gearwhine.coupling.machine.parts import Shaft, ShaftGear
+    from gearwhine.coupling.machine.solids import Wall
+    from gearwhine.numerics.findings import Finding as PartFinding
+    from gearwhine.rotors.rolling_bearings import RollingBearing
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _placed(location: Location, finding: PartFinding, attribute: Location | None
 
 
 def _of_materials(case: Case) -> Iterator[PlacedFinding]:
-    from numerics.materials import material_findings
+    from gearwhine.numerics.materials import material_findings
 
     for name, material in case.material.items():
         numbers = material.youngs_modulus, material.poisson_ratio, material.density
@@ -130,7 +130,7 @@ def _of_housing(case: Case) -> Iterator[PlacedFinding]:
 
 def _of_masses(case: Case) -> Iterator[PlacedFinding]:
     """Yield masses that cannot be fastened where they are."""
-    from housing.errors import HousingError
+    from gearwhine.housing.errors import HousingError
 
     assert case.housing is not None
     for index, mass in enumerate(case.housing.mass):
@@ -181,9 +181,9 @@ def _of_operation(case: Case) -> Iterator[PlacedFinding]:
 
 def _of_machine(case: Case) -> Iterator[PlacedFinding]:
     """Yield findings of gears, pairs, bearings and shafts, and of their places."""
-    from coupling.errors import CouplingError
-    from coupling.gears.errors import GearError
-    from rotors.errors import RotorError
+    from gearwhine.coupling.errors import CouplingError
+    from gearwhine.coupling.gears.errors import GearError
+    from gearwhine.rotors.errors import RotorError
 
     gears = {gear.name: gear.build(_material(case, gear)) for gear in case.gear}
     places = {gear.name: index for index, gear in enumerate(case.gear)}
@@ -237,8 +237,8 @@ def _of_machine(case: Case) -> Iterator[PlacedFinding]:
 def _place_findings(
     case: Case, shafts: list[Shaft], gears: list[ShaftGear], bearings: list[MountedBearing]
 ) -> Iterator[PartFinding]:
-    from coupling.machine.parts import rotor_with_gears
-    from coupling.machine.solids import (
+    from gearwhine.coupling.machine.parts import rotor_with_gears
+    from gearwhine.coupling.machine.solids import (
         force_findings,
         machine_findings,
         placed_solids,
@@ -265,7 +265,7 @@ def _place_findings(
 
 def _walls(case: Case) -> list[Wall]:
     """Return the walls of the case's box, the end walls with their seats."""
-    from coupling.machine.solids import Wall
+    from gearwhine.coupling.machine.solids import Wall
 
     assert case.housing is not None
     assert case.housing.box is not None
@@ -291,8 +291,8 @@ def _walls(case: Case) -> list[Wall]:
 
 def _of_discs(case: Case, index: int) -> Iterator[PlacedFinding]:
     """Yield discs that no body is."""
-    from numerics.materials import material_findings
-    from rotors.errors import RotorError
+    from gearwhine.numerics.materials import material_findings
+    from gearwhine.rotors.errors import RotorError
 
     for place, disc in enumerate(case.rotor[index].discs):
         density = getattr(disc, "density", None)
@@ -307,7 +307,7 @@ def _of_discs(case: Case, index: int) -> Iterator[PlacedFinding]:
 
 def _of_elements(case: Case, index: int) -> Iterator[PlacedFinding]:
     """Yield rolling bearings that cannot be built."""
-    from rotors.errors import RotorError
+    from gearwhine.rotors.errors import RotorError
 
     entry = case.bearing[index]
     if not isinstance(entry.stiffness, RollingStiffness):
@@ -329,14 +329,14 @@ def _has_place(gear: Gear) -> bool:
 
 
 def _shaft(case: Case, index: int) -> Shaft:
-    from coupling.machine.parts import Shaft
+    from gearwhine.coupling.machine.parts import Shaft
 
     rotor = case.rotor[index]
     return Shaft(rotor.build(case.material), rotor.axis, rotor.start, rotor.damping_ratio, rotor.build_unbalance())
 
 
 def _mounted(case: Case, gear: Gear, built: BuiltGear) -> ShaftGear:
-    from coupling.machine.parts import ShaftGear
+    from gearwhine.coupling.machine.parts import ShaftGear
 
     assert gear.rotor is not None
     assert gear.at is not None
@@ -347,8 +347,8 @@ def _bearing(case: Case, index: int) -> MountedBearing:
     """Return a bearing with its elements, or with a stiffness of the directions that it holds."""
     import numpy as np
 
-    from coupling.machine.mounted_parts import MountedBearing
-    from rotors import Bearing as BuiltBearing
+    from gearwhine.coupling.machine.mounted_parts import MountedBearing
+    from gearwhine.rotors import Bearing as BuiltBearing
 
     entry = case.bearing[index]
     seat = None if entry.grounded else entry.seat
@@ -362,8 +362,8 @@ def _bearing(case: Case, index: int) -> MountedBearing:
 
 def _of_pairs(case: Case, gears: dict[str, BuiltGear]) -> Iterator[PlacedFinding]:
     """Yield findings of gear pairs, and of their load and speed in operation."""
-    from coupling.gears import GearPairGeometry
-    from coupling.gears.loaded.gear_pair import operation_findings
+    from gearwhine.coupling.gears import GearPairGeometry
+    from gearwhine.coupling.gears.loaded.gear_pair import operation_findings
 
     operation = case.operation
     torques = pair_torques(case) if operation is not None else (0.0,) * len(case.gear_pair)
@@ -381,7 +381,7 @@ def _of_pairs(case: Case, gears: dict[str, BuiltGear]) -> Iterator[PlacedFinding
 
 
 def _built_pair(pair: GearPair) -> Any:
-    from coupling.gears.loaded.gear_pair import GearPair as BuiltPair
+    from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
 
     angle = pair.misalignment if isinstance(pair.misalignment, float | int) else None
     return BuiltPair(

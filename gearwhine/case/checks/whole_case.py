@@ -18,10 +18,10 @@ from gearwhine.case.checks.plausible import case_warnings, library_findings
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft, case_document
 from gearwhine.case.overrides import parse_key_path, place_in_list
-from numerics.names import twin_of
+from gearwhine.numerics.names import twin_of
 
 if TYPE_CHECKING:
-    from coupling.machine.axial_location import AxialLocation, AxialSupport
+    from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _TORSION = ("rotor_analysis", "torsional_response")
@@ -227,7 +227,7 @@ def check(draft: Draft) -> Iterator[Finding]:
 
 def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
     """Return the axial location of each rotor by its bearings; a bearing that cannot be built carries no thrust."""
-    from coupling.machine.axial_location import AxialLocation, AxialSupport
+    from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
 
     locations = []
     for rotor in case.rotor:
@@ -247,8 +247,8 @@ def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
 
 
 def _axial_support(bearing: Bearing) -> AxialSupport:
-    from coupling.machine.axial_location import AxialSupport
-    from rotors import RotorError
+    from gearwhine.coupling.machine.axial_location import AxialSupport
+    from gearwhine.rotors import RotorError
 
     stiffness = bearing.stiffness
     if isinstance(stiffness, RollingStiffness):

@@ -9,9 +9,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coupling.gears import GearPairGeometry, LoadedMesh, ToothContact, path_of_contact
-from coupling.gears.geometry.path_of_contact import specific_sliding
-from coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.gears import GearPairGeometry, LoadedMesh, ToothContact, path_of_contact
+from gearwhine.coupling.gears.geometry.path_of_contact import specific_sliding
+from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

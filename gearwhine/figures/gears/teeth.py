@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
-from coupling.gears import Gear, GearPairGeometry, TipRelief, path_of_contact
-from coupling.gears.contact.tooth_pair import flank_gap
-from coupling.gears.geometry.profile import pair_outlines
+from gearwhine.coupling.gears import Gear, GearPairGeometry, TipRelief, path_of_contact
+from gearwhine.coupling.gears.contact.tooth_pair import flank_gap
+from gearwhine.coupling.gears.geometry.profile import pair_outlines
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

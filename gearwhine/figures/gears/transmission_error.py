@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from coupling.gears import LoadedMesh, ToothContact, mesh_stiffness
-from coupling.gears.loaded.optimal_relief import HarrisMap
-from coupling.gears.loaded.transmission_error import period_mean
+from gearwhine.coupling.gears import LoadedMesh, ToothContact, mesh_stiffness
+from gearwhine.coupling.gears.loaded.optimal_relief import HarrisMap
+from gearwhine.coupling.gears.loaded.transmission_error import period_mean
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

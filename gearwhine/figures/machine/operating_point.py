@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 
-from coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.case import Case
+from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.figures.gears.contact import draw_contact_pattern
 from gearwhine.figures.rotors import rotor_assembly
 from gearwhine.figures.rotors.assembly import RotorAssembly
@@ -42,8 +42,8 @@ from gearwhine.figures.style import (
     shortened,
 )
 from gearwhine.output import file_stems
+from gearwhine.rotors import Segment
 from gearwhine.solve.operating_point import DeflectedShaft, SolvedLoad
-from rotors import Segment
 
 FloatArray = npt.NDArray[np.float64]
 

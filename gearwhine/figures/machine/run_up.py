@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from coupling.signals import OrderMap, Spectrogram, decibels, peak_of_rms
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.coupling.signals import OrderMap, Spectrogram, decibels, peak_of_rms
 from gearwhine.figures.spectra import draw_level_map
 from gearwhine.figures.style import (
     FOOT,
@@ -170,7 +170,7 @@ def draw_order_slices(
 
     Raises
     ------
-    coupling.CouplingError
+    gearwhine.coupling.CouplingError
         Where an order is not a line of the map.
     """
     courses = {name: decibels(orders.order_slice(order)) for name, order in named.items()}

@@ -38,11 +38,11 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
-from housing.acoustics.sound_levels import a_weighting, pressure_level
+from gearwhine.housing.acoustics.sound_levels import a_weighting, pressure_level
 
 if TYPE_CHECKING:
+    from gearwhine.housing.acoustics.boundary_elements import SoundField
     from gearwhine.solve.sound.solution import SolvedSound, SoundLine
-    from housing.acoustics.boundary_elements import SoundField
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -208,7 +208,7 @@ def draw_radiation_efficiency(title: str, solved: "SolvedSound") -> Figure:
 
 def sound_field(line: "SoundLine") -> "SoundField | None":
     """Return the field of a line by boundary elements; None by any other method."""
-    from housing.acoustics.boundary_elements import SoundField
+    from gearwhine.housing.acoustics.boundary_elements import SoundField
 
     fields = [field for field in line.sound.fields if isinstance(field, SoundField)]
     return fields[0] if len(fields) == 1 and not fields[0].baffled else None

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coupling.periodic.continuation import ResponseCurve
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.coupling.periodic.continuation import ResponseCurve
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,

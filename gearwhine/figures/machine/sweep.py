@@ -11,7 +11,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coupling.signals.spectrum import from_decibels, rms_of_peak
+from gearwhine.coupling.signals.spectrum import from_decibels, rms_of_peak
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.figures.style import (
     FOOT,

@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from coupling.linear.campbell import SystemCampbell
-from coupling.linear.excitation_orders import ExcitationLine
-from coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.coupling.linear.campbell import SystemCampbell
+from gearwhine.coupling.linear.excitation_orders import ExcitationLine
+from gearwhine.coupling.linear.frequency_response import FrequencyResponse
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

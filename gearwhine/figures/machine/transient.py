@@ -17,11 +17,11 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.lib.stride_tricks import sliding_window_view
 
-from coupling import amplitude_spectrum
-from coupling.signals import decibels
-from coupling.signals.spectrum import Window, signal_parts
-from coupling.time.histories import Histories
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.signals import decibels
+from gearwhine.coupling.signals.spectrum import Window, signal_parts
+from gearwhine.coupling.time.histories import Histories
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,
@@ -51,11 +51,11 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
+from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.output.sections import arrowed, counted
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.solve.transient import SolvedTransient
-from housing.correlation.comparison import Comparison
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from coupling.machine.parts import gear_disc
 from gearwhine.case import Case, RollingStiffness, Segment
+from gearwhine.coupling.machine.parts import gear_disc
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
 from gearwhine.figures.rotors.critical_speed_map import draw_critical_map
@@ -28,9 +28,9 @@ from gearwhine.figures.style import shortened
 from gearwhine.from_case.rotors import shaft_gears
 from gearwhine.output import file_stems
 from gearwhine.progress import Progress, silent
+from gearwhine.rotors import Bearing, Rotor
+from gearwhine.rotors import Segment as RotorSegment
 from gearwhine.solve.rotors import SolvedRotor
-from rotors import Bearing, Rotor
-from rotors import Segment as RotorSegment
 
 FloatArray = npt.NDArray[np.float64]
 

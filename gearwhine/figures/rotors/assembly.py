@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rotors import Bearing, Coupling, Disc, ElasticMaterial, Rotor, Segment
+from gearwhine.rotors import Bearing, Coupling, Disc, ElasticMaterial, Rotor, Segment
 
 # A disc without a plausible ring (a mass alone, or inertias that no uniform ring has) is drawn as a point.
 _THINNEST = 1e-6

@@ -34,9 +34,9 @@ from gearwhine.figures.style import (
     sheet,
     stretches,
 )
-from rotors import Campbell
-from rotors.analyses.campbell import stability_onset
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
+from gearwhine.rotors import Campbell
+from gearwhine.rotors.analyses.campbell import stability_onset
+from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL, NEUTRAL
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def draw_campbell(
     title : str
         Title of the sheet.
     diagram : Campbell
-        Diagram of :func:`rotors.campbell`, at two or more speeds of one sign, ascending or descending.
+        Diagram of :func:`gearwhine.rotors.campbell`, at two or more speeds of one sign, ascending or descending.
     critical_speeds, critical_directions : array_like, shape (c,)
         Critical speeds [rad/s], and their directions, 1 forward to −1 backward in the sense of rotation.
     critical_orders : array_like, shape (c,) or ()

@@ -28,7 +28,7 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-from rotors import Bearing
+from gearwhine.rotors import Bearing
 
 FloatArray = npt.NDArray[np.float64]
 

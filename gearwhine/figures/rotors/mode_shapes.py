@@ -32,10 +32,10 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-from rotors import WhirlModes
-from rotors.modes.lateral import LateralModes
-from rotors.modes.torsional_and_axial import TorsionalModes
-from rotors.whirl.whirl_modes import MOSTLY_AXIAL
+from gearwhine.rotors import WhirlModes
+from gearwhine.rotors.modes.lateral import LateralModes
+from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes
+from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -35,7 +35,7 @@ from gearwhine.figures.style import (
     sheet,
     shortened,
 )
-from rotors import Bearing, Coupling, Disc, ElasticMaterial, Segment
+from gearwhine.rotors import Bearing, Coupling, Disc, ElasticMaterial, Segment
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,23 +12,23 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import Adjoint
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import Adjoint
 from gearwhine.from_case.mesh import materials_of
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
+from gearwhine.housing.fem.surface import flat_faces
+from gearwhine.housing.housing import bearing_port
+from gearwhine.housing.material import element_constants
+from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.updating import ModelSensitivity
+from gearwhine.housing.updating.static_sensitivity import PortRates, StaticSensitivity
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.box.morph import MorphError, with_middles
 from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
-from housing.fem.surface import flat_faces
-from housing.housing import bearing_port
-from housing.material import element_constants
-from housing.model.seats import seat_matrix, sensor_port
-from housing.updating import ModelSensitivity
-from housing.updating.static_sensitivity import PortRates, StaticSensitivity
-from meshes import Mesh
-from meshes.box.morph import MorphError, with_middles
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -75,8 +75,8 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
 class HousingChange:
     """Change of a housing by one parameter.
 
-    Derivatives are by the parameter's coordinate: z of :class:`housing.updating.Parameter` for a number of the case,
-    and the shift along the normal [m] for a face.
+    Derivatives are by the parameter's coordinate: z of :class:`gearwhine.housing.updating.Parameter` for a number of
+    the case, and the shift along the normal [m] for a face.
 
     Attributes
     ----------
@@ -226,7 +226,7 @@ def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
     """Differentiate the model of a case's housing by material on the large flat faces of its surface.
 
     A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named as
-    :func:`housing.fem.surface.flat_face_names` has it, such as ``inside of bottom at 0, 10, 0 mm``.
+    :func:`gearwhine.housing.fem.surface.flat_face_names` has it, such as ``inside of bottom at 0, 10, 0 mm``.
     """
     assert case.housing is not None
     seats = [mesh.surface(seat.name) for seat in case.housing.seat]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.line_sensitivity import Line
+from gearwhine.coupling.linear.line_sensitivity import Line
 from gearwhine.solve.sensitivity.line_model import SolvedLines
 
 if TYPE_CHECKING:

@@ -1,10 +1,11 @@
 """Model of a case's lines: the machine linear about its operating point, and the derivatives of its housing.
 
 Lines are those of the sensors and, where the case has acoustics, of the sound power. The gradients are those of
-:mod:`coupling.linear.line_sensitivity`, whose motion and adjoint fields must be exact in the housing's basis. Residual
-modes of the sensors, which the modes of a solved housing do not have, bring the fields close; then the responses of the
-housing's finite-element matrices at the lines' frequencies to the loads in both fields join the basis, and the lines
-are solved again. The adjoint load of a sensor is one on a point, that of the sound power one on the whole skin.
+:mod:`gearwhine.coupling.linear.line_sensitivity`, whose motion and adjoint fields must be exact in the housing's basis.
+Residual modes of the sensors, which the modes of a solved housing do not have, bring the fields close; then the
+responses of the housing's finite-element matrices at the lines' frequencies to the loads in both fields join the basis,
+and the lines are solved again. The adjoint load of a sensor is one on a point, that of the sound power one on the whole
+skin.
 """
 
 from collections.abc import Sequence
@@ -14,28 +15,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from coupling import Machine
-from coupling.linear.housing_rates import HousingRates
-from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.line_sensitivity import Line, LineModel
-from coupling.statics.operating_point import OperatingPoint
 from gearwhine.case import Case
+from gearwhine.coupling import Machine
+from gearwhine.coupling.linear.housing_rates import HousingRates
+from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.driving import driving
 from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.housing import ModeSet, modal_damping
+from gearwhine.housing.housing import RESPONSE_ORDERS
+from gearwhine.housing.modes.natural_modes import ModeSetExtension
+from gearwhine.housing.updating import modal_sensitivities
+from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.progress import Progress
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
 from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity.housing_changes import HousingChange
-from housing import ModeSet, modal_damping
-from housing.housing import RESPONSE_ORDERS
-from housing.modes.natural_modes import ModeSetExtension
-from housing.updating import modal_sensitivities
-from housing.updating.static_sensitivity import StaticSensitivity
 
 if TYPE_CHECKING:
+    from gearwhine.housing.acoustics.radiation import HousingRadiation
     from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
-    from housing.acoustics.radiation import HousingRadiation
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -172,8 +173,8 @@ def solve_lines(
     ------
     CaseError
         Where the radiating surface cannot be made.
-    housing.HousingError
-        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
+    gearwhine.housing.HousingError
+        Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     if housing is None or not case.gear_pair or machine.speed == 0.0:
         return None

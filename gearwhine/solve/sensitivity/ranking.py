@@ -1,7 +1,8 @@
 """Sensitivity ranking at an operating point: gear pairs, sensors' lines and sound by wall thickness and bearings.
 
-The gradients are those of :mod:`coupling.statics.sensitivity` and :mod:`coupling.linear.line_sensitivity`. Parameters
-of the housing are those of :mod:`gearwhine.solve.sensitivity.housing_changes`.
+The gradients are those of :mod:`gearwhine.coupling.statics.sensitivity` and
+:mod:`gearwhine.coupling.linear.line_sensitivity`. Parameters of the housing are those of
+:mod:`gearwhine.solve.sensitivity.housing_changes`.
 """
 
 from collections.abc import Sequence
@@ -11,12 +12,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from coupling import Machine
-from coupling.linear.line_outputs import SensorAmplitude
-from coupling.linear.line_sensitivity import Line, LineModel
-from coupling.statics.operating_point import OperatingPoint
-from coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.case import Case, CaseError, Problem
+from gearwhine.coupling import Machine
+from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
+from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 from gearwhine.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.sensitivity.housing_changes import (
@@ -28,7 +30,6 @@ from gearwhine.solve.sensitivity.housing_changes import (
 )
 from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity, sound_weights
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
-from housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -289,8 +290,8 @@ def solve_load_sensitivity(
     ------
     CaseError
         Where there is no such line, or the radiating surface cannot be made.
-    housing.HousingError
-        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
+    gearwhine.housing.HousingError
+        Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     solved = solve_lines(case, machine, point, housing, progress)
     sensor_line, sound_line = _chosen(line, solved)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from gearwhine.case import Case
-from meshes import Mesh
+from gearwhine.meshes import Mesh
 
 
 def is_in_run(case: Case) -> bool:

@@ -15,18 +15,18 @@ from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.checks.machine import millimetres
 from gearwhine.case.errors import one_of
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
+from gearwhine.housing.acoustics.medium import HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiation import coarsest_edge, set_down, wrapped
+from gearwhine.housing.acoustics.sound_levels import measurement_box
+from gearwhine.housing.acoustics.surface_velocity import face_surface
+from gearwhine.housing.errors import TriangleSizeError
+from gearwhine.housing.fem.surface import FlatFace, flat_faces
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.elements import pick_facets
 from gearwhine.output.quantity import warning
-from housing import HousingError
-from housing.acoustics.boundary_elements import BoundaryElements
-from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import coarsest_edge, set_down, wrapped
-from housing.acoustics.sound_levels import measurement_box
-from housing.acoustics.surface_velocity import face_surface
-from housing.errors import TriangleSizeError
-from housing.fem.surface import FlatFace, flat_faces
-from meshes import Mesh
-from meshes.elements import pick_facets
 
 FloatArray = npt.NDArray[np.float64]
 

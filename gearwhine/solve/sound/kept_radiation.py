@@ -9,19 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case import Case
+from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
+from gearwhine.housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.output.files import source_digest
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
-from housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
-from housing.acoustics.radiation import HousingRadiation
-from housing.storage.netcdf import content_key
 
 FloatArray = npt.NDArray[np.float64]
 
 _NOTE = "radiation"
 _CODE = (
-    "housing.acoustics",
-    "housing.storage",
+    "gearwhine.housing.acoustics",
+    "gearwhine.housing.storage",
     "gearwhine.solve.sound.solution",
     "gearwhine.solve.sound.kept_radiation",
 )

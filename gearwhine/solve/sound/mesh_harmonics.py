@@ -2,7 +2,7 @@
 
 Candidates are the mesh harmonics of the most power by an estimate; their sound is solved, and the loudest by their
 A-weighted power are taken. Of these the sound of every mode and residual mode is known, and with it the gradient of
-the power, :mod:`housing.acoustics.power_gradient`.
+the power, :mod:`gearwhine.housing.acoustics.power_gradient`.
 """
 
 from collections.abc import Sequence
@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coupling.linear.line_outputs import SoundPower
-from coupling.linear.line_sensitivity import Line, LineModel
-from coupling.linear.mesh_harmonics import Response
+from gearwhine.coupling.linear.line_outputs import SoundPower
+from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.linear.mesh_harmonics import Response
+from gearwhine.housing.acoustics.power_gradient import PowerGradient
+from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound
+from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
-from housing.acoustics.power_gradient import PowerGradient
-from housing.acoustics.radiation import HousingRadiation, RadiatedSound
-from housing.acoustics.sound_levels import a_weighting
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -36,7 +36,7 @@ class HarmonicSound:
     Attributes
     ----------
     line : Line
-        Line whose output is a :class:`coupling.linear.line_outputs.SoundPower`.
+        Line whose output is a :class:`gearwhine.coupling.linear.line_outputs.SoundPower`.
     power : PowerGradient
         Gradient of the power at its frequency.
     """
@@ -87,8 +87,8 @@ def loudest_lines(
 
     Raises
     ------
-    housing.HousingError
-        Where a line fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
+    gearwhine.housing.HousingError
+        Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     responses = [response for response in model.responses(limit) if response.frequency >= _TWO_PI * AUDIBLE]
     if chosen is None:

@@ -6,7 +6,7 @@ modes' coordinates to the sound pressure and the housing's stiffness K, damping 
 ``p(ω) = T(ω) i ω (K - ω² + i ω C)⁻¹ Σ_b (-D_b f_b(ω))``
 
 line by line of the record's Fourier transform. T is interpolated over frequency, see
-:mod:`housing.acoustics.modal_radiation`; the resonances of the housing are not.
+:mod:`gearwhine.housing.acoustics.modal_radiation`; the resonances of the housing are not.
 
 A record that does not repeat begins and ends abruptly, which would be heard as clicks. Its forces lose their linear
 trend and, like the pressure, fade in and out over `FADE`; silence is put behind them, in which the housing rings down.
@@ -19,9 +19,9 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import polynomial
 
-from coupling import CoupledMachine
-from coupling.signals.transfer_paths import housing_paths
-from housing.acoustics.modal_radiation import ModalRadiation
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.signals.transfer_paths import housing_paths
+from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -47,10 +47,10 @@ class MicrophoneHistories:
         Sound pressure [Pa].
     error : float
         Error of the transfer's interpolation, see
-        :attr:`housing.acoustics.modal_radiation.ModalRadiation.pressure_error`.
+        :attr:`gearwhine.housing.acoustics.modal_radiation.ModalRadiation.pressure_error`.
     source_errors : ndarray, shape (n_microphones,)
         Largest error of known sources over the transfer's frequencies, see
-        :attr:`housing.acoustics.modal_radiation.ModalRadiation.point_source_error`.
+        :attr:`gearwhine.housing.acoustics.modal_radiation.ModalRadiation.point_source_error`.
     source_frequency_hz : float
         Frequency of the largest of these errors [Hz].
     """

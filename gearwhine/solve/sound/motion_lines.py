@@ -2,7 +2,7 @@
 
 The lines of a steady state are the harmonics of its period; where motions are superposed, the complex amplitudes of
 lines at one frequency are added. The lines of a record of whole periods are its spectral lines; those of another record
-are its tones, see :mod:`coupling.signals.tones`.
+are its tones, see :mod:`gearwhine.coupling.signals.tones`.
 """
 
 from collections.abc import Mapping
@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine, amplitude_spectrum
-from coupling.linear.excitation_orders import excitation_lines
-from coupling.signals.line_names import LineName, line_names
-from coupling.signals.spectrum import Spectrum, at_time_zero
-from coupling.signals.tones import hann_tones
-from coupling.signals.transfer_paths import HousingPaths, housing_paths
 from gearwhine.case import Case
+from gearwhine.coupling import CoupledMachine, amplitude_spectrum
+from gearwhine.coupling.linear.excitation_orders import excitation_lines
+from gearwhine.coupling.signals.line_names import LineName, line_names
+from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
+from gearwhine.coupling.signals.tones import hann_tones
+from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
 from gearwhine.output.quantity import warning
 from gearwhine.solve.steady_state import SolvedSteady
 from gearwhine.solve.transient import SolvedTransient

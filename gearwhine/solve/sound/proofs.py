@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.housing.acoustics.boundary_elements import SoundField
+from gearwhine.housing.acoustics.known_source import SourceError
+from gearwhine.housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
+from gearwhine.housing.acoustics.sound_levels import power_level
 from gearwhine.output.quantity import warning
-from housing.acoustics.boundary_elements import SoundField
-from housing.acoustics.known_source import SourceError
-from housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
-from housing.acoustics.sound_levels import power_level
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def require_proofs(
     source : str
         Source of the sound, in words.
     alone : bool
-        As in :func:`housing.acoustics.radiation.require_proved`.
+        As in :func:`gearwhine.housing.acoustics.radiation.require_proved`.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def require_proofs(
 
     Raises
     ------
-    housing.HousingError
-        As :func:`housing.acoustics.radiation.require_proved`.
+    gearwhine.housing.HousingError
+        As :func:`gearwhine.housing.acoustics.radiation.require_proved`.
     """
     return [entry for sound in require_proved(sounds, alone=alone) for entry in doubts(sound, source)]

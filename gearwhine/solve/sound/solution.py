@@ -1,8 +1,8 @@
 """Sound of a case: radiation efficiency of the housing's modes, and the sound of the lines of a motion.
 
 The bearings' forces move the housing at each line (:mod:`gearwhine.solve.sound.motion_lines`);
-:func:`coupling.signals.transfer_paths.housing_paths` gives the motion by each bearing, exactly, and
-:class:`housing.acoustics.radiation.HousingRadiation` its sound.
+:func:`gearwhine.coupling.signals.transfer_paths.housing_paths` gives the motion by each bearing, exactly, and
+:class:`gearwhine.housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
 from dataclasses import dataclass, field, replace
@@ -12,10 +12,23 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coupling import CoupledMachine
-from coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
-from coupling.signals.line_names import line_names
 from gearwhine.case import Case, CaseError, Problem
+from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
+from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics.known_source import SourceError
+from gearwhine.housing.acoustics.medium import Medium
+from gearwhine.housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
+from gearwhine.housing.acoustics.sound_levels import (
+    BOX_MICROPHONES,
+    a_weighting,
+    power_level,
+    pressure_level,
+    sum_of_levels,
+    third_octave_bands,
+)
+from gearwhine.housing.errors import TriangleSizeError
 from gearwhine.output.quantity import warning
 from gearwhine.progress import Progress, in_order, silent
 from gearwhine.solve.housing_modes import SolvedHousing
@@ -47,19 +60,6 @@ from gearwhine.solve.sound.proofs import (
     require_proofs,
 )
 from gearwhine.solve.transient import SolvedTransient
-from housing import HousingError
-from housing.acoustics.known_source import SourceError
-from housing.acoustics.medium import Medium
-from housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
-from housing.acoustics.sound_levels import (
-    BOX_MICROPHONES,
-    a_weighting,
-    power_level,
-    pressure_level,
-    sum_of_levels,
-    third_octave_bands,
-)
-from housing.errors import TriangleSizeError
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -86,7 +86,7 @@ class SoundLine:
         Error of known sources there, see :func:`gearwhine.solve.sound.proofs.known_source_at`.
     mechanism_powers : dict of str to float
         Equivalent radiated power of the motion by each mechanism alone [W], linear about the mean load, see
-        :mod:`coupling.linear.line_mechanisms`.
+        :mod:`gearwhine.coupling.linear.line_mechanisms`.
     """
 
     frequency_hz: float
@@ -391,8 +391,9 @@ def solve_sound(
     ------
     CaseError
         Where the radiating surface cannot be made, or a microphone is inside it or under the floor.
-    housing.HousingError
-        Where a solution fails its proofs, see :meth:`housing.acoustics.radiation.RadiatedSound.require_proofs`.
+    gearwhine.housing.HousingError
+        Where a solution fails its proofs, see
+        :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
     assert case.acoustics is not None
     radiation = build_radiation(case, housing, progress)

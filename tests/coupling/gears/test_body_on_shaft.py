@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 import skfem
 
-from coupling.gears.geometry.toothed_section import bare_lengths
+from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths
 
 FloatArray = npt.NDArray[np.float64]
 

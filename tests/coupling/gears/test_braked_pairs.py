@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import Gear, GearPairGeometry, TipRelief
-from coupling.gears.loaded.gear_pair import GearPair, load_gear_pair
-from coupling.gears.loaded.transmission_error import hunting_period_mesh, loaded_transmission_error
+from gearwhine.coupling.gears import Gear, GearPairGeometry, TipRelief
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair, load_gear_pair
+from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh, loaded_transmission_error
 
 ALPHA = math.radians(20.0)
 HELIX = math.radians(15.0)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.linalg import solveh_banded
 
-from coupling import Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
-from coupling.gears import (
+from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftGear, static_equilibrium
+from gearwhine.coupling.gears import (
     Gear,
     GearPair,
     GearPairGeometry,
@@ -17,10 +17,10 @@ from coupling.gears import (
     ToothCrack,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices, tooth_coupling
-from coupling.gears.errors import NoContactError
-from coupling.gears.geometry.profile import meshing_rotations
-from rotors import Bearing, Rotor, Segment, ShaftMaterial
+from gearwhine.coupling.gears.contact.face_slices import face_slices, tooth_coupling
+from gearwhine.coupling.gears.errors import NoContactError
+from gearwhine.coupling.gears.geometry.profile import meshing_rotations
+from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial
 
 STEEL = ShaftMaterial.from_poisson_ratio(2.06e11, 0.3, 7850.0)
 PINION = Gear("pinion", 25, 3e-3, math.radians(20.0), 40e-3)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearError,
     GearPairGeometry,
@@ -17,8 +17,8 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.contact_pressure import (
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.contact_pressure import (
     contact_curvature_radius,
     contact_modulus,
     contact_pressure,

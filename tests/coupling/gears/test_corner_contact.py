@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -18,8 +18,8 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.geometry.path_of_contact import corner_contact_range, flank_contact_points
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.geometry.path_of_contact import corner_contact_range, flank_contact_points
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 24, 3e-3, ALPHA, 10e-3)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearError,
     GearPairGeometry,
@@ -18,7 +18,7 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.geometry.profile import load_angle, tooth_outline
+from gearwhine.coupling.gears.geometry.profile import load_angle, tooth_outline
 
 GEAR = Gear("cracked", 30, 3e-3, math.radians(20.0), 15e-3)
 ROLLS = np.linspace(GEAR.roll_angle(GEAR.form_radius), GEAR.roll_angle(GEAR.tip_radius), 7)

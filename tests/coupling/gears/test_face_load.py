@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -20,10 +20,10 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.face_load import FaceContact, lagrange
-from coupling.machine.load_shuttling import load_arms
-from coupling.statics.static_model import face_stations
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.face_load import FaceContact, lagrange
+from gearwhine.coupling.machine.load_shuttling import load_arms
+from gearwhine.coupling.statics.static_model import face_stations
 
 FloatArray = npt.NDArray[np.float64]
 

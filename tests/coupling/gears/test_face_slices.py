@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import block_diag
 from scipy.optimize import nnls
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     HelixDeviation,
@@ -20,7 +20,7 @@ from coupling.gears import (
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import (
+from gearwhine.coupling.gears.contact.face_slices import (
     FaceSlices,
     face_equilibrium,
     face_loads,
@@ -28,7 +28,7 @@ from coupling.gears.contact.face_slices import (
     slice_stiffness,
     tooth_coupling,
 )
-from coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 
 ALPHA = math.radians(20.0)
 MODEL = PotentialEnergyStiffness()

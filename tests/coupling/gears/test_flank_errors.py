@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -23,11 +23,11 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.contact.tooth_pair import flank_gap
-from coupling.gears.loaded.transmission_error import hunting_period_mesh
-from coupling.gears.stiffness.hertz import hertz_compliance
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.contact.tooth_pair import flank_gap
+from gearwhine.coupling.gears.loaded.transmission_error import hunting_period_mesh
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 20, 3e-3, ALPHA, 10e-3, profile_shift=0.2)

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from coupling.gears import Gear, GearError, TipRelief
-from coupling.gears.errors import PointedToothError, UndercutError
-from coupling.gears.geometry.involute import inverse_involute, involute, module_from_base_radius
+from gearwhine.coupling.gears import Gear, GearError, TipRelief
+from gearwhine.coupling.gears.errors import PointedToothError, UndercutError
+from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute, module_from_base_radius
 
 ALPHA = math.radians(20.0)
 NASA = Gear("pinion", 28, 3.175e-3, ALPHA, 6.35e-3)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import Gear, GearError, GearPairGeometry
-from coupling.gears.geometry.profile import (
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
+from gearwhine.coupling.gears.geometry.profile import (
     fillet_points,
     flank_points,
     gear_outline,

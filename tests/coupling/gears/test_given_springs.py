@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearPairGeometry,
@@ -16,11 +16,11 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.contact_law import places_on_line_of_action
-from coupling.gears.contact.face_slices import face_slices, face_stations
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.loaded.face_load import FaceContact
-from coupling.gears.stiffness.models import StiffnessModel
+from gearwhine.coupling.gears.contact.contact_law import places_on_line_of_action
+from gearwhine.coupling.gears.contact.face_slices import face_slices, face_stations
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.loaded.face_load import FaceContact
+from gearwhine.coupling.gears.stiffness.models import StiffnessModel
 
 FloatArray = npt.NDArray[np.float64]
 

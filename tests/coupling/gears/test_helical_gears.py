@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import Gear, GearError, GearPairGeometry
-from coupling.gears.errors import MismatchedGearsError
-from coupling.gears.geometry.involute import module_from_base_radius, module_from_diametral_pitch
-from coupling.gears.geometry.profile import tooth_outline
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
+from gearwhine.coupling.gears.errors import MismatchedGearsError
+from gearwhine.coupling.gears.geometry.involute import module_from_base_radius, module_from_diametral_pitch
+from gearwhine.coupling.gears.geometry.profile import tooth_outline
 
 ALPHA, BETA = math.radians(20.0), math.radians(24.0)
 GEAR = Gear("pinion", 19, 3e-3, ALPHA, 30e-3, profile_shift=0.2, helix_angle=BETA, density=7800.0)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
     PotentialEnergyStiffness,
@@ -17,8 +17,12 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.transmission_error import different_periods, hunting_period_mesh, mesh_period_phases
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.transmission_error import (
+    different_periods,
+    hunting_period_mesh,
+    mesh_period_phases,
+)
 
 PINION = Gear("pinion", 17, 3e-3, math.radians(20.0), 20e-3, profile_shift=0.2)
 WHEEL = Gear("wheel", 22, 3e-3, math.radians(20.0), 20e-3, profile_shift=-0.2)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     Gear,
     GearError,
     GearPairGeometry,
@@ -15,8 +15,8 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.mesh_friction import mesh_friction
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.mesh_friction import mesh_friction
 
 PINION = Gear("pinion", 20, 4e-3, math.radians(20.0), 20e-3)
 PAIR = GearPairGeometry(PINION, replace(PINION, name="wheel", teeth=47))

@@ -7,10 +7,10 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
-from coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry, PotentialEnergyStiffness
-from coupling.gears.stiffness.hertz import line_contact
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
-from coupling.gears.stiffness.normal_section import normal_section_gears
+from gearwhine.coupling.gears import ElasticRingStiffness, Gear, GearPairGeometry, PotentialEnergyStiffness
+from gearwhine.coupling.gears.stiffness.hertz import line_contact
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.gears.stiffness.normal_section import normal_section_gears
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -21,10 +21,10 @@ from coupling.gears import (
     optimal_tip_relief,
     tooth_contact,
 )
-from coupling.gears.contact.contact_law import with_flanks_of
-from coupling.gears.contact.face_slices import face_slices
-from coupling.gears.loaded.optimal_relief import WeightedHarmonics, transmission_error_harmonics
-from coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.contact.contact_law import with_flanks_of
+from gearwhine.coupling.gears.contact.face_slices import face_slices
+from gearwhine.coupling.gears.loaded.optimal_relief import WeightedHarmonics, transmission_error_harmonics
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 # TM-104434, Table I: 28 teeth of module 3.175 mm, relief of 0.023 and 0.025 mm from 24 degrees of roll.

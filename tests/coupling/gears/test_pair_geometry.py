@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coupling.gears import Gear, GearError, GearPairGeometry
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import InterferenceError, MismatchedGearsError, NoContactError
-from coupling.gears.geometry.involute import involute
-from coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import InterferenceError, MismatchedGearsError, NoContactError
+from gearwhine.coupling.gears.geometry.involute import involute
+from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 
 ALPHA = math.radians(20.0)
 PINION = Gear("pinion", 21, 3e-3, ALPHA, 15e-3, profile_shift=0.25)

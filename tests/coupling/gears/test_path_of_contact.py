@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import Gear, GearError, GearPairGeometry, path_of_contact
-from coupling.gears.errors import InterferenceError
-from coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance, tip_shortening
-from coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, specific_sliding
-from coupling.gears.geometry.thickness import tooth_thickness
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, path_of_contact
+from gearwhine.coupling.gears.errors import InterferenceError
+from gearwhine.coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance, tip_shortening
+from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, specific_sliding
+from gearwhine.coupling.gears.geometry.thickness import tooth_thickness
 
 ALPHA, BETA = math.radians(20.0), math.radians(16.0)
 PINION = Gear("pinion", 21, 3e-3, ALPHA, 15e-3, profile_shift=0.25, helix_angle=BETA)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -20,9 +20,9 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears.contact.tooth_force_kernels import tooth_force, tooth_force_history
-from coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pitch_gaps
-from coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force, tooth_force_history
+from gearwhine.coupling.gears.geometry.pitch_deviations import back_flank_pitch_gaps, pitch_gaps
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 RELIEF = TipRelief(20e-6, math.radians(24.0))

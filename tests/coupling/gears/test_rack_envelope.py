@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from coupling.gears import Gear, GearError
-from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
+from gearwhine.coupling.gears import Gear, GearError
+from gearwhine.coupling.gears.geometry.profile import fillet_points, flank_points, load_angle
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.gears import Gear
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.stiffness import foundation as sainsot
-from coupling.gears.stiffness import ring_body
-from coupling.gears.stiffness.ring_body import (
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.stiffness import foundation as sainsot
+from gearwhine.coupling.gears.stiffness import ring_body
+from gearwhine.coupling.gears.stiffness.ring_body import (
     Annulus,
     neighbour_flexibility,
     rim_compliance,

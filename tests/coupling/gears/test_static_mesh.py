@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -19,8 +19,8 @@ from coupling.gears import (
     mesh_stiffness,
     tooth_contact,
 )
-from coupling.gears.contact.tooth_force_kernels import tooth_force
-from coupling.gears.loaded.transmission_error import mesh_period_phases
+from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
+from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phases
 
 ALPHA = math.radians(20.0)
 PLAIN = Gear("plain", 28, 3.175e-3, ALPHA, 6.35e-3)

@@ -8,7 +8,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.case.gears import ToothStiffness
+from gearwhine.coupling.gears import (
     STIFFNESS_MODELS,
     Gear,
     GearError,
@@ -18,12 +19,11 @@ from coupling.gears import (
     TableStiffness,
     stiffness_model,
 )
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.errors import ContactAccuracyError, StiffnessModelError
-from coupling.gears.piecewise_cubic import PiecewiseCubic
-from coupling.gears.stiffness.compliant_teeth import CompliantTeeth, ToothCompliance
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
-from gearwhine.case.gears import ToothStiffness
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.errors import ContactAccuracyError, StiffnessModelError
+from gearwhine.coupling.gears.piecewise_cubic import PiecewiseCubic
+from gearwhine.coupling.gears.stiffness.compliant_teeth import CompliantTeeth, ToothCompliance
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 
 ALPHA = math.radians(20.0)
 GEAR = Gear("gear", 28, 3.175e-3, ALPHA, 6.35e-3, bore=25e-3)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coupling.gears import STIFFNESS_MODELS, Gear
+from gearwhine.coupling.gears import STIFFNESS_MODELS, Gear
 
 ROOT = Path(__file__).parents[3]
 NUMBERLESS = {"square", "constant", "table"}

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, simpson
 
-from coupling.gears import Gear, GearError, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.profile import root_half_angle, tooth_outline
-from coupling.gears.stiffness.foundation import foundation_compliance, root_section_angle, within_fitted_range
-from coupling.gears.stiffness.hertz import hertz_compliance
-from coupling.gears.stiffness.iso6336 import iso6336_stiffness
-from coupling.gears.stiffness.models import stiffness_model
+from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.profile import root_half_angle, tooth_outline
+from gearwhine.coupling.gears.stiffness.foundation import foundation_compliance, root_section_angle, within_fitted_range
+from gearwhine.coupling.gears.stiffness.hertz import hertz_compliance
+from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
+from gearwhine.coupling.gears.stiffness.models import stiffness_model
 
 ALPHA = math.radians(20.0)
 GEARS = [

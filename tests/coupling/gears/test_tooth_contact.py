@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     ConstantStiffness,
     Gear,
     GearError,
@@ -22,11 +22,11 @@ from coupling.gears import (
     loaded_transmission_error,
     tooth_contact,
 )
-from coupling.gears import piecewise_cubic as piecewise
-from coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force, tooth_force_history
-from coupling.gears.contact.tooth_pair import pair_deviation
-from coupling.gears.geometry.pitch_deviations import runout_error
-from coupling.gears.loaded.gear_pair import equivalent_mass, mesh_damping
+from gearwhine.coupling.gears import piecewise_cubic as piecewise
+from gearwhine.coupling.gears.contact.tooth_force_kernels import ranked_penetration, tooth_force, tooth_force_history
+from gearwhine.coupling.gears.contact.tooth_pair import pair_deviation
+from gearwhine.coupling.gears.geometry.pitch_deviations import runout_error
+from gearwhine.coupling.gears.loaded.gear_pair import equivalent_mass, mesh_damping
 
 ALPHA = math.radians(20.0)
 DEGREE = math.radians(1.0)
@@ -249,7 +249,8 @@ def test_malformed_contacts_say_what_is_wrong(changes: dict[str, object], words:
 
 
 def test_the_package_loads_without_a_compiler() -> None:
-    check = "import sys, coupling.gears; sys.exit(bool({'numba', 'gmsh', 'vtk', 'matplotlib'} & set(sys.modules)))"
+    heavy = "{'numba', 'gmsh', 'vtk', 'matplotlib'}"
+    check = f"import sys, gearwhine.coupling.gears; sys.exit(bool({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", check], check=False).returncode == 0
 
 

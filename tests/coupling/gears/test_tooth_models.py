@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, simpson
 
-from coupling.gears import (
+from gearwhine.coupling.gears import (
     CornellStiffness,
     ElasticRingStiffness,
     Gear,
@@ -17,13 +17,13 @@ from coupling.gears import (
     WeberBanaschekStiffness,
     stiffness_model,
 )
-from coupling.gears.errors import StiffnessModelError
-from coupling.gears.geometry.profile import fillet_points, load_angle, tooth_outline
-from coupling.gears.stiffness.beam import axis_crossing, beam_compliance, foot_at_height, foot_at_slope
-from coupling.gears.stiffness.compliant_teeth import REFERENCE_LINE_LOAD
-from coupling.gears.stiffness.hertz import line_contact
-from coupling.gears.stiffness.iso6336 import blank_factor, iso6336_stiffness
-from coupling.gears.stiffness.tooth_compliance import cornell_state
+from gearwhine.coupling.gears.errors import StiffnessModelError
+from gearwhine.coupling.gears.geometry.profile import fillet_points, load_angle, tooth_outline
+from gearwhine.coupling.gears.stiffness.beam import axis_crossing, beam_compliance, foot_at_height, foot_at_slope
+from gearwhine.coupling.gears.stiffness.compliant_teeth import REFERENCE_LINE_LOAD
+from gearwhine.coupling.gears.stiffness.hertz import line_contact
+from gearwhine.coupling.gears.stiffness.iso6336 import blank_factor, iso6336_stiffness
+from gearwhine.coupling.gears.stiffness.tooth_compliance import cornell_state
 
 ALPHA = math.radians(20.0)
 RIG = Gear("rig", 28, 3.175e-3, ALPHA, 6.35e-3, root_radius=1.35e-3, bore=40e-3)

@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from coupling.gears import Gear
-from coupling.gears.geometry.profile import fillet_points, flank_points, load_angle, root_half_angle, tooth_outline
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.profile import (
+    fillet_points,
+    flank_points,
+    load_angle,
+    root_half_angle,
+    tooth_outline,
+)
 
 ALPHA = math.radians(20.0)
 GEARS = [

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from coupling.gears import Gear, GearError
-from coupling.gears.errors import PointedToothError, ThinTipError
-from coupling.gears.geometry.gear import require_tip_thickness
-from coupling.gears.geometry.involute import involute
-from coupling.gears.geometry.profile import flank_points, load_angle
-from coupling.gears.geometry.thickness import (
+from gearwhine.coupling.gears import Gear, GearError
+from gearwhine.coupling.gears.errors import PointedToothError, ThinTipError
+from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
+from gearwhine.coupling.gears.geometry.involute import involute
+from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle
+from gearwhine.coupling.gears.geometry.thickness import (
     chordal_thickness,
     normal_tooth_thickness,
     over_balls,

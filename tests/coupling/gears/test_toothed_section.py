@@ -9,13 +9,13 @@ import skfem
 from scipy import sparse
 from skfem.helpers import dot, grad
 
-from coupling.gears import Gear
-from coupling.gears.geometry.profile import gear_outline
-from coupling.gears.geometry.toothed_section import toothed_section
-from housing import Material, assemble
-from housing.fem.factorization import Factorizer
-from meshes import Mesh
-from meshes.gmsh_meshing import gmsh_session
+from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.gears.geometry.profile import gear_outline
+from gearwhine.coupling.gears.geometry.toothed_section import toothed_section
+from gearwhine.housing import Material, assemble
+from gearwhine.housing.fem.factorization import Factorizer
+from gearwhine.meshes import Mesh
+from gearwhine.meshes.gmsh_meshing import gmsh_session
 
 MODULE = 3e-3
 PINION = Gear("pinion", 20, MODULE, math.radians(20.0), 20 * MODULE)

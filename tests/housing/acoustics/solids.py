@@ -3,8 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
-from meshes import ElementBlock, Mesh
-from meshes.elements import KINDS
+from gearwhine.meshes import ElementBlock, Mesh
+from gearwhine.meshes.elements import KINDS
 
 FloatArray = npt.NDArray[np.float64]
 

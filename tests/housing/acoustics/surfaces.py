@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import j1, spherical_jn, spherical_yn, struve
 
-from housing.acoustics.boundary_elements import BoundaryElements, SoundField
-from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.errors import HousingError
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField
+from gearwhine.housing.acoustics.medium import HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.errors import HousingError
 from tests.housing.acoustics.surfaces import at_corners, box, disc, rectangle, sphere
 
 UNIT = Medium(density=1.0, speed_of_sound=1.0)  # k = ω

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from housing.acoustics.radiation import wrapped
-from housing.acoustics.surface_velocity import surface_velocity
-from meshes import BoxGeometry, Mesh, mesh_box
-from meshes.box import Bore, WallThickness
+from gearwhine.housing.acoustics.radiation import wrapped
+from gearwhine.housing.acoustics.surface_velocity import surface_velocity
+from gearwhine.meshes import BoxGeometry, Mesh, mesh_box
+from gearwhine.meshes.box import Bore, WallThickness
 
 DIAMETER = 0.05
 

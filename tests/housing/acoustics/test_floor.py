@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from solids import cubes
 
-from housing.acoustics.boundary_elements import BoundaryElements
-from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import HousingRadiation
-from housing.errors import HousingError
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
+from gearwhine.housing.acoustics.medium import HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.errors import HousingError
 from tests.housing.acoustics.surfaces import at_corners, box
 
 AIR = Medium(density=1.2, speed_of_sound=343.0)

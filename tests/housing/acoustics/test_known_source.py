@@ -5,10 +5,10 @@ import pytest
 from test_floor import FLOOR, standing_box
 from test_radiation import plate
 
-from housing.acoustics import boundary_elements
-from housing.acoustics.boundary_elements import BoundaryElements, SoundField
-from housing.acoustics.boundary_integrals import linear_projection
-from housing.acoustics.known_source import (
+from gearwhine.housing.acoustics import boundary_elements
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements, SoundField
+from gearwhine.housing.acoustics.boundary_integrals import linear_projection
+from gearwhine.housing.acoustics.known_source import (
     NO_SOURCE,
     NOTHING_TO_PROVE,
     SOURCE_DEPTH,
@@ -17,9 +17,9 @@ from housing.acoustics.known_source import (
     depths,
     over_narrow_gap,
 )
-from housing.acoustics.medium import AIR, HardPlane
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import LEAK, SOURCE_OFF
+from gearwhine.housing.acoustics.medium import AIR, HardPlane
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiation import LEAK, SOURCE_OFF
 from tests.housing.acoustics.surfaces import at_corners, box, rectangle, sphere
 
 BOX = (0.28, 0.25, 0.33)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.special import spherical_jn, spherical_yn
 
-from housing.acoustics.boundary_elements import BoundaryElements
-from housing.acoustics.medium import Medium
-from housing.acoustics.modal_radiation import ARRAYS, ModalRadiation
-from housing.acoustics.radiation import HousingRadiation
-from housing.errors import HousingError
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
+from gearwhine.housing.acoustics.medium import Medium
+from gearwhine.housing.acoustics.modal_radiation import ARRAYS, ModalRadiation
+from gearwhine.housing.acoustics.radiation import HousingRadiation
+from gearwhine.housing.errors import HousingError
 from tests.housing.acoustics.surfaces import at_corners, sphere
 
 UNIT = Medium(density=1.0, speed_of_sound=1.0)  # k = ω

@@ -7,11 +7,11 @@ import numpy.typing as npt
 import pytest
 from solids import spherical_shell
 
-from housing.acoustics.medium import AIR
-from housing.acoustics.power_gradient import PowerGradient
-from housing.acoustics.radiation import HousingRadiation, Method
-from housing.acoustics.surface_velocity import surface_velocity
-from meshes import Mesh
+from gearwhine.housing.acoustics.medium import AIR
+from gearwhine.housing.acoustics.power_gradient import PowerGradient
+from gearwhine.housing.acoustics.radiation import HousingRadiation, Method
+from gearwhine.housing.acoustics.surface_velocity import surface_velocity
+from gearwhine.meshes import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy.special import j1
 
-from housing.acoustics import boundary_elements
-from housing.acoustics.boundary_elements import BoundaryElements
-from housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE, SourceError
-from housing.acoustics.medium import HardPlane, Medium
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.radiation import HousingRadiation, RadiatedSound, require_proved
-from housing.errors import HousingError, TriangleSizeError
-from meshes import Mesh
+from gearwhine.housing.acoustics import boundary_elements
+from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
+from gearwhine.housing.acoustics.known_source import NO_SOURCE, NOTHING_TO_PROVE, SourceError
+from gearwhine.housing.acoustics.medium import HardPlane, Medium
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound, require_proved
+from gearwhine.housing.errors import HousingError, TriangleSizeError
+from gearwhine.meshes import Mesh
 from tests.housing.acoustics.surfaces import at_corners, box, disc, rectangle
 
 UNIT = Medium(density=1.0, speed_of_sound=1.0)

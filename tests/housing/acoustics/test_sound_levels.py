@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from housing.acoustics.sound_levels import (
+from gearwhine.housing.acoustics.sound_levels import (
     a_weighting,
     measurement_box,
     power_level,

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from solids import cubes, hollow_box, spherical_shell
 
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.surface_velocity import (
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.surface_velocity import (
     SurfaceVelocity,
     face_surface,
     surface_velocity,
     transfer_error,
     velocity_transfer,
 )
-from housing.acoustics.wrapping import wrap
-from housing.errors import HousingError
-from housing.fem.surface import flat_faces
-from meshes import GeometryError, Mesh
+from gearwhine.housing.acoustics.wrapping import wrap
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.fem.surface import flat_faces
+from gearwhine.meshes import GeometryError, Mesh
 
 SIZE = (0.3, 0.2, 0.24)
 
@@ -152,8 +152,8 @@ def test_a_face_of_facets_is_exact_at_its_nodes(block: Callable[..., Mesh], orde
 
 @pytest.mark.parametrize("kind", ["hexahedron20", "hexahedron27"])
 def test_a_face_of_quadrilaterals_keeps_all_nodes_but_none_twice(kind: str) -> None:
-    from meshes import ElementBlock
-    from meshes.elements import KINDS
+    from gearwhine.meshes import ElementBlock
+    from gearwhine.meshes.elements import KINDS
 
     places = np.array(KINDS[kind].places)
     mesh = Mesh(places * 0.1, (ElementBlock(kind, np.arange(len(places))[None]),))

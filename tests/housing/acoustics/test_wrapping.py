@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from solids import cubes, hollow_box, spherical_shell
 
-from housing.acoustics.radiating_surface import RadiatingSurface
-from housing.acoustics.surface_velocity import surface_velocity
-from housing.acoustics.wrapping import _divided, least_angles, wrap
-from housing.errors import HousingError
-from meshes import Mesh
+from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
+from gearwhine.housing.acoustics.surface_velocity import surface_velocity
+from gearwhine.housing.acoustics.wrapping import _divided, least_angles, wrap
+from gearwhine.housing.errors import HousingError
+from gearwhine.meshes import Mesh
 
 
 def _least_angle(surface: RadiatingSurface) -> float:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from housing.correlation import complexity_factor, modal_assurance_criterion, modal_scale_factor
+from gearwhine.housing.correlation import complexity_factor, modal_assurance_criterion, modal_scale_factor
 
 tools = pytest.importorskip("sdypy.EMA.tools", reason="sdypy-EMA is not installed")
 RANDOM = np.random.default_rng(5)

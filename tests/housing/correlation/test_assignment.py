@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from housing.correlation.pairing import best_assignment, margin
+from gearwhine.housing.correlation.pairing import best_assignment, margin
 
 SCORES = arrays(
     np.float64, st.tuples(st.integers(1, 4), st.integers(1, 4)), elements=st.floats(0.0, 1.0).map(lambda x: round(x, 3))

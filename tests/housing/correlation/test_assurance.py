@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cosine
 
-from housing import HousingError
-from housing.correlation import (
+from gearwhine.housing import HousingError
+from gearwhine.housing.correlation import (
     auto_mac,
     largest_off_diagonal,
     modal_assurance_criterion,

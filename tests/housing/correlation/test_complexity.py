@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from housing.correlation import (
+from gearwhine.housing.correlation import (
     complexity_factor,
     modal_assurance_criterion,
     phase_collinearity,
     phase_deviation,
     real_shapes,
 )
-from housing.correlation.modal_assurance_criterion import mean_phase
+from gearwhine.housing.correlation.modal_assurance_criterion import mean_phase
 
 X, Y = np.array([1.0, 2.0, -2.0, 0.0]), np.array([2.0, -1.0, 0.0, 2.0])  # orthogonal, of one norm
 

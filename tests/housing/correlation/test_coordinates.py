@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from housing import HousingError
-from housing.correlation import comac, enhanced_comac
+from gearwhine.housing import HousingError
+from gearwhine.housing.correlation import comac, enhanced_comac
 
 POINTS = 9
 SHAPES = np.sin(np.pi * np.outer(np.arange(1, 5), np.arange(1, POINTS + 1)) / (POINTS + 1))

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from housing import HousingError, compare_by_frequency
-from housing.correlation.pairing import nearest_in_order
+from gearwhine.housing import HousingError, compare_by_frequency
+from gearwhine.housing.correlation.pairing import nearest_in_order
 
 FREQUENCIES = st.lists(st.floats(100.0, 1000.0), min_size=1, max_size=7).map(sorted).map(np.array)
 

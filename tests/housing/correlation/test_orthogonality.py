@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from housing import HousingError
-from housing.correlation import cross_orthogonality, modal_assurance_criterion, outside_span, self_orthogonality
-from housing.correlation.orthogonality import modal_coordinates, serep_mass
+from gearwhine.housing import HousingError
+from gearwhine.housing.correlation import (
+    cross_orthogonality,
+    modal_assurance_criterion,
+    outside_span,
+    self_orthogonality,
+)
+from gearwhine.housing.correlation.orthogonality import modal_coordinates, serep_mass
 
 COUNT = 12
 RANDOM = np.random.default_rng(11)

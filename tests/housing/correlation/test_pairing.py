@@ -5,11 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from housing import HousingError, compare_by_shapes
-from housing.correlation import pair_modes, span_mac
-from housing.correlation.pairing import PairingRule
-from housing.measured import MeasuredGeometry, MeasuredModes
-from housing.modes.dominance import Dominance
+from gearwhine.housing import HousingError, compare_by_shapes
+from gearwhine.housing.correlation import pair_modes, span_mac
+from gearwhine.housing.correlation.pairing import PairingRule
+from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
+from gearwhine.housing.modes.dominance import Dominance
 
 FloatArray = np.ndarray
 

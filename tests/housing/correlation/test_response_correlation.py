@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from housing import HousingError, Material, assemble, solve_modes
-from housing.correlation import amplitude_correlation, fdac, frac, response_vector_assurance, synthesised_responses
+from gearwhine.housing import HousingError, Material, assemble, solve_modes
+from gearwhine.housing.correlation import (
+    amplitude_correlation,
+    fdac,
+    frac,
+    response_vector_assurance,
+    synthesised_responses,
+)
 
 LINES = np.linspace(10.0, 400.0, 300)
 POINTS = np.arange(1, 8) / 8

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from housing import HousingError
-from housing.correlation import modal_assurance_criterion, principal_angles, span_mac
-from housing.correlation.subspaces import close_modes, nearest_in_span
+from gearwhine.housing import HousingError
+from gearwhine.housing.correlation import modal_assurance_criterion, principal_angles, span_mac
+from gearwhine.housing.correlation.subspaces import close_modes, nearest_in_span
 
 RANDOM = np.random.default_rng(3)
 
