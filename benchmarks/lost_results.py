@@ -1,7 +1,7 @@
 """Damaged results folders under every command that reads them, and commands that are killed: nothing may be lost.
 
     OMP_NUM_THREADS=1 python benchmarks/lost_results.py              # 100 damaged folders, 60 kills
-    OMP_NUM_THREADS=1 python benchmarks/lost_results.py 10 6 --seed 7
+    OMP_NUM_THREADS=1 python benchmarks/lost_results.py 14 8 --seed 7
 
 A damaged file is named, or done anew; a killed command leaves one whole set of files, the user's own among them, and
 the same command then runs to its end. Damages and moments are those of the seed.
@@ -26,22 +26,65 @@ SETS = ("transient.revolutions=6", "transient.discard=2")
 RUN = ("run", "spur-pair", "--no-pictures", *(word for text in SETS for word in ("--set", text)))
 SWEEP = ("sweep", "spur-pair", "--over", "operation.speed=1000 rpm,2000 rpm", "--workers", "1")
 SWEEP = (*SWEEP, *(word for text in SETS for word in ("--set", text)))
-READERS = {
-    "export": ("export", "{}", "--csv"),
-    "report": ("report", "{}"),
+BOX = """
+[housing]
+modes = 5
+material = "steel"
+box = { size = ["200 mm", "160 mm", "240 mm"], wall = "10 mm", mesh_size = "60 mm" }
+[material.steel]
+youngs_modulus = "207 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+[[housing.support]]
+name = "base"
+surface = "bottom"
+fixed = ["x", "y", "z"]
+[measured]
+frequencies = ["1600 Hz", "1900 Hz"]
+pairing = "order"
+[acoustics]
+method = "erp"
+mesh_size = "60 mm"
+highest_frequency = "900 Hz"
+[update]
+mesh_size = "80 mm"
+solves = 3
+explore = 1
+[[update.parameter]]
+name = "steel"
+keys = ["material.steel.youngs_modulus"]
+range = ["150 GPa", "230 GPa"]
+spread = "20 GPa"
+"""
+HOUSING = {
+    "modes": ("modes", "box.toml", "-o", "{}"),
+    "compare": ("compare", "box.toml", "-o", "{}"),
+    "sound": ("sound", "box.toml", "-o", "{}"),
+    "update": ("update", "box.toml", "-o", "{}"),
+    "survey": ("survey", "box.toml", "--sensors", "3", "--modes", "2", "-o", "{}"),
+}
+GEARS = {
     "run": (*RUN, "-o", "{}"),
     "gears": ("gears", "spur-pair", "-o", "{}"),
     "load": ("load", "spur-pair", "-o", "{}"),
     "steady": ("steady", "spur-pair", "-o", "{}"),
-    "sweep": (*SWEEP, "-o", "{}"),
 }
+SHOWN = {"export": ("export", "{}", "--csv"), "report": ("report", "{}")}
+READERS = {
+    "gears": SHOWN | GEARS | {"sweep": (*SWEEP, "-o", "{}")},
+    "housing": {"report": SHOWN["report"]} | HOUSING,
+    "interrupted": {"run": GEARS["run"]},
+}
+"""Commands that read the results of those of gear pairs, of housings, and of a run that was killed while it marched."""
 KILLED = {
-    "run": (*RUN, "-o", "{}"),
+    "run": GEARS["run"],
     "sweep": (*SWEEP, "-o", "{}"),
     "load": ("load", "helical-pair", "-o", "{}"),
-    "gears": ("gears", "spur-pair", "-o", "{}"),
-    "report": ("report", "{}"),
-    "sound": ("sound", "steel-box", "--set", "acoustics.method=erp", "-o", "{}"),
+    "gears": GEARS["gears"],
+    "report": SHOWN["report"],
+    "sound": HOUSING["sound"],
+    "update": HOUSING["update"],
+    "compare": HOUSING["compare"],
 }
 NOTES = "notes.txt"
 
@@ -80,20 +123,33 @@ def damage(path: Path, chance: random.Random) -> str:
     return kind
 
 
-def damaged(count: int, chance: random.Random, sound: Path, folder: Path) -> int:
-    """Have commands read damaged copies of a folder; return the number of faults."""
-    files = sorted(path.relative_to(sound) for path in sound.rglob("*") if path.is_file())
+def interrupted(folder: Path) -> None:
+    """Kill a run that has stored the first block of its march."""
+    process = command(GEARS["run"], folder)
+    while not any(folder.glob(".resume-*/block-*.npz")) and process.poll() is None:
+        time.sleep(0.01)
+    process.kill()
+    process.communicate()
+    assert any(folder.glob(".resume-*/block-*.npz"))
+
+
+def damaged(count: int, chance: random.Random, intact: Path, folder: Path) -> int:
+    """Have commands read damaged copies of the folders of results; return the number of faults."""
+    readers = [(kind, reader) for kind, commands in READERS.items() for reader in commands]
     faults = 0
     for number in range(count):
         print(f"damaged folder {number + 1} of {count}", file=sys.stderr, flush=True)
+        results, reader = readers[number % len(readers)]
+        sound = intact / results
+        files = sorted(path.relative_to(sound) for path in sound.rglob("*") if path.is_file())
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(sound, folder)
-        name, reader = chance.choice(files), list(READERS)[number % len(READERS)]
+        name = chance.choice(files)
         before = (folder / name).read_bytes()
         kind = damage(folder / name, chance)
         changed = kind == "missing" or (folder / name).read_bytes() != before
         begin = time.monotonic()
-        process = command(READERS[reader], folder)
+        process = command(READERS[results][reader], folder)
         said = process.communicate()[1]
         wrong = fault(process.returncode, said, time.monotonic() - begin)
         # A picture that is gone is none of an export's concern.
@@ -101,7 +157,7 @@ def damaged(count: int, chance: random.Random, sound: Path, folder: Path) -> int
         if not wrong and changed and concerns and name.name != "report.html":
             # A later file of the same command's name is drawn anew; a reader says what it misses.
             wrong = "" if name.name in said else "silent"
-        if not wrong and reader in ("run", "gears", "load", "steady", "sweep") and process.returncode:
+        if not wrong and reader not in SHOWN and process.returncode:
             wrong = f"does not do it anew: {said.strip()[-200:]}"
         if wrong:
             faults += 1
@@ -164,12 +220,15 @@ def main() -> None:
     given = parser.parse_args()
     chance = random.Random(given.seed)
     with tempfile.TemporaryDirectory() as name:
-        sound, folder = Path(name, "sound"), Path(name, "folder")
-        for words in (RUN, ("gears", "spur-pair"), ("load", "spur-pair"), ("steady", "spur-pair")):
-            assert command((*words, "-o", "{}"), sound).wait() == 0, words
-        wrong = damaged(given.damages, chance, sound, folder)
+        intact, folder = Path(name), Path(name, "folder")
+        Path(name, "box.toml").write_text(BOX, encoding="utf-8")
+        for results, commands in (("gears", GEARS), ("housing", HOUSING)):
+            for words in commands.values():
+                assert command(words, intact / results).wait() == 0, words
+        interrupted(intact / "interrupted")
+        wrong = damaged(given.damages, chance, intact, folder)
         print(f"{given.damages} damaged folders: {wrong} faults", flush=True)
-        wrong = killed(given.kills, chance, sound, folder)
+        wrong = killed(given.kills, chance, intact / "gears", folder)
         print(f"{given.kills} kills: {wrong} faults", flush=True)
 
 

@@ -341,8 +341,10 @@ class Study:
     def run(self) -> Result[RunSolution]:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
         from gearwhine.analyses import run
+        from gearwhine.solve.sound import is_in_run
 
-        return run.run(self.case, housing=self._solved_housing(with_sound=True), pictures=False, progress=self.progress)
+        housing = self._solved_housing(with_sound=is_in_run(self.case))
+        return run.run(self.case, housing=housing, pictures=False, progress=self.progress)
 
     def sweep(
         self,

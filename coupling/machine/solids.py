@@ -17,7 +17,7 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.parts import Shaft, ShaftGear
 from gearwhine.numerics.findings import Finding, Part
 from gearwhine.rotors import Rotor, Segment
-from gearwhine.rotors.rolling_bearings import RollingBearing
+from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow
 
 _SLACK = 5e-5
 """Overlap of two parts up to which they just touch [m]."""
@@ -362,6 +362,7 @@ def machine_findings(
     by_name = {shaft.name: shaft for shaft in shafts}
     for shaft in shafts:
         yield from shaft_findings(shaft)
+        yield from support_findings(shaft, [held for held in bearings if held.rotor == shaft.name])
     for mounted in gears:
         shaft = by_name[mounted.shaft]
         yield from fit_findings(mounted.gear, shaft.rotor, mounted.at)
@@ -378,6 +379,24 @@ def machine_findings(
     ]
     stand_ins = [mounted.name for mounted in gears if mounted.inertia is not None]
     yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins)
+
+
+def support_findings(shaft: Shaft, bearings: Sequence[MountedBearing]) -> Iterator[Finding]:
+    """Yield a shaft that one bearing holds like a pivot: a load beside it finds no equilibrium.
+
+    A row of balls, or of rollers that align themselves, resists no tilt; nor does a stiffness without rotations.
+    """
+    if len(bearings) != 1:
+        return
+    (held,) = bearings
+    if held.elements is not None:
+        row, *further_rows = held.elements.rows
+        tilts = not further_rows and isinstance(row, BallRow | SphericalRollerRow)
+    else:
+        tilts = not held.bearing.stiffness[..., 3:, 3:].any()
+    if tilts:
+        expected = f"a second bearing, or one that resists tilting: about {held.bearing.name!r} alone the shaft swings"
+        yield Finding(("shaft", shaft.name), "", None, expected, "warning")
 
 
 _MOST_DAMPED = 0.2

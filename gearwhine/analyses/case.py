@@ -205,7 +205,7 @@ def export_results(
         files = sorted(path.relative_to(place).as_posix() for path in exports.iterdir())
         if not files:
             expected = f"results with what can be written as {', '.join(formats)}"
-            how = "run the case with [transient], and with sensors, or with [acoustics] and microphones"
+            how = "run the case with [transient], and with sensors, or with [acoustics], in_run = true and microphones"
             raise CaseError([Problem("export", str(folder), f"{expected}: {how}")])
     add_warnings(document, (warning("results folder", remark) for remark in remarks))
     add_warnings(document, _missing_points(document))

@@ -153,7 +153,7 @@ def compare(
         progress("comparing responses")
         likeness = compare_responses_document(case, solved, survey)
         document |= {} if likeness is None else {"responses": responses_document(likeness)}
-    add_warnings(document, comparison_warnings(comparison))
+    add_warnings(document, comparison_warnings(comparison, solved.modes))
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> None:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
+from gearwhine.case.checks.plausible import overload
+from gearwhine.coupling.errors import TransientError
 from gearwhine.coupling.linear.linear_analysis import solve_system
 from gearwhine.coupling.time.recorded_transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.from_case.gear_pairs import solve_gears
@@ -31,6 +33,7 @@ from gearwhine.results.operating_point import LOAD, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import (
     RUN_SIGNATURE,
+    SOUND_LEFT_OUT,
     TRANSIENT,
     HistoryStream,
     TracedTransient,
@@ -60,7 +63,7 @@ from gearwhine.solve.plausibility import (
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
 from gearwhine.solve.signature import solve_signature
-from gearwhine.solve.sound import check_before_modes
+from gearwhine.solve.sound import check_before_modes, is_in_run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -133,7 +136,8 @@ def run(
     timed("rotors_and_gears", begin)
     begin = time.perf_counter()
     if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
+        before = check_before_modes(case) if is_in_run(case) else None
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=before)
     timed("housing", begin)
     begin = time.perf_counter()
     described, part, load, loaded, warnings_of_load = None, None, None, None, list[dict[str, Any]]()
@@ -162,7 +166,7 @@ def run(
         if case.measured is not None:
             comparison = compare_housing(case, housing, progress)
             document["compare"] = comparison_document(comparison, housing)
-            add_warnings(document, comparison_warnings(comparison))
+            add_warnings(document, comparison_warnings(comparison, housing.modes))
 
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if loaded is not None and described is not None:
@@ -191,7 +195,13 @@ def run(
             keep = None
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            transient = solve_transient(machine, plan_of(case), progress, keep=keep)
+            try:
+                transient = solve_transient(machine, plan_of(case), progress, keep=keep)
+            except TransientError as error:
+                # Under a load that no tooth bears the advice of the integration is beside the point.
+                if told := overload(case):
+                    raise TransientError(f"{told}; no motion under this load is found") from error
+                raise
             if has_traced_lines(machine):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
@@ -212,7 +222,9 @@ def run(
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
-    if case.acoustics is not None and housing is not None:
+    if case.acoustics is not None and not is_in_run(case):
+        document["sound_not_solved"] = SOUND_LEFT_OUT
+    if is_in_run(case) and housing is not None:
         from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_run
         from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
 

@@ -70,3 +70,11 @@ class Acoustics(Table):
     """Distance of nine microphones on a box around the housing, which stands on the `floor` (ISO 3744)."""
     lines: Annotated[int, Whole(1, 400)] = 40
     """Number of spectral lines that are solved at most: those with most power by an estimate."""
+    in_run: bool | None = None
+    """Whether `run` finds the sound of its motion, too; the command `sound` always finds that of the steady motion.
+    Default: `true` for `rayleigh` and `erp`, `false` for `boundary-elements`, which take minutes."""
+
+    @property
+    def is_in_run(self) -> bool:
+        """Whether `run` finds the sound of its motion."""
+        return self.method != "boundary-elements" if self.in_run is None else self.in_run

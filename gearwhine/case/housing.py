@@ -35,6 +35,7 @@ from gearwhine.case.fields import (
 )
 from gearwhine.case.fixtures import Dashpots, Joint, LumpedMass, Mount, Springs
 from gearwhine.case.units import QuantityError, parse_quantity
+from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 
 if TYPE_CHECKING:
     from gearwhine.housing import Seat as BuiltSeat
@@ -63,6 +64,8 @@ class Region(Table):
 
 def _shape(value: Any) -> str:
     """Form in which a value with several forms is given."""
+    if isinstance(value, str) and value.isalpha():
+        return "~word"
     if isinstance(value, (dict, Table)):
         return "~table"
     return "~list" if isinstance(value, (list, tuple)) else "~scalar"
@@ -323,14 +326,16 @@ class Housing(Table):
     """Name of the material; a region may have another."""
     damping_ratio: Annotated[
         Annotated[DampingRatio, Tag("~scalar")]
+        | Annotated[Literal["welded", "bolted", "cast"], Tag("~word")]
         | Annotated[tuple[DampingRatio, ...], Tag("~list"), Field(min_length=1, max_length=MOST_ENTRIES)]
         | Annotated[dict[str, DampingRatio], Tag("~table"), Field(min_length=1, max_length=MOST_ENTRIES)],
         Discriminator(_shape),
     ] = 0.01
-    """Modal damping ratio: one for all modes, a list with one for each mode from the lowest on, or a table from
-    frequency to ratio such as `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between. Steel structures have 0.003 where
-    they are welded, 0.005 with high-strength and 0.008 with ordinary bolts (EN 1991-1-4:2005, table F.2); metal
-    structures of one piece, as cast ones, have 0.02 to 0.04, and 0.03 to 0.07 with joints (Adams and Askenazi 1998)."""
+    """Modal damping ratio: one for all modes, a list with one for each mode from the lowest on, a table from
+    frequency to ratio such as `{ "0 Hz" = 0.02, "3 kHz" = 0.01 }`, linear between, or a word for one of all modes:
+    "welded" is 0.00318 and "bolted" (high-strength bolts) 0.00477, of steel; with ordinary bolts it has 0.008
+    (EN 1991-1-4:2005, table F.2); "cast" is 0.02: metal structures of one piece have 0.02 to 0.04, and 0.03 to 0.07
+    with joints (Adams and Askenazi 1998)."""
     frequency_limit: PositiveFrequency | None = None
     """Every mode below this frequency is found. One of this and `modes`."""
     modes: Annotated[int, Whole(1, 5000)] | None = None
@@ -382,6 +387,12 @@ class Housing(Table):
         """Edge length of the elements [m]; None where the housing is meshed already, or to an accuracy."""
         source = self.box or self.cad
         return None if source is None else source.mesh_size
+
+    @property
+    def modal_damping(self) -> float | tuple[float, ...] | dict[str, float]:
+        """The damping ratios in numbers: one, one for each mode, or by frequency."""
+        ratio = self.damping_ratio
+        return STRUCTURAL_DAMPING[ratio].ratio if isinstance(ratio, str) else ratio
 
     @property
     def damping_points(self) -> tuple[tuple[float, float], ...]:

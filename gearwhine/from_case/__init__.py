@@ -8,6 +8,5 @@ are raised as problems of the keys that cause them.
 - :mod:`~gearwhine.from_case.parametric_housing`: the housing at any values of the fitted parameters.
 - :mod:`~gearwhine.from_case.rotors`: rotors, and bearings linearised under their load.
 - :mod:`~gearwhine.from_case.gear_pairs`: gear pairs with their contact law.
-- :mod:`~gearwhine.from_case.machine`: the description of the machine that these form.
-- :mod:`~gearwhine.from_case.driving`: its speed profile, torques, base motion and gravity.
+- :mod:`~gearwhine.from_case.machine`: the description of the machine that these form, with all that loads it.
 """

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, did_you_mean
+from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, one_of
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.mesh import cover_joints
 from gearwhine.housing import HousingError
@@ -124,9 +124,7 @@ def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
     surfaces = sorted(mesh.surfaces)
     for key, label, surface in named:
         if surface not in mesh.surfaces:
-            listed = ", ".join(surfaces[:20]) + (", …" if len(surfaces) > 20 else "")
-            expected = f"a surface of the mesh ({listed or 'it names none'})" + did_you_mean(surface, surfaces)
-            yield Problem(key, surface, expected, label=label)
+            yield Problem(key, surface, one_of("a surface of the mesh", surface, surfaces), label=label)
     for index, mass in enumerate(table.mass):
         if mass.position is not None:
             nearest = mass.build().place(mesh).position

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box import FACES
 from gearwhine.case.checks.housing import box_geometry
-from gearwhine.case.errors import UNSAID, did_you_mean
+from gearwhine.case.errors import UNSAID, one_of
 from gearwhine.case.housing import Region
 from gearwhine.case.input_files import ChangedFileError
 from gearwhine.housing import Joint, Material
@@ -266,9 +266,7 @@ def _elements(mesh: Mesh, index: int, region: Region, problems: list[Problem]) -
     if region.volume is not None:
         if region.volume not in mesh.volumes:
             volumes = sorted(mesh.volumes)
-            expected = f"a volume of the mesh ({', '.join(volumes) or 'it has none'})" + did_you_mean(
-                region.volume, volumes
-            )
+            expected = one_of("a volume of the mesh", region.volume, volumes)
             problems.append(_problem(index, region, expected))
         return np.asarray(mesh.volumes.get(region.volume, np.empty(0, dtype=np.int64)))
     assert region.box is not None

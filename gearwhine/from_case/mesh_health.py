@@ -187,7 +187,8 @@ def _preview_size(case: Case, box: Box) -> list[dict[str, Any]]:
         f"elements of {1e3 * box.mesh_size:.3g} mm are longer than 1/{length / size:g} of the shortest wave, "
         f"{1e3 * length:.3g} mm at {limit:.4g} Hz in the wall of {1e3 * thinnest:.3g} mm; modes near "
         f"that frequency come out some per cent too high: use a mesh_size of at most {1e3 * size:.3g} mm, "
-        "and see the estimated error of each mode in `gearwhine modes`"
+        "the most by the wave alone; bores, bosses and corners may need smaller ones, as `gearwhine modes` tells by "
+        "the estimated error of each mode"
     )
     return [warning("size", message)]
 

@@ -49,11 +49,15 @@ class BlockFiles:
         """Write the next block: after this call it is there, whatever happens."""
         target = self._file(self._count)
         beside = target.with_suffix(".part")
-        with beside.open("wb") as file:
-            np.savez(file, allow_pickle=False, **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(beside, target)
+        try:
+            with beside.open("wb") as file:
+                np.savez(file, allow_pickle=False, **arrays)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(beside, target)
+        except OSError:
+            beside.unlink(missing_ok=True)
+            raise
         _force_names(self._folder)
         self._count += 1
 
@@ -104,8 +108,10 @@ def stored_record(folder: Path, key: str, *, fresh: bool = False) -> Iterator[Bl
         except BaseException as error:
             if blocks.is_empty:
                 _clear(place, folder if is_new else None)
-            elif isinstance(error, KeyboardInterrupt):
-                error.add_note("what was marched so far is kept: the same command goes on from there, --fresh does not")
+            elif isinstance(error, KeyboardInterrupt | OSError):
+                error.add_note(
+                    f"what was marched so far is kept in {place}: the same command goes on from there, --fresh does not"
+                )
             raise
         _clear(place, None)
 

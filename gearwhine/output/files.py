@@ -202,7 +202,10 @@ def room_named(folder: Path) -> Iterator[None]:
     except OSError as error:
         reason = errno.ENOSPC if os.strerror(errno.ENOSPC) in str(error) else error.errno
         if error.filename is None and reason in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO):
-            raise OSError(reason, os.strerror(reason), str(folder)) from error
+            named = OSError(reason, os.strerror(reason), str(folder))
+            for note in getattr(error, "__notes__", ()):
+                named.add_note(note)
+            raise named from error
         raise
 
 

@@ -179,9 +179,9 @@ def store_results(
         document.update(
             command=command, made_at=_now(), input_files=case.input_files.contents, folder=str(folder), files=files
         )
+        if command == _FOREMOST and (moved := _give_way(place, folder)):
+            document["moved"] = {"command": moved, "to": (folder / moved).as_posix()}
         (place / command_folder / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
-        if command == _FOREMOST:
-            _give_way(place, folder)
 
     with staging(folder, settle) as place:
         (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
@@ -211,12 +211,15 @@ def _place_of(folder: Path, command: str) -> Path:
     return Path() if owner == command else Path(command)
 
 
-def _give_way(place: Path, folder: Path) -> None:
-    """Stage the results of another command, which stand in the folder itself, for its sub-folder: they move as well."""
+def _give_way(place: Path, folder: Path) -> str | None:
+    """Stage the results of another command, which stand in the folder itself, for its sub-folder: they move as well.
+
+    Returns the name of the command, which is that of the sub-folder; None where there is nothing to move.
+    """
     document = dict(read_summary(folder) or {})
     owner = document.get("command")
     if not isinstance(owner, str) or owner == _FOREMOST or owner not in COMMANDS:
-        return
+        return None
     shared = [MODE_CACHE_FILE] if (folder / MODE_CACHE_FILE).is_file() else []
     names = [path.name for path in listed_files(folder, Path()) if path.name not in (MODE_CACHE_FILE, SUMMARY)]
     document["files"] = [*shared, *(f"{owner}/{name}" for name in [*names, SUMMARY])]
@@ -227,6 +230,7 @@ def _give_way(place: Path, folder: Path) -> None:
         except OSError:  # of a file system without links
             shutil.copyfile(folder / name, place / owner / name)
     (place / owner / SUMMARY).write_text(json_text(document) + "\n", encoding="utf-8")
+    return owner
 
 
 def _now() -> str:

@@ -92,6 +92,8 @@ def show_written(console: Console, document: Document) -> None:
     if written:
         listed = ", ".join(written) if len(written) <= _LISTED else f"{len(written)} files"
         console.print(f"Written to {document['folder']}: {listed}")
+    if moved := document.get("moved"):
+        console.print(f"Earlier results of {moved['command']} in this folder are now in {moved['to']}")
 
 
 def show_origin(console: Console, document: Document) -> None:

@@ -402,7 +402,7 @@ def _summed(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_summary(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": _bearing_summary(document.get("bearings", ())),
-        "location": [
+        "thrust": [
             _location_line(location) for location in document.get("axial_location", ()) if _is_worth_a_line(location)
         ],
         "gear pairs": [_pair_summary(pair) for pair in document.get("gear_pairs", ())],
@@ -463,7 +463,7 @@ def _parts(document: Document) -> Iterator[tuple[str, list[str]]]:
         "housing": _housing_lines(document["housing"]) if "housing" in document else [],
         "rotors": [_rotor_line(rotor) for rotor in document.get("rotors", ())],
         "bearings": [_bearing_line(bearing) for bearing in document.get("bearings", ())],
-        "location": [_location_line(location) for location in document.get("axial_location", ())],
+        "thrust": [_location_line(location) for location in document.get("axial_location", ())],
         "analysis": [line for analysis in document.get("rotor_analysis", ()) for line in _analysis_lines(analysis)],
         "gear pairs": [line for pair in document.get("gear_pairs", ()) for line in _pair_lines(pair, on_bearings)],
         "gear bodies": gear_body_lines(document),

@@ -26,6 +26,7 @@ from gearwhine.results.motion import (
     MECHANISM,
     amplitude_words,
     band_words,
+    closing,
     leading_lines,
     mechanism_words,
     path_place,
@@ -319,7 +320,7 @@ def _proofs(document: Document) -> Iterator[Finding]:
         )
     if (error := document.get("energy_error")) is not None:
         yield Finding(
-            f"Motion: the energy balance closes to {error:.0e} over {document['steps']} steps (bound: "
+            f"Motion: the energy balance closes {closing(error)} over {document['steps']} steps (bound: "
             f"{percent(_MOST_ERROR)}).",
             passed=error < _MOST_ERROR,
             link=("section Motion",),
@@ -328,8 +329,8 @@ def _proofs(document: Document) -> Iterator[Finding]:
     for motion in document.get("motions", ()):
         if (error := motion.get("error")) is not None and motion.get("residual") is not None:
             yield Finding(
-                f"Steady state: the motion closes to {motion['residual']:.0e} and changes by {error:.0e} with elements "
-                f"half as long (bound: {_PERIODIC:.0e}); {'stable' if motion['stable'] else 'unstable'}.",
+                f"Steady state: the motion closes {closing(motion['residual'])} and changes by {error:.0e} with "
+                f"elements half as long (bound: {_PERIODIC:.0e}); {'stable' if motion['stable'] else 'unstable'}.",
                 passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
                 link=("section Steady state",),
             )

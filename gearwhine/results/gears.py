@@ -614,11 +614,12 @@ def _mesh(pair: Document) -> list[str]:
         lines.append(words[0].upper() + words[1:] + seats)
     stiffness, error = pair["stiffness_n_per_m"], pair["transmission_error_m"]
     lines.append(
-        f"Mesh stiffness {_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "
+        "Mesh stiffness, with the gears' bodies: without load, of all pairs on the path, "
+        f"{_MEGA * stiffness['mean']:.2f} N/µm in the mean, {_MEGA * stiffness['min']:.2f} to "
         f"{_MEGA * stiffness['max']:.2f}"
     )
     if pair["mean_force_n"]:
-        lines[-1] += f"; of the teeth that touch under the load {_MEGA * stiffness['loaded_mean']:.2f} in the mean"
+        lines[-1] += f"; under load, of the teeth that touch, {_MEGA * stiffness['loaded_mean']:.2f} in the mean"
     state = "Static transmission error" if pair["mean_force_n"] else "Transmission error without load"
     lines.append(f"{state} {_error(error)}")
     if error["over_hunting_period"]:

@@ -99,6 +99,11 @@ def shape_column(heading: str) -> Column:
     return Column(heading, "by", link=_shapes_of)
 
 
+def closing(error: float, spec: str = ".0e") -> str:
+    """Return how well a balance or a period closes, such as ``to 3e-12``, or ``exactly`` without an error."""
+    return f"to {error:{spec}}" if error else "exactly"
+
+
 def damping_lines(parts: Iterable[Document]) -> list[str]:
     """Return the damping of the parts of a machine in words, like ones together, and what nobody gave."""
     alike: dict[str, list[str]] = {}

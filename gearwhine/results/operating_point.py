@@ -239,7 +239,7 @@ PAIR = (
         (),
         "N/m",
         "mean mesh stiffness under load over the mesh period",
-        heading="stiffness\n[N/µm]",
+        heading="mesh stiffness\nunder load [N/µm]",
         shown=".1f",
         scale=_MEGA,
     ),
@@ -859,7 +859,7 @@ _TORQUE_COLUMNS = (
     Column("pair", "pair"),
     Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
     Column("K_Hβ", "k_h_beta", ".3f"),
-    Column("stiffness\n[N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
+    Column("mesh stiffness\nunder load [N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
     Column("TE p-p\n[µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
 )
 
@@ -1005,7 +1005,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from kept_sentence(document, LOAD_OPTIONS, "equilibrium")
     yield f"Forces balance to {document['residual']:.0e} of the largest load"
     if document["free_motions"]:
-        yield f"Nothing holds, and no load drives: {_grouped(document['free_motions'])}"
+        yield f"Free motions, which nothing holds and no load drives: {_grouped(document['free_motions'])}"
 
 
 def _grouped(motions: list[str]) -> str:

@@ -26,6 +26,7 @@ from gearwhine.results.motion import (
     SENSOR_COLUMNS,
     MeshFigures,
     NamedParts,
+    closing,
     damping_sentence,
     leading_lines,
     line_table,
@@ -867,7 +868,7 @@ def report(document: Document) -> Section:
     """Chapter of the report: the motion as the terminal shows it, with meshes, lines and bearings as tables."""
     sentences = [
         f"{document['steps']} steps at {document['speed_rpm']:.0f} rpm, {document['coordinates']} modal coordinates; "
-        f"the energy balance closes to {document['energy_error']:.1e}."
+        f"the energy balance closes {closing(document['energy_error'], '.1e')}."
     ]
     if document.get("trusted_below_hz"):
         sentences.append(f"The model's modes are complete up to {document['trusted_below_hz']:.0f} Hz.")
@@ -920,6 +921,12 @@ def _basis_error(document: Document) -> list[str]:
     return [f"Error left by the modal basis, at the worst sensor and frequency: {', '.join(parts)}."] if parts else []
 
 
+SOUND_LEFT_OUT = (
+    "Sound: left out of the run; the command sound finds that of the steady motion, run with "
+    "acoustics.in_run = true that of its own"
+)
+
+
 def sections(document: Document) -> tuple[Section, ...]:
     """Return the measured comparison, mesh forces, the sensors' lines and their origin, and the proofs."""
     housing = (modes_sentence(document["housing"]),) if "housing" in document else ()
@@ -966,12 +973,14 @@ def _content(document: Document) -> Iterator[str | Table]:
         yield (
             f"Transient: {document['steps']} {_STEPS[document['method']]}, "
             f"{document['steps_per_second']:.0f} a second; energy balance closes "
-            f"to {document['energy_error']:.1e}; {document['coordinates']} modal coordinates"
+            f"{closing(document['energy_error'], '.1e')}; {document['coordinates']} modal coordinates"
         )
     elif "system" in document:
         yield f"Coupled system: {counted(len(document['system']['modes']), 'mode')}"
     if "sound" in document:
         yield from sound.brief(document["sound"])
+    if "sound_not_solved" in document:
+        yield document["sound_not_solved"]
 
 
 def _highest_orders(orders: list[Document]) -> list[Document]:

@@ -16,6 +16,7 @@ from gearwhine.results.motion import (
     MESH,
     SENSOR_COLUMNS,
     NamedParts,
+    closing,
     damping_sentence,
     leading_lines,
     line_table,
@@ -515,7 +516,7 @@ def _proof(motion: Document, name: str) -> str:
     else:
         stability = f"unstable: {_UNSTABLE.get(motion['instability'] or '', 'disturbances grow')}"
     return (
-        f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes to {motion['residual']:.0e}, "
+        f"{name}period {1e3 * motion['period_s']:.6g} ms, {stability}; closes {closing(motion['residual'])}, "
         f"changes by {motion['error']:.0e} with elements half as long"
     )
 

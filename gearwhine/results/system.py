@@ -613,8 +613,14 @@ def _mesh_sentence(mesh: Document) -> str:
     under = f" of {mesh['force_n']:.5g} N" if mesh["force_n"] else ""
     beside = "" if mesh["taken"] == "mean without load" else f"; mean without load {unloaded:.4g} N/µm"
     bodies = mesh.get("bodies_n_per_m")
-    twist = "" if bodies is None else f"; in series, bodies behind the rims {1e-6 * bodies:.4g} N/µm"
-    return f"Mesh stiffness of {mesh['name']}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}{twist}."
+    between, twist = "", ""
+    if bodies is not None:
+        between = " between the rims"
+        twist = (
+            f"; in series with it the gears' bodies behind the rims, {1e-6 * bodies:.4g} N/µm (`gears` and `load` tell "
+            "both together)"
+        )
+    return f"Mesh stiffness of {mesh['name']}{between}: {stiffness:.4g} N/µm, {mesh['taken']}{under}{beside}{twist}."
 
 
 def mode_columns(modes: list[Document]) -> tuple[Column, ...]:

@@ -9,14 +9,13 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
   of a survey, and model updating.
 - :mod:`~gearwhine.solve.rotors`: each rotor alone.
 - :mod:`~gearwhine.solve.gear_pairs`: each gear pair, and its best tip relief.
-- :mod:`~gearwhine.solve.machine`: the machine with its solved housing, assembled.
+- :mod:`~gearwhine.solve.machine`: the machine in its solved housing, assembled about its operating point. Its modes,
+  periodic motions and transients are solved in :mod:`gearwhine.coupling`.
 - :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
 - :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
   and sound at that equilibrium; changes of the housing, and the model of the lines.
 - :mod:`gearwhine.solve.sound`: the sound of modes and lines.
-- :mod:`~gearwhine.solve.coupled_system`, :mod:`~gearwhine.solve.steady_state`, :mod:`~gearwhine.solve.transient`: the
-  machine's modes and responses, its periodic motion, and its motion over time.
-- :mod:`~gearwhine.solve.transient_record`, :mod:`~gearwhine.solve.signature`, :mod:`~gearwhine.solve.run_up`,
-  :mod:`~gearwhine.solve.operating_shapes`: the record of that motion, its spectra, orders and operating shapes.
+- :mod:`~gearwhine.solve.signature`, :mod:`~gearwhine.solve.run_up`, :mod:`~gearwhine.solve.operating_shapes`: spectra,
+  orders and operating shapes of the machine's motion over time.
 - :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """

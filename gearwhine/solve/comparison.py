@@ -17,7 +17,7 @@ from gearwhine.case.errors import UNSAID
 from gearwhine.case.measured import Measured
 from gearwhine.case.measured import Pairing as PairingTable
 from gearwhine.from_case.fixtures import build_supports
-from gearwhine.housing import HousingError
+from gearwhine.housing import HousingError, ModeSet
 from gearwhine.housing.correlation import frac, synthesised_responses
 from gearwhine.housing.correlation.comparison import (
     Comparison,
@@ -186,9 +186,9 @@ def compare_with_survey(
     return pair_modes(solved, measured, mapped_shapes(solved, survey), rule, pairing=pairing), survey
 
 
-def comparison_warnings(comparison: Comparison) -> list[dict[str, Any]]:
-    """Warn of measured modes without a partner in the model, and of pairs that are weak evidence."""
-    warnings = []
+def comparison_warnings(comparison: Comparison, modes: ModeSet) -> list[dict[str, Any]]:
+    """Warn of measured modes without a partner, and of pairs that are weak evidence or hang on the mesh."""
+    warnings = _mesh_dependence(comparison, modes)
     if comparison.unpaired_measured:
         numbers = ", ".join(
             f"{mode.number} ({mode.frequency / _TWO_PI:.5g} Hz)" for mode in comparison.unpaired_measured
@@ -205,6 +205,34 @@ def comparison_warnings(comparison: Comparison) -> list[dict[str, Any]]:
             message += "; such errors do not tell this model from another: measure shapes"
         warnings.append(warning("weak pairing", message, rms_error_percent=rms, chance_error_percent=chance))
     return warnings
+
+
+def _mesh_dependence(comparison: Comparison, modes: ModeSet) -> list[dict[str, Any]]:
+    """Warn of pairs by frequency or dominance whose modes lie closer to others than their errors by the mesh.
+
+    By its estimated error e a mode at f lies between f (1 - e) and f on a fine mesh. Where two of these ranges overlap
+    the modes may change places, and in the pairing by nearest frequencies another mode may come nearest.
+    """
+    errors = modes.discretisation_errors
+    if errors is None or comparison.pairing == "shapes":
+        return []
+    upper = modes.frequencies
+    lower = upper * (1.0 - np.minimum(errors, 0.9))
+    doubtful = []
+    for pair in comparison.pairs:
+        mode = pair.mode - 1
+        overlap = (lower <= upper[mode]) & (lower[mode] <= upper)
+        nearest = int(np.argmin(np.abs(np.log(lower / pair.measured))))
+        if overlap.sum() > 1 or (comparison.pairing == "nearest" and nearest != mode):
+            doubtful.append(pair.mode)
+    if not doubtful:
+        return []
+    listed = ", ".join(map(str, doubtful))
+    message = (
+        f"pairs may change with the mesh: model mode{'s' * (len(doubtful) > 1)} {listed} may change places with "
+        "neighbours, which lie nearer than the estimated errors by the mesh; a smaller mesh_size tells"
+    )
+    return [warning("pairs by the mesh", message, modes=doubtful)]
 
 
 @dataclass(frozen=True)

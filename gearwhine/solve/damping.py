@@ -2,10 +2,8 @@
 
 Damping decides the height of resonances and does not follow from drawings. Defaults, and measured ranges beside them:
 
-- housing: 1 % of critical in every mode. EN 1991-1-4:2005, table F.2, has logarithmic decrements of steel structures of
-  0.02 where they are welded, 0.03 with high-strength bolts and 0.05 with ordinary bolts: 0.3, 0.5 and 0.8 %. Adams and
-  Askenazi (1998), *Building better products with finite element analysis*, have 2 to 4 % for metal structures of one
-  piece, as cast ones, and 3 to 7 % with joints. The default lies between.
+- housing: 1 % of critical in every mode, between those of welded or bolted and of cast ones, see
+  :data:`gearwhine.numerics.materials.STRUCTURAL_DAMPING`.
 - shafts: 0.5 % of critical in bending and twisting (Lin, Huston and Coy 1988, *On dynamic loads in parallel shaft
   transmissions*, have 0.5 to 0.75 %).
 - meshes: ratio of the two gears against each other; 3 to 17 % was measured (Kasuba and Evans 1981; Wang and Cheng
@@ -19,6 +17,7 @@ from typing import Any
 
 from gearwhine.case import Case
 from gearwhine.coupling.gears.geometry.pair import pair_label
+from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 from gearwhine.numerics.result_warnings import warning
 
 
@@ -48,8 +47,10 @@ def part_dampings(case: Case) -> tuple[PartDamping, ...]:
     """Return the damping of the housing, and of each rotor, bearing and gear pair."""
     parts = []
     if case.housing is not None:
-        ratio = case.housing.damping_ratio
+        word, ratio = case.housing.damping_ratio, case.housing.modal_damping
         text = f"{100.0 * ratio:.3g} % of critical in every mode" if isinstance(ratio, float | int) else "by its modes"
+        if isinstance(word, str):
+            text += f" ({word}: {STRUCTURAL_DAMPING[word].source})"
         parts.append(PartDamping("housing", "housing.damping_ratio", text, _gives(case.housing, "damping_ratio")))
     for number, rotor in enumerate(case.rotor):
         text = f"{100.0 * rotor.damping_ratio:.3g} % of critical"

@@ -539,7 +539,7 @@ def strongest_modes(solved: SolvedHousing, count: int) -> list[int]:
 def _damping(case: Case, frequencies_hz: FloatArray) -> FloatArray:
     """Damping ratio of each mode: one for all, one for each, or by a table of frequency."""
     assert case.housing is not None
-    ratio = case.housing.damping_ratio
+    ratio = case.housing.modal_damping
     if case.housing.damping_points:
         places, ratios = np.array(case.housing.damping_points).T
         return np.asarray(np.interp(frequencies_hz, places, ratios))

@@ -139,7 +139,8 @@ def flat_face_names(mesh: Mesh) -> list[FaceName]:
     """Name the flat faces of a mesh's boundary, in the order of :func:`flat_face_numbers`.
 
     A face has the name of the mesh's surface that holds most of it. Another has its direction and the place of its
-    centre, such as ``+y at 0, 10, 0 mm``: the same wherever the housing's faces are told.
+    centre, such as ``+y at 0, 10, 0 mm``, or as the inner side of a wall the name of the outer one, such as ``inside of
+    bottom at 0, 10, 0 mm``: the same wherever the housing's faces are told.
     """
     numbers, areas = flat_face_numbers(mesh), _facet_areas(mesh)
     whole = np.bincount(numbers, areas)
@@ -156,7 +157,45 @@ def flat_face_names(mesh: Mesh) -> list[FaceName]:
         part = np.bincount(numbers[members], areas[members], len(whole))
         for number in np.flatnonzero(part > 0.5 * whole).tolist():
             names[number] = FaceName(name, is_surface=True)
+    outer_faces = _outer_sides(
+        mesh, numbers, normals / np.linalg.norm(normals, axis=1)[:, None], centers / whole[:, None]
+    )
+    for inner, outer in outer_faces.items():
+        if not names[inner].is_surface:
+            wall = names[outer].name if names[outer].is_surface else f"{nearest_axis(normals[outer])} wall"
+            place = names[inner].name.partition(" at ")[2]
+            names[inner] = FaceName(f"inside of {wall} at {place}", is_surface=False)
     return names
+
+
+_OPPOSITE = -0.99  # cosine between the normals of both sides of a wall
+_LEAST_WALL = 2e-3  # area of an inner side over the whole surface, at least: the facets of a bore are no walls
+_THIN = 0.3  # thickness of a wall over the square root of its inner side's area, at most
+
+
+def _outer_sides(mesh: Mesh, numbers: IntArray, normals: FloatArray, centers: FloatArray) -> dict[int, int]:
+    """Find the outer side of each wall whose inner side is a flat face: face number of the outer by that of the inner.
+
+    The inner side looks towards the middle of the housing and the outer one away from it; of the outer ones behind an
+    inner side the nearest counts.
+    """
+    middle = mesh.bounds.mean(axis=0)
+    inwards = np.einsum("fi,fi->f", normals, middle - centers) > 0.0
+    facets = facet_centers(mesh.points, mesh.boundary)
+    low, high = (np.full((len(normals), 3), sign * np.inf) for sign in (1.0, -1.0))
+    np.minimum.at(low, numbers, facets)
+    np.maximum.at(high, numbers, facets)
+    areas = np.bincount(numbers, _facet_areas(mesh), len(normals))
+    outer_faces = {}
+    for face in np.flatnonzero(inwards & (areas > _LEAST_WALL * areas.sum())).tolist():
+        thickness = (centers[face] - centers) @ normals[face]
+        across = np.abs(normals[face]) < 0.5  # axes along the wall
+        covers = ((low <= centers[face]) & (centers[face] <= high))[:, across].all(axis=1)
+        behind = ~inwards & (normals @ normals[face] < _OPPOSITE) & covers & (thickness > 0.0)
+        behind &= thickness < _THIN * np.sqrt(areas[face])
+        if behind.any():
+            outer_faces[face] = int(np.argmin(np.where(behind, thickness, np.inf)))
+    return outer_faces
 
 
 def _facet_areas(mesh: Mesh) -> FloatArray:

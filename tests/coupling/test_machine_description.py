@@ -308,9 +308,12 @@ def test_the_analyses_of_a_machine_are_its_methods() -> None:
 
 @pytest.mark.slow
 def test_the_steady_force_on_teeth_is_torque_over_radius() -> None:
-    """Whatever the motion about it, the mean force on the teeth is that of the torque."""
-    steady = two_stages(gear_pairs=square_pairs()).steady(tolerance=1e-5)
-    assert steady.period == pytest.approx(2.0 * math.pi / (300.0 * 2.5), rel=1e-12)  # of 20 and 12.5 a turn
+    """The gears are light: at this speed the teeth of the first pair part, and a disturbance of the motion grows."""
+    pairs = [replace(pair, damping_ratio=0.03) for pair in square_pairs()]
+    steady = two_stages(gear_pairs=pairs, speed=305.0).steady(tolerance=1e-5)
+    assert steady.contact_loss[0] > 0.02
+    assert not steady.stable
+    assert steady.period == pytest.approx(2.0 * math.pi / (305.0 * 2.5), rel=1e-12)  # of 20 and 12.5 a turn
     radii = [MODULE * teeth / 2 * math.cos(math.radians(20.0)) for teeth in (20, 25)]
     assert steady.mean_force[:2] == pytest.approx([40.0 / radii[0], 80.0 / radii[1]], rel=1e-3)
 

@@ -33,6 +33,7 @@ frequencies = ["3 kHz", "4 kHz"]
 [acoustics]
 mesh_size = "40 mm"
 highest_frequency = "1 kHz"
+in_run = true
 [[acoustics.microphone]]
 name = "above"
 position = ["100 mm", "1 m", "60 mm"]

@@ -9,6 +9,7 @@ import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli.command_line import run_command
 from gearwhine.from_case.mesh import build_mesh
+from gearwhine.results.run import sections
 from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, require_acoustics
 
 INSIDE = {"name": "in", "position": ["0 mm", "80 mm", "0 mm"]}
@@ -55,10 +56,35 @@ def no_modes(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("no_modes")
 @pytest.mark.parametrize("of", ["check", "sound", "run"])
 def test_all_that_is_wrong_is_told_before_modes_are_solved(of: str, tmp_path: Path) -> None:
-    found = problems(WRONG, of)
+    found = problems(WRONG | {"acoustics.in_run": True}, of)
     assert list(found) == list(TOLD)
     for key, text in TOLD.items():
         assert text in found[key]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sounds"),
+    [
+        ({}, False),
+        ({"acoustics.in_run": True}, True),
+        ({"acoustics.method": "erp"}, True),
+        ({"acoustics.method": "erp", "acoustics.in_run": False}, False),
+    ],
+)
+def test_a_run_solves_boundary_elements_where_the_case_says_so(
+    monkeypatch: pytest.MonkeyPatch, changes: dict[str, Any], *, sounds: bool
+) -> None:
+    coarse = {"housing.box.mesh_size": "45 mm", "acoustics.mesh_size": "50 mm", "acoustics.highest_frequency": "1 kHz"}
+    monkeypatch.setattr("gearwhine.solve.sound.solution.solve_sound", None)
+    study = gw.load("steel-box", coarse | changes)
+    if sounds:
+        with pytest.raises(TypeError, match="NoneType"):
+            study.run()
+        return
+    result = study.run()
+    assert "the command sound finds" in result.document["sound_not_solved"]
+    assert result.document["sound_not_solved"] in [text for part in sections(result.document) for text in part.content]
+    assert result.solved.sound is None
 
 
 @pytest.mark.usefixtures("no_modes")

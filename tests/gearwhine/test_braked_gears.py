@@ -97,9 +97,14 @@ def test_transmissibility_lines_and_resonances_of_a_braked_machine_are_those_of_
         found.append(
             ({**response.sensor_acceleration, "force": force}, result.document["mesh_lines"], resonances, result)
         )
-    (accelerations, lines, resonances, result), (others, other_lines, other_resonances, _) = found
+    (accelerations, lines, resonances, result), (others, other_lines, other_resonances, other_result) = found
     assert list(accelerations) == ["top", "right wall", "force"]
+    # Phases are sampled from the other end of the path, where slices come into touch between other ones: the mean mesh
+    # stiffness differs by 6e-4, by half of which resonances move. Where responses nearly cancel more of them is left.
+    stiffness = [one.document["mesh_stiffness"][0]["stiffness_n_per_m"] for one in (result, other_result)]
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=1e-3)
     for sensor, acceleration in accelerations.items():
+        np.testing.assert_allclose(acceleration, others[sensor], rtol=0.0, atol=1e-3 * np.abs(acceleration).max())
         np.testing.assert_allclose(acceleration, others[sensor], rtol=5e-3, atol=1e-6 * np.abs(acceleration).max())
     assert len(lines) > 2
     for line, other in zip(lines, other_lines, strict=True):

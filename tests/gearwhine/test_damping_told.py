@@ -1,6 +1,7 @@
 """Damping that the case leaves out: its default, what is said of it, and the band of each line that goes with it."""
 
 import json
+import tomllib
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from coupled_cases import about_operating_point
 
 import gearwhine as gw
-from gearwhine.case import parse_case
+from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.results.check import sections
 from gearwhine.results.motion import amplitude_words, band_words, level_words
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, catalogue_bearing
@@ -60,6 +61,34 @@ def test_a_rolling_bearing_is_damped_by_its_stiffness(given: dict[str, Any], tim
     assert gw.MountedBearing.from_elements("b", 0.0, "in", None, BEARING, damping=5.0).damping_time == 0.0
     # Krämer's range (1993): 0.25e-5 to 2.5e-5 s.
     assert pytest.approx(np.sqrt(0.25e-5 * 2.5e-5), rel=0.02) == ROLLING_DAMPING_TIME
+
+
+@pytest.mark.parametrize(("word", "decrement"), [("welded", 0.02), ("bolted", 0.03), ("cast", None)])
+def test_a_word_is_damping_with_a_source(word: str, decrement: float | None) -> None:
+    """An oscillator of this damping decays by the standard's logarithmic decrement in a period."""
+    coarse = {"housing.box.mesh_size": "60 mm", "housing.damping_ratio": word}
+    study = gw.load("steel-box", coarse)
+    housing = study.housing
+    assert housing is not None
+    ratios = housing.damping_ratios
+    assert np.ptp(ratios) == 0.0
+    if decrement is None:
+        assert 0.02 <= ratios[0] <= 0.04  # as printed for metal structures of one piece
+    else:
+        period = 2.0 * np.pi / np.sqrt(1.0 - ratios[0] ** 2)  # over the undamped angular frequency
+        assert ratios[0] * period == pytest.approx(decrement, rel=1e-12)
+    (told,) = [one for one in study.check().document["damping"] if one["part"] == "housing"]
+    assert told["given"]
+    assert told["damping"].startswith(f"{100.0 * ratios[0]:.3g} % of critical in every mode ({word}: ")
+    assert ("EN 1991-1-4" if decrement else "Adams and Askenazi") in told["damping"]
+    again = parse_case(tomllib.loads(dump_case(study.case)))
+    assert again.housing is not None
+    assert again.housing.damping_ratio == word
+
+
+def test_another_word_is_refused_with_those_that_are_known() -> None:
+    with pytest.raises(CaseError, match=r"housing\.damping_ratio.*'welded', 'bolted' or 'cast'"):
+        gw.load("steel-box", {"housing.damping_ratio": "riveted"})
 
 
 def test_damping_that_nobody_gave_is_told() -> None:

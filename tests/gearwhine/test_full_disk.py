@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gearwhine.solve.transient_record import stored_record
 
 import gearwhine as gw
 from gearwhine import workers
@@ -71,3 +72,21 @@ def test_the_limit_of_open_files_is_raised_where_the_system_lets_us(monkeypatch:
     ((soft, hard),) = raised
     assert soft >= 1000
     assert hard == 4096
+
+
+def test_a_full_disk_keeps_what_was_marched_and_says_where(tmp_path: Path) -> None:
+    def march() -> None:
+        with room_for(40_000), stored_record(tmp_path, "key") as blocks:
+            for size in (10, 10_000):
+                blocks.append({"a": np.zeros(size)})
+
+    with pytest.raises(OSError, match="large") as caught:
+        march()
+    (place,) = tmp_path.iterdir()
+    assert [path.name for path in place.iterdir()] == ["block-00000000.npz"]
+    assert explain(caught.value) == (1, f"File too large: {tmp_path}")
+    (note,) = caught.value.__notes__
+    assert str(place) in note
+    with stored_record(tmp_path, "key") as blocks:
+        assert len(blocks) == 1
+    assert not any(tmp_path.iterdir())

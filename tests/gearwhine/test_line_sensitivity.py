@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
@@ -103,15 +104,6 @@ def chosen(lines: Sequence[Line]) -> list[Line]:
 
 def amplitudes(solved: Solved) -> FloatArray:
     return np.array([one.value for one in chosen(solved[2].lines)])
-
-
-def without_stiffness(model: LineModel) -> LineModel:
-    """Return the model with a mean mesh stiffness that does not change with the gap of the flanks."""
-    found = replace(model)
-    rates = {number: replace(one, stiffness=0.0 * one.stiffness) for number, one in model._gap_rates.items()}
-    assert rates
-    vars(found)["_gap_rates"] = rates
-    return found
 
 
 @pytest.mark.slow

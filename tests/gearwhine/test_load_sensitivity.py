@@ -124,11 +124,12 @@ def test_material_on_a_face_is_a_thicker_wall(case: Case, fields: StaticSensitiv
     """Of the bottom's inner face, against the wall's thickness, by which all nodes of the mesh move."""
     changes = face_changes(case, fields.mesh)
     faces = dict(zip([change.parameter for change in changes], by_changes(fields, changes).T, strict=True))
-    own = faces["+y at 0, 10, 0 mm"]
+    own = faces["inside of bottom at 0, 10, 0 mm"]
     np.testing.assert_allclose(own[:2], by_case_parameters(case, fields, PARAMETERS[1:2])[:2, 0], rtol=0.05)
-    # Outer faces have the names of the box's own surfaces, inner ones those of their places.
+    # Outer faces have the names of the box's own surfaces, inner ones those of the walls too.
     inner = {name for name in faces if " at " in name}
-    assert {name[:2] for name in inner} == {"+x", "-x", "+y", "-y", "+z", "-z"}
+    walls = {"left", "right", "bottom", "top", "back", "front"}
+    assert {name.removeprefix("inside of ").partition(" at ")[0] for name in inner} == walls
     assert set(faces) - inner <= set(fields.mesh.surfaces)
 
 

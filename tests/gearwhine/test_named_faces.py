@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import gearwhine as gw
-from gearwhine.case import CaseError
+from gearwhine.case import CaseError, load_case
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
@@ -83,3 +83,13 @@ def test_points_beside_the_surface_are_refused(write: Callable[[str], Path], nam
 def test_faces_of_a_box_have_names_already() -> None:
     with pytest.raises(CaseError, match="none of a box, whose faces are named already: left"):
         gw.load("steel-box", {"housing.face": [{"name": "lid", "at": ["0 mm", "160 mm", "0 mm"]}]})
+
+
+def test_inner_sides_of_walls_have_the_names_of_their_outer_sides() -> None:
+    """A box of walls of 10 mm: six outer sides by name, six inner ones behind them; feet have no inner side."""
+    case = load_case("steel-box", ["housing.box.mesh_size=60 mm"]).case
+    names = [face.name for face in flat_face_names(build_mesh(case))]
+    inner = sorted(name for name in names if name.startswith("inside of "))
+    assert [name.split()[2] for name in inner] == ["back", "bottom", "front", "left", "right", "top"]
+    assert "inside of bottom at 0, 10, 0 mm" in inner
+    assert "inside of top at 0, 150, 0 mm" in inner

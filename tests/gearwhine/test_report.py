@@ -337,6 +337,18 @@ def test_a_result_is_held_against_the_keys_that_its_command_reads(
     assert bool(mismatches(tmp_path, {"command": command}, present)) is differs
 
 
+@pytest.mark.parametrize(
+    ("change", "differs"), [("lines = 3", False), ("in_run = true", True), ("method = 'erp'", True)]
+)
+def test_a_run_without_sound_is_not_held_against_the_keys_of_sound(
+    tmp_path: Path, change: str, *, differs: bool
+) -> None:
+    write(tmp_path, {"command": "run"}, "[acoustics]\n")
+    present = tomllib.loads(f"[acoustics]\n{change}\n")
+    document = {"command": "run", "sound_not_solved": "left out"}
+    assert bool(mismatches(tmp_path, document, present)) is differs
+
+
 @pytest.mark.parametrize(("error", "passed"), [(0.2, True), (0.36, None), (1.2, False)])
 def test_a_known_source_a_third_off_is_no_tick(error: float, passed: bool | None) -> None:
     sound = {"known_source_error": error, "known_source_rms": 0.05}

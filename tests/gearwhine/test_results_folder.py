@@ -39,12 +39,12 @@ def test_commands_keep_to_themselves_and_a_run_takes_the_folder(
     keep("rotors", case, out, "second")
     assert (out / "own.txt").read_text(encoding="utf-8") == "first"
     assert (out / "rotors" / "own.txt").read_text(encoding="utf-8") == "second"
-    keep("run", case, out, "third")
+    assert keep("run", case, out, "third")["moved"] == {"command": "gears", "to": (out / "gears").as_posix()}
     texts = {place: (out / place / "own.txt").read_text(encoding="utf-8") for place in ("", "gears", "rotors")}
     assert texts == {"": "third", "gears": "first", "rotors": "second"}
     assert [document["command"] for _, document in stored_results(out)] == ["run", "rotors", "gears"]
     # Once more: it replaces its own alone.
-    keep("gears", case, out, "fourth")
+    assert "moved" not in keep("gears", case, out, "fourth")
     assert (out / "gears" / "own.txt").read_text(encoding="utf-8") == "fourth"
     assert (out / "own.txt").read_text(encoding="utf-8") == "third"
     assert [document["command"] for _, document in stored_results(out)] == ["gears", "run", "rotors"]

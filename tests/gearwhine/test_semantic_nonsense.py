@@ -21,6 +21,7 @@ from gearwhine.case import CaseError, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.case.load import bundled_names, load_case
 from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.errors import TransientError
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.from_case.parametric_housing import fitted_case
@@ -220,3 +221,27 @@ def test_triangles_longer_than_the_housing_are_no_traceback(key: str) -> None:
             check(case)
     else:
         assert [text for text in check(case).warnings if "highest_frequency" in text]
+
+
+def test_a_shaft_that_swings_about_its_only_bearing_is_doubted() -> None:
+    """Without the second bearing the machine has no equilibrium; a bearing that resists tilting holds the shaft."""
+    document = bundled("spur-pair")
+    del document["bearing"][1]
+    (told,) = [text for text in warnings_of(parse_case(document)) if "swings" in text]
+    assert told.startswith('rotor[0] (rotor "input"): expected a second bearing')
+    stiffness = [[1e8 if i == j else 0.0 for j in range(5)] for i in range(5)]
+    document["bearing"][0]["stiffness"] = {"matrix": stiffness}
+    assert not [text for text in warnings_of(parse_case(document)) if "swings" in text]
+    assert not [text for text in warnings_of(parse_case(bundled("spur-pair"))) if "swings" in text]
+
+
+@pytest.mark.slow
+def test_a_run_under_a_load_that_no_tooth_bears_says_so_where_it_ends() -> None:
+    changes = {"operation.torque": "3 kN*m", "transient.revolutions": 4, "transient.discard": 2}
+    with pytest.raises(TransientError, match=r"^operation\.torque: expected a load that teeth bear: .*no motion under"):
+        gw.load("spur-pair", changes).run()
+
+
+def test_what_is_nearly_incompressible_is_refused_by_its_key() -> None:
+    with pytest.raises(CaseError, match=r"poisson_ratio: expected a Poisson ratio of at least 0 and below 0\.4999"):
+        gw.load("steel-box", {"material.steel.poisson_ratio": 0.49999})

@@ -114,7 +114,7 @@ def test_lengths_that_are_none_and_folders_without_signals_are_told(exported: Ex
     with pytest.raises(CaseError, match="a length of sound files from 0 to 600 s"):
         export_results(place.parent, formats=("wav",), seconds=-1.0)
     gw.load("steel-box", {"housing.box.mesh_size": "60 mm"}).modes().write(tmp_path / "modes", pictures=False)
-    with pytest.raises(CaseError, match=r"with sensors, or with \[acoustics\] and microphones"):
+    with pytest.raises(CaseError, match=r"with sensors, or with \[acoustics\], in_run = true and microphones"):
         export_results(tmp_path / "modes", formats=("wav",))
 
 

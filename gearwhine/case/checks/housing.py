@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from gearwhine.case.box import FACES, Box
 from gearwhine.case.checks.machine import millimetres
-from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, one_of
 from gearwhine.case.fields import Patch
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
@@ -170,8 +170,7 @@ def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
 def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
     """Yield surfaces that the box does not have, under supports and other fixtures."""
     seats = draft.names("housing", "seat")
-    surfaces = (*box.surfaces, *seats)
-    listed = [name for name in surfaces if not name.startswith("bolt-")]
+    surfaces = sorted((*box.surfaces, *seats), key=lambda name: name.startswith("bolt-"))
     named: list[tuple[Location, str | None]] = [
         ((*place, "surface"), patch.surface) for place, patch in _patches(draft)
     ]
@@ -181,9 +180,7 @@ def _check_surfaces(draft: Draft, box: Box) -> Iterator[Finding]:
     for location, name in named:
         if name is not None and name not in surfaces:
             feet = "" if box.feet is not None else "; it has no feet"
-            bolts = ", bolt-1-cover …" if len(listed) < len(surfaces) else ""
-            expected = f"a surface of the box ({', '.join(listed)}{bolts}{feet})"
-            yield Finding(location, expected + did_you_mean(name, surfaces))
+            yield Finding(location, one_of(f"a surface of the box{feet}", name, surfaces))
 
 
 def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterator[Finding]:

@@ -66,6 +66,12 @@ def library_findings(case: Case) -> Iterator[PlacedFinding]:
         yield from _of_machine(case)
 
 
+def overload(case: Case) -> str:
+    """Return in a sentence that teeth do not bear the load of an operation; empty where they do."""
+    found = (finding for finding in library_findings(case) if finding.location == ("operation", "torque"))
+    return next((f"operation.torque: expected {finding.expected}" for finding in found), "")
+
+
 def case_warnings(case: Case, findings: Iterable[PlacedFinding], document: object) -> list[str]:
     """Return a sentence on each finding that is a warning and that the case does not accept."""
     accepted = [steps for steps in map(parse_key_path, case.unusual) if steps is not None]

@@ -10,6 +10,8 @@ from gearwhine.case.input_files import file_contents
 
 _DIFFERENCES = 6  # largest number of keys of the case that are named
 _REMARKS = "provenance."  # beginning of keys that give the sources of values, and change no value
+_MOTION_ALONE = "run without sound"
+_SOUND_IN_RUN = ("acoustics.in_run", "acoustics.method")  # keys that decide whether a run has sound
 _TITLES = ("title", "notes")
 _HOUSING = ("modes", "compare", "survey", "update", "render")
 _READERS: dict[str, tuple[str, ...]] = {
@@ -46,12 +48,17 @@ def stored_case(place: Path) -> Mapping[str, Any] | None:
 
 def mismatches(place: Path, document: Mapping[str, Any], present: Mapping[str, Any] | None) -> list[str]:
     """Return how the case and the input files of a result differ from those of now; empty where they do not."""
-    differences = _differences(stored_case(place), present, str(document.get("command", "")))
+    command = _MOTION_ALONE if "sound_not_solved" in document else str(document.get("command", ""))
+    differences = _differences(stored_case(place), present, command)
     return [*differences, *_changed_files(document.get("input_files"))]
 
 
 def _reads(command: str, key: str) -> bool:
     """Whether a command reads a key of the case; one that is not known reads all."""
+    if command == _MOTION_ALONE:
+        command = "run"
+        if key.startswith("acoustics.") and key not in _SOUND_IN_RUN:
+            return False
     table = key.partition(".")[0]
     return table not in _TITLES and (
         command in _READERS[table] if table in _READERS else table not in _UNREAD.get(command, ())

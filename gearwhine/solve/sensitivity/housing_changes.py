@@ -226,7 +226,7 @@ def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
     """Differentiate the model of a case's housing by material on the large flat faces of its surface.
 
     A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named as
-    :func:`gearwhine.housing.fem.surface.flat_face_names` has it, such as ``+y at 0, 10, 0 mm``.
+    :func:`gearwhine.housing.fem.surface.flat_face_names` has it, such as ``inside of bottom at 0, 10, 0 mm``.
     """
     assert case.housing is not None
     seats = [mesh.surface(seat.name) for seat in case.housing.seat]

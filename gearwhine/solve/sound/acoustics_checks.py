@@ -14,7 +14,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.checks.machine import millimetres
-from gearwhine.case.errors import did_you_mean
+from gearwhine.case.errors import one_of
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
 from gearwhine.housing.acoustics.medium import HardPlane, Medium
@@ -72,7 +72,7 @@ def surface_names(case: Case, mesh: Mesh) -> list[Problem]:
         Problem(
             f"acoustics.{key}[{place}]",
             name,
-            f"a surface of the housing ({', '.join(surfaces)}){did_you_mean(name, surfaces)}",
+            one_of("a surface of the housing", name, surfaces),
         )
         for key in ("still", "faces")
         for place, name in enumerate(getattr(case.acoustics, key))

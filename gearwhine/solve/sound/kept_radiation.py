@@ -26,7 +26,7 @@ _CODE = (
     "gearwhine.solve.sound.solution",
     "gearwhine.solve.sound.kept_radiation",
 )
-_WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}  # places of microphones count by their coordinates
+_WITHOUT_EFFECT = {"lines", "in_run", "microphone", "microphone_box"}
 
 
 def kept_radiation(
