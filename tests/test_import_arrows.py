@@ -38,10 +38,16 @@ def imported_rooms(path: Path) -> set[str]:
     names: set[str] = set()
     for node in imports_in(path):
         if isinstance(node, ast.Import):
-            names |= {alias.name.split(".")[0] for alias in node.names}
+            names |= {room_of(alias.name) for alias in node.names}
         elif node.level == 0 and node.module:
-            names.add(node.module.split(".")[0])
+            names |= {room_of(f"{node.module}.{alias.name}") for alias in node.names}
     return names & set(ALLOWED)
+
+
+def room_of(module: str) -> str:
+    """Return the room of a module: gearwhine.housing.modes is of housing, gearwhine.case of the front door."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "gearwhine" and parts[1:2] and parts[1] in ALLOWED else parts[0]
 
 
 @pytest.mark.parametrize("room", ALLOWED)
@@ -57,7 +63,7 @@ def test_the_rooms_are_imported_as_parts_of_the_package() -> None:
     """PyPI has a ``housing``, a ``coupling`` and a ``meshes`` of others, and a user's folder may have such a file."""
     folders = (*ALLOWED, "tests", "scripts", "benchmarks", "docs")
     for path in (path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in imports_in(path):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
             bare = {name for name in names if name.partition(".")[0] in set(ALLOWED) - {"gearwhine"}}

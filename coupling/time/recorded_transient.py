@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-import gearwhine
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
@@ -51,7 +50,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _HARMONICS = 4.0  # mesh harmonics that count where no housing limits the model
-_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
+_LIBRARIES = ("gearwhine", "numpy", "scipy", "numba", "llvmlite")
 
 
 @dataclass(frozen=True)
@@ -284,7 +283,7 @@ def _with_code(key: str, chosen: Sampling) -> str:
         {
             "integration": key,
             "stored": [chosen.decimation.factor, len(chosen.decimation.taps)],
-            "versions": {"gearwhine": gearwhine.__version__} | {name: installed(name) for name in _LIBRARIES},
+            "versions": {name: installed(name) for name in _LIBRARIES},
             "source": source_digest("gearwhine.numerics", "gearwhine.rotors", "gearwhine.coupling"),
             "processor": [binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()],
         }

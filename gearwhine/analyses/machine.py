@@ -355,6 +355,8 @@ def system(
         Where the modes fail their certificate.
     """
     require(case, "rotor", "operation", command="system")
+    if mesh_phase is not None:
+        require(case, "gear_pair", command="system --mesh-phase")
     loaded = _loaded_case(case, housing, folder, progress, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     over_speed = campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS

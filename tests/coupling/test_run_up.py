@@ -92,7 +92,7 @@ def test_inertia_passes_the_teeth(drive: Drive, sense: float) -> None:
         expected = (torque - SHAFTS["input"].polar_inertia * speed * gain) / radius
     assert result.mean_force[0] == pytest.approx(expected, rel=2e-3)
     # A sum of torques that is not the inertia's would carry the train away from its nominal rotation.
-    assert np.abs(histories(parts, result, turning).gear_motion["wheel"][:, 2]).max() < 1e-3
+    assert np.abs(histories(replace(parts, speed_profile=turning), result).gear_motion["wheel"][:, 2]).max() < 1e-3
 
 
 def test_the_train_as_a_whole_is_not_loaded() -> None:
@@ -169,7 +169,7 @@ def test_bearing_forces_over_speed() -> None:
         result, times=np.linspace(0.0, 1.0, s), displacement=rng.normal(size=(s, k)), velocity=rng.normal(size=(s, k))
     )
     turning = SpeedProfile(np.array([0.0, 1.0]), np.array([0.5, 1.5]))
-    forces = histories(parts, result, turning).bearing_force["0.0"]
+    forces = histories(replace(parts, speed_profile=turning), result).bearing_force["0.0"]
     for i, rate in enumerate(turning.at(result.times)[1]):
         law = Bearing("one", 0.0, BY_SPEED, 1e-4 * BY_SPEED, TABLE).at_speed(200.0 * float(rate))
         expected = law.stiffness @ result.displacement[i, :2] + law.damping @ result.velocity[i, :2]

@@ -94,12 +94,12 @@ def test_every_public_name_has_a_page_of_the_reference() -> None:
         sys.path.remove(str(ROOT / "docs" / "site"))
     names_of = {package: python_pages.public_names(package) for package in python_pages.packages(ROOT)}
     home_of = python_pages.homes(names_of)
-    for room in ("gearwhine", "meshes", "housing", "rotors", "coupling"):
-        init = (ROOT / room / "__init__.py").read_text(encoding="utf-8")
+    for room in python_pages.ROOMS:
+        init = (ROOT / room.replace(".", "/") / "__init__.py").read_text(encoding="utf-8")
         imported = set(re.findall(r"^(?:    )?from \S+ import \w+ as (\w+)$", init, re.MULTILINE))
         assert imported
         assert imported <= set(names_of[room]), room
-    assert home_of["gearwhine", "Housing"] == "housing"
+    assert home_of["gearwhine", "Housing"] == "gearwhine.housing"
     assert home_of["gearwhine", "Study"] == "gearwhine"
     for (package, name), home in home_of.items():
         value = getattr(importlib.import_module(home), name)
