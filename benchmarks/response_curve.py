@@ -17,9 +17,9 @@ from timing import Result, arguments, machine
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling import periodic_response, response_curve
+from gearwhine.coupling.analyses.steady_state import CURVE_TOLERANCE
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.periodic.continuation import ResponseCurve
-from gearwhine.coupling.periodic.steady_state import CURVE_TOLERANCE
-from gearwhine.coupling.time.recorded_transient import solve_transient
 from gearwhine.solve.machine import described_machine, plan_of
 
 RPM = 2.0 * np.pi / 60.0

@@ -137,7 +137,7 @@ def settled_runs(name: str | Path, solved: SolvedHousing, dominant: list[int] | 
         housing, frequencies = whole, whole.frequencies_hz
         if eight:
             assert dominant is not None
-            housing, frequencies = replace(whole, component=_kept(whole.component, dominant)), frequencies[dominant]
+            housing, frequencies = _kept(whole, dominant), frequencies[dominant]
         machine = described_machine(case, housing).assembled
         assert machine.housing is not None
         which = len(machine.rotors)

@@ -27,7 +27,8 @@ Sub-packages and modules, each of which imports only those before it:
 - ``gearwhine.coupling.collocation``: elements of the exponential collocation.
 - ``gearwhine.coupling.time``: Newmark's method, exponential collocation, energy balance, time histories.
 - ``gearwhine.coupling.periodic``: shooting, Floquet multipliers, continuation over speed.
-- ``gearwhine.coupling.machine_description``: the description of a machine, and its analyses.
+- ``gearwhine.coupling.machine_description``: the description of a machine.
+- ``gearwhine.coupling.analyses``: what commands and studies ask of a machine, with all that belongs to the answer.
 
 numba is imported when a motion or an equilibrium is computed, not before.
 """

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.coupling import Machine
-    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
-    from gearwhine.coupling.periodic.steady_state import SolvedSteady
+    from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.steady_state import SolvedSteady
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View

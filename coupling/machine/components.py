@@ -22,6 +22,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode
 from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
 from gearwhine.housing import HousingModes, ModeSet
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.rotors import ModalRotor, Pedestal
 from gearwhine.rotors.modes.lateral import LateralModes
 from gearwhine.rotors.modes.modal_rotor import gyroscopic_matrix
@@ -93,6 +94,10 @@ class HousingComponent(Component):
         Place of each sensor, by which it shows motion in space where the base moves.
     complete_below : float or None
         Frequency below which its modes are complete [rad/s]; None where that is not known.
+    coarser : HousingComponent or None
+        The housing with fewer residual modes; the difference estimates the truncation error.
+    warnings : tuple of dict
+        Warnings about the housing's model.
     """
 
     seats: Mapping[str, FloatArray]
@@ -102,6 +107,14 @@ class HousingComponent(Component):
     seat_axes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     sensor_places: Mapping[str, SensorPlace] = field(default_factory=dict)
     complete_below: float | None = None
+    coarser: "HousingComponent | None" = None
+    warnings: tuple[ResultWarning, ...] = ()
+
+    @property
+    def frequencies_hz(self) -> FloatArray:
+        """Natural frequencies of its modes [Hz], without residual modes."""
+        modes = sum(kind == "housing" for kind in self.kinds)
+        return np.asarray(np.sqrt(np.diag(self.stiffness)[:modes]) / (2.0 * np.pi))
 
     def seat_motions(self, seat: str, z: float) -> FloatArray:
         """Return a seat's rigid motion at z along the shaft [m]: x, y, z, rotations about x and y, shape (5, n).

@@ -11,8 +11,9 @@ from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
 from gearwhine.coupling import CoupledMachine
-from gearwhine.coupling.linear.linear_analysis import MESH_HARMONICS, SolvedSystem, solve_system
-from gearwhine.coupling.periodic.steady_state import SolvedSteady, solve_steady
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem, solve_system
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -30,14 +31,7 @@ from gearwhine.solve.damping import assumed_mesh_damping, damping_document, damp
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import (
-    LoadedMachine,
-    described_machine,
-    load_machine,
-    reduce_housing,
-    run_of,
-    solve_pairs,
-)
+from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
 from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
 from gearwhine.solve.plausibility import (
     add_mechanisms,
@@ -314,7 +308,7 @@ def _loaded_case(
     machine = described_machine(case, part)
     load, warnings = find_load(case, machine, progress)
     taken = case if varies else case.model_copy(update={"transient": None})
-    loaded = load_machine(machine, None if load is None else load.point, part, run_of(taken), progress)
+    loaded = load_machine(machine, None if load is None else load.point, run_of(taken), progress)
     return _LoadedCase(taken, loaded, housing, load, warnings)
 
 

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.coupling.errors import TransientError
-from gearwhine.coupling.linear.linear_analysis import solve_system
-from gearwhine.coupling.time.recorded_transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
@@ -47,7 +48,7 @@ from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import described_machine, load_machine, plan_of, reduce_housing, run_of
+from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
@@ -68,9 +69,9 @@ from gearwhine.solve.sound import check_before_modes, is_in_run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
-    from gearwhine.coupling.time.recorded_transient import SolvedTransient
     from gearwhine.housing.correlation import Comparison
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
@@ -149,7 +150,7 @@ def run(
     timed("load", begin)
     begin = time.perf_counter()
     if described is not None:
-        loaded = load_machine(described, None if load is None else load.point, part, run_of(case), progress)
+        loaded = load_machine(described, None if load is None else load.point, run_of(case), progress)
         pairs = loaded.pairs
     elif case.gear_pair:
         pairs = solve_gears(case, progress)

@@ -31,12 +31,12 @@ from gearwhine.case.fields import (
 
 if TYPE_CHECKING:
     from gearwhine.coupling import BaseMotion
+    from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
     from gearwhine.coupling.machine.loads import Ripple, TorqueOverTime
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
     from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
     from gearwhine.coupling.machine.speed_profile import TorqueLine as BuiltLine
-    from gearwhine.coupling.time.recording import TransientPlan
 
 Time = Annotated[float, Quantity(units.TIME, at_least=0.0, at_most=1e6)]
 PositiveTime = Annotated[float, Quantity(units.TIME, above=0.0, at_most=1e6)]
@@ -424,7 +424,7 @@ class Transient(Table):
 
     def build(self) -> TransientPlan:
         """Build the plan of the transient."""
-        from gearwhine.coupling.time.recording import TransientPlan
+        from gearwhine.coupling.analyses.recording import TransientPlan
 
         return TransientPlan(
             self.revolutions,

@@ -1,7 +1,7 @@
 """Commands on a case as a whole: run, check, examples, report, export.
 
 The physics of ``run``: :func:`gearwhine.analyses.run.run` solves housing, rotors and gear pairs in turn, the coupled
-motion by :func:`gearwhine.coupling.time.recorded_transient.solve_transient`, which integrates in time with
+motion by :func:`gearwhine.coupling.analyses.transient.solve_transient`, which integrates in time with
 :func:`gearwhine.coupling.time.transient.integrate_blocks`.
 """
 

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwhine.coupling.time.recording import Arrays
+from gearwhine.coupling.analyses.recording import Arrays
 from gearwhine.output.files import exclusive_lock, held_lock, is_locked, room_named
 
 _FOLDER_PREFIX = ".resume-"

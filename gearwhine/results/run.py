@@ -38,12 +38,12 @@ from gearwhine.results.motion import (
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from gearwhine.coupling.analyses.recording import Signals
+    from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.signals import LineName
     from gearwhine.coupling.signals.sidebands import Sideband
     from gearwhine.coupling.signals.spectrum import Spectrum
-    from gearwhine.coupling.time.recorded_transient import SolvedTransient
-    from gearwhine.coupling.time.recording import Signals
     from gearwhine.coupling.time.transient import TransientFigures
     from gearwhine.solve.run_up import RunSignature
     from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine

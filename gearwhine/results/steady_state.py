@@ -25,11 +25,11 @@ from gearwhine.results.motion import (
 from gearwhine.results.operating_point import brief
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion
     from gearwhine.coupling.assembly import CoupledMachine
     from gearwhine.coupling.machine.mounted_parts import GearMesh
     from gearwhine.coupling.periodic.continuation import ResponseCurve
     from gearwhine.coupling.periodic.response import PeriodicResponse
-    from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion
     from gearwhine.coupling.periodic.superposition import SuperposedResponse
 
 _TILTS = ("about x", "about y")

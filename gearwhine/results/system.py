@@ -17,9 +17,9 @@ from gearwhine.results.operating_point import brief
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
     from gearwhine.coupling.linear.frequency_response import FrequencyResponse
-    from gearwhine.coupling.linear.linear_analysis import SolvedSystem
     from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
     from gearwhine.solve.housing_modes import SolvedHousing
 

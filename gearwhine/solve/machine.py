@@ -1,146 +1,43 @@
 """Machine of a case with its solved housing: reduced housing, gear pairs at the operating point, coupled system."""
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.case import Case, require
-from gearwhine.coupling import CoupledMachine, Machine
-from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
-from gearwhine.coupling.gears import GearError
+from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-from gearwhine.coupling.linear.frequency_response import BasisError
-from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
 from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.coupling.time.recording import TransientPlan
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import ModeSet
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.residual_modes import leading_residual_modes
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.rotors import EquilibriumError, RotorError
 from gearwhine.solve.housing_modes import SolvedHousing, base_participation
 
 FloatArray = npt.NDArray[np.float64]
 
-NO_OPERATING_POINT = (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError)
-"""Errors of a machine whose equilibrium is not found."""
 
-_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparison, which gives the error
-
-
-@dataclass(frozen=True)
-class ReducedHousing:
-    """Solved housing reduced to the quantities that a machine needs: kilobytes, without mesh and shapes.
-
-    Attributes
-    ----------
-    component : HousingComponent
-    frequencies_hz : ndarray, shape (n_modes,)
-        Natural frequencies of its modes [Hz].
-    warnings : tuple of dict
-        Warnings about the housing, as in the documents.
-    coarser : HousingComponent or None
-        The component with fewer residual modes; the difference estimates the truncation error.
-    """
-
-    component: HousingComponent
-    frequencies_hz: FloatArray
-    warnings: tuple[dict[str, Any], ...] = ()
-    coarser: HousingComponent | None = None
-
-
-def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> ReducedHousing:
-    """Reduce a solved housing to the quantities that a machine needs."""
+def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
+    """Reduce a solved housing to the quantities that a machine needs: kilobytes, without mesh and shapes."""
     component, coarser = _housing_components(case, solved, progress)
-    return ReducedHousing(component, solved.modes.frequencies_hz, tuple(solved.warnings), coarser)
+    return replace(component, coarser=coarser, warnings=tuple(solved.warnings))
 
 
-@dataclass(frozen=True, eq=False)
-class LoadedMachine:
-    """Machine about its operating point: its parts, its gear pairs under load, and the coupled system.
-
-    Attributes
-    ----------
-    machine : Machine
-        Bearings and flanks that are left to the operating point are those of it.
-    pairs : tuple of LoadedGearPair
-    coupled : CoupledMachine
-        Assembled for its run.
-    run : SpeedRun, FreeRun or None
-        None at constant speed.
-    housing : ReducedHousing or None
-    """
-
-    machine: Machine
-    pairs: tuple[LoadedGearPair, ...]
-    coupled: CoupledMachine
-    run: Run | None
-    housing: ReducedHousing | None
-
-    def basis_error(self, progress: Progress = silent) -> BasisError | None:
-        """Estimate the modal truncation error by a machine of other residual attachments and more shaft modes.
-
-        None where there is no housing, and so no sensor.
-        """
-        if self.housing is None or self.housing.coarser is None or not self.housing.component.sensors:
-            return None
-        progress("comparing with another modal basis")
-        other = replace(self.machine, housing=self.housing.coarser)
-        components = other.rotor_components(limit_factor=_MORE_MODES)
-        return BasisError(self.coupled, other.assemble(self.pairs, components, self.run))
-
-    @property
-    def mechanisms(self) -> LineMechanisms:
-        """What excites the lines of its sensors."""
-        return LineMechanisms(self.coupled)
-
-
-def described_machine(case: Case, housing: ReducedHousing | None) -> Machine:
+def described_machine(case: Case, housing: HousingComponent | None) -> Machine:
     """Describe the machine of a case in its solved housing, or on rigid seats."""
-    return describe_machine(case, None if housing is None else housing.component, grounded=housing is None)
-
-
-def load_machine(
-    machine: Machine,
-    point: OperatingPoint | None,
-    housing: ReducedHousing | None = None,
-    run: Run | None = None,
-    progress: Progress = silent,
-) -> LoadedMachine:
-    """Assemble a machine about its operating point.
-
-    Parameters
-    ----------
-    machine : Machine
-    point : OperatingPoint or None
-        None where nothing loads the machine, or where it is not found: flanks are aligned then.
-    housing : ReducedHousing, optional
-        Of the machine.
-    run : SpeedRun or FreeRun, optional
-    progress : callable
-
-    Raises
-    ------
-    gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
-        Where the parts do not make a machine, or a bearing is left to an operating point that is not there.
-    gearwhine.coupling.TransientError
-        Where a free speed cannot start or stalls.
-    """
-    about = machine.linearised(point)
-    pairs = about.loaded_pairs(progress)
-    coupled = about.assemble(pairs, about.rotor_components(progress=progress), run)
-    return LoadedMachine(about, pairs, coupled, run, housing)
+    return describe_machine(case, housing, grounded=housing is None)
 
 
 def solve_pairs(
-    case: Case, housing: SolvedHousing | ReducedHousing | None, progress: Progress = silent
+    case: Case, housing: SolvedHousing | HousingComponent | None, progress: Progress = silent
 ) -> tuple[tuple[LoadedGearPair, ...], OperatingPoint | None]:
     """Solve the gear pairs of a case, and the operating point of which flanks have their misalignment.
 

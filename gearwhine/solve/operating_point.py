@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
 from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
@@ -27,7 +28,6 @@ from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.machine import NO_OPERATING_POINT
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity

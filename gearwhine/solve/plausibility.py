@@ -15,6 +15,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
 from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.linear.complex_modes import Stability
 from gearwhine.coupling.linear.damping_band import DampingBand
@@ -23,7 +24,6 @@ from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import RollingBearing
 from gearwhine.solve.signature import SolvedSignature, TracedLine

@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, OrderTracking, mesh_frequencies, speed_ratios
 from gearwhine.coupling import signals as signature
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.signals import decibels, peak_of_rms
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,11 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling import signals as signature
+from gearwhine.coupling.analyses.recording import Signals
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.signals.peaks import SpectralPeaks
 from gearwhine.coupling.signals.spectrum import Spectrum, Window, at_time_zero
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
-from gearwhine.coupling.time.recording import Signals
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
-from gearwhine.solve.machine import ReducedHousing, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sound import check_before_modes
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import (
@@ -109,12 +110,12 @@ def run_sweep(
 
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
-) -> tuple[dict[str | None, ReducedHousing], SolvedHousing | None]:
+) -> tuple[dict[str | None, HousingComponent], SolvedHousing | None]:
     """Solve the housings that points share, by key; none where their modes differ or they have no housing.
 
     Return as well the solution that is still to be cached.
     """
-    housings: dict[str | None, ReducedHousing] = {}
+    housings: dict[str | None, HousingComponent] = {}
     solved = None
     if len({point.modes_key for point in points}) > 1 or points[0].modes_key is None:
         return housings, solved
@@ -149,7 +150,7 @@ def _preload_writers() -> None:
 
 
 def _submitted(
-    client: Client, points: dict[int, Point], shared: dict[str | None, ReducedHousing]
+    client: Client, points: dict[int, Point], shared: dict[str | None, HousingComponent]
 ) -> dict[Future[Any], int]:
     """Submit every point to the workers, and before it its housing where that is not shared."""
     code = code_digest()

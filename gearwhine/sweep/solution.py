@@ -18,9 +18,11 @@ import numpy.typing as npt
 
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.transient import SolvedTransient, mean_bearing_forces, solve_transient
+from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.signals.line_names import LineName
 from gearwhine.coupling.signals.spectrum import Window
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.failures import explain
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
@@ -29,14 +31,7 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import (
-    ReducedHousing,
-    described_machine,
-    load_machine,
-    plan_of,
-    reduce_housing,
-    run_of,
-)
+from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.sweep.points import Point, code_digest
@@ -109,14 +104,14 @@ class PointFailure:
     traceback: str = ""
 
 
-def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code: str) -> PointResult | PointFailure:
+def solve_point(case: Case, housing: HousingComponent | PointFailure | None, code: str) -> PointResult | PointFailure:
     """Run the transient of a case whose housing is solved; errors are returned as failures, not raised.
 
     Parameters
     ----------
     case : Case
         Case of the point.
-    housing : ReducedHousing, PointFailure or None
+    housing : HousingComponent, PointFailure or None
         Solved housing, where the case has one; a failure is returned.
     code : str
         Digest of the caller's code; other code on the worker could give other numbers.
@@ -128,7 +123,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
         begin = time.perf_counter()
         described = described_machine(case, housing)
         load, warnings_of_load = find_load(case, described)
-        loaded = load_machine(described, None if load is None else load.point, housing, run_of(case))
+        loaded = load_machine(described, None if load is None else load.point, run_of(case))
         frequencies = described.mesh_frequencies
         solved = solve_transient(loaded.coupled, plan_of(case))
         result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
@@ -143,7 +138,7 @@ def solve_point(case: Case, housing: ReducedHousing | PointFailure | None, code:
         return _failure(error)
 
 
-def solve_point_housing(case: Case, code: str) -> ReducedHousing | PointFailure:
+def solve_point_housing(case: Case, code: str) -> HousingComponent | PointFailure:
     """Solve the housing of a point, for its machine."""
     try:
         _require_same_code(code)
@@ -173,7 +168,7 @@ def _failure(error: Exception) -> PointFailure:
 def _reduced(
     case: Case,
     solved: SolvedTransient,
-    housing: ReducedHousing | None,
+    housing: HousingComponent | None,
     seconds: float,
     warnings_of_load: list[dict[str, Any]],
 ) -> PointResult:

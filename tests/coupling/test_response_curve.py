@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from gearwhine.coupling import CoupledSystem, CouplingError, TransientOutputs, TransientSettings, simulate
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.machine.components import Component
@@ -16,7 +17,6 @@ from gearwhine.coupling.machine.connectors import ContactConnector
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.periodic import periodic_response, response_curve
 from gearwhine.coupling.periodic.response import PeriodicResponse
-from gearwhine.coupling.periodic.steady_state import SolvedSteady
 from gearwhine.output.quantity import RPM
 
 FloatArray = npt.NDArray[np.float64]

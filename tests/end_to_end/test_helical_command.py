@@ -11,8 +11,8 @@ from coupled_cases import coupled
 from gearwhine.case import load_case, mesh_frequencies
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
+from gearwhine.coupling.analyses.transient import mean_bearing_forces, solve_transient
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
-from gearwhine.coupling.time.recorded_transient import mean_bearing_forces, solve_transient
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.solve.machine import plan_of
 

@@ -15,13 +15,14 @@ import xarray as xr
 
 from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case
-from gearwhine.coupling.linear.linear_analysis import solve_system
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.output.dataset import arrays_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, load_machine, plan_of, reduce_housing
+from gearwhine.solve.machine import described_machine, plan_of, reduce_housing
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.signature import solve_signature
@@ -59,7 +60,7 @@ def write_whole(file: Path) -> set[str]:
     described = described_machine(case, part)
     load, _ = find_load(case, described)
     assert load is not None
-    standing = load_machine(described, load.point, part)
+    standing = load_machine(described, load.point)
     pairs, machine = standing.pairs, standing.coupled
     system = solve_system(machine)
     transient = solve_transient(machine, plan_of(case))

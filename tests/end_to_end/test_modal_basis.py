@@ -7,8 +7,9 @@ from coupled_cases import coupled, loaded
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
+from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import ReducedHousing, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 Motions = dict[str, FloatArray]
@@ -30,13 +31,13 @@ def case_of(limit: float, *changes: str) -> Case:
 
 
 @pytest.fixture(scope="module")
-def housings() -> dict[float, ReducedHousing]:
+def housings() -> dict[float, HousingComponent]:
     """By their limit [Hz]."""
     cases = {limit: case_of(limit) for limit in (LIMIT_HZ, 2.0 * LIMIT_HZ)}
     return {limit: reduce_housing(case, solve_housing(case)) for limit, case in cases.items()}
 
 
-def by_mesh_error(housings: dict[float, ReducedHousing], frequencies: FloatArray, *changes: str) -> list[Motions]:
+def by_mesh_error(housings: dict[float, HousingComponent], frequencies: FloatArray, *changes: str) -> list[Motions]:
     """Sensors' acceleration for each metre of transmission error, on the limit and on twice the limit."""
     found = []
     for limit, housing in housings.items():
@@ -47,7 +48,7 @@ def by_mesh_error(housings: dict[float, ReducedHousing], frequencies: FloatArray
     return found
 
 
-def test_bearings_that_hold_all_five_motions_reach_the_sensors(housings: dict[float, ReducedHousing]) -> None:
+def test_bearings_that_hold_all_five_motions_reach_the_sensors(housings: dict[float, HousingComponent]) -> None:
     """z and both tilts of a seat have the response of the modes left out, as x and y do."""
     ours, exact = by_mesh_error(housings, HERTZ * np.array([700.0, 2567.0]), *FIVE_BY_FIVE)
     for name, motion in ours.items():
@@ -58,7 +59,7 @@ def test_bearings_that_hold_all_five_motions_reach_the_sensors(housings: dict[fl
     assert abs(free["end (node 40)"][1] / ours["end (node 40)"][1] - 1.0) > 0.1
 
 
-def test_the_told_error_covers_the_true_one(housings: dict[float, ReducedHousing]) -> None:
+def test_the_told_error_covers_the_true_one(housings: dict[float, HousingComponent]) -> None:
     frequencies = HERTZ * np.arange(60.0, LIMIT_HZ, 20.0)
     ours, exact = by_mesh_error(housings, frequencies)
     case = case_of(LIMIT_HZ)

@@ -8,7 +8,7 @@ import pytest
 from coupled_cases import coupled
 
 from gearwhine.case import load_case
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.run import transient_document
 from gearwhine.solve.machine import plan_of

@@ -12,7 +12,7 @@ from coupled_cases import coupled
 
 import gearwhine as gw
 from gearwhine.case import CaseError, dump_case, parse_case
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document

@@ -11,7 +11,7 @@ from coupled_cases import about_operating_point
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
 from gearwhine.solve.machine import plan_of

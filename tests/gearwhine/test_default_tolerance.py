@@ -6,7 +6,7 @@ from coupled_cases import coupled
 from scipy.signal import argrelmax
 
 from gearwhine.case import load_case
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.solve.machine import plan_of
 
 

@@ -12,10 +12,10 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from gearwhine.case import load_case
+from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
-from gearwhine.coupling.linear.linear_analysis import solve_system
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.figures import draw_campbell, draw_transient
 from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error

@@ -14,6 +14,7 @@ from coupled_cases import about_operating_point, coupled
 
 from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
 from gearwhine.coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 from gearwhine.coupling.machine.components import RotorComponent
 from gearwhine.coupling.machine.excitation import Driving, machine_driving
@@ -22,7 +23,6 @@ from gearwhine.coupling.machine.speed_profile import free_speed
 from gearwhine.coupling.signals.spectrum import lines_at
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.output.terminal import shown_by

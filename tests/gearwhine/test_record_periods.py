@@ -6,9 +6,9 @@ from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
+from gearwhine.coupling.analyses.recording import Sampling, sampling
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones
-from gearwhine.coupling.time.recording import Sampling, sampling
 from gearwhine.solve.machine import plan_of
 
 SHAFT = 5500.0 / 60.0  # both shafts of the pair [Hz]

@@ -15,7 +15,7 @@ import pytest
 from coupled_cases import coupled
 
 from gearwhine.case import load_case
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.output.checkpoints import BlockFiles, stored_record
 from gearwhine.output.files import held_lock
 from gearwhine.solve.machine import plan_of

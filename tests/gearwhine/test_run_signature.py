@@ -11,8 +11,8 @@ from idler_case import idler
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling import SpeedProfile
+from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
-from gearwhine.coupling.time.recorded_transient import SolvedTransient, solve_transient
 from gearwhine.figures.machine.run_up import draw_order_slices, draw_run
 from gearwhine.figures.machine.transient import _speed
 from gearwhine.output.dataset import arrays_of

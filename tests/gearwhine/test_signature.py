@@ -10,8 +10,8 @@ from coupled_cases import about_operating_point
 
 from gearwhine.case import load_case
 from gearwhine.coupling import coupled_modes
-from gearwhine.coupling.time import recording
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses import recording
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of

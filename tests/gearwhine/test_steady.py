@@ -14,8 +14,8 @@ from gearwhine.case import CaseError, load_case
 from gearwhine.case.speeds_and_torques import branch_speeds
 from gearwhine.cli import run_command
 from gearwhine.coupling import CouplingError
-from gearwhine.coupling.periodic.steady_state import solve_steady
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.steady_state import solve_steady
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.figures.machine.steady_state import draw_response_curve
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.steady_state import curve_sentences

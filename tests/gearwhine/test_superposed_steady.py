@@ -12,11 +12,11 @@ from reducer_case import reducer
 from gearwhine.case import load_case
 from gearwhine.cli import run_command
 from gearwhine.coupling import CoupledMachine, CouplingError, PeriodicError, amplitude_spectrum
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion, solve_steady
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears import piecewise_cubic as piecewise
 from gearwhine.coupling.periodic import orbit, periodic_response, shooting, superposed_response
 from gearwhine.coupling.periodic.response import PeriodicResponse
-from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion, solve_steady
 from gearwhine.coupling.periodic.superposition import SuperposedResponse, common_cycles, excitation_groups
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.output.manifest import opened_dataset

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import gearwhine
 from gearwhine.case import CaseError, load_case, swept_keys
 from gearwhine.case.input_files import file_contents
-from gearwhine.coupling.time.recorded_transient import solve_transient
+from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
 from gearwhine.from_case.mesh import build_mesh

@@ -21,10 +21,10 @@ from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case
 from gearwhine.coupling import TransientOutputs, TransientSettings, amplitude_spectrum, simulate
+from gearwhine.coupling.analyses.transient import starting_state
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
-from gearwhine.coupling.time.recorded_transient import starting_state
 from gearwhine.from_case.gear_pairs import pair_geometries
 from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes

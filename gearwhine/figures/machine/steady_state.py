@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, SteadyMotion
 from gearwhine.coupling.periodic.continuation import ResponseCurve
-from gearwhine.coupling.periodic.steady_state import SolvedSteady, SteadyMotion
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,

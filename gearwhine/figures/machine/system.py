@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
 from gearwhine.coupling.linear.campbell import SystemCampbell
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
-from gearwhine.coupling.linear.linear_analysis import SolvedSystem
 from gearwhine.figures.style import (
     BLUE,
     FOOT,

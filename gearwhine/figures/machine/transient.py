@@ -19,10 +19,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.signals import decibels
 from gearwhine.coupling.signals.spectrum import Window, signal_parts
 from gearwhine.coupling.time.histories import Histories
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.figures.spectra import draw_lines
 from gearwhine.figures.style import (
     BLUE,

@@ -14,13 +14,13 @@ import numpy.typing as npt
 
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine, amplitude_spectrum
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
-from gearwhine.coupling.periodic.steady_state import SolvedSteady
 from gearwhine.coupling.signals.line_names import LineName, line_names
 from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]

@@ -14,9 +14,9 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.coupling import CoupledMachine
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
 from gearwhine.coupling.signals.line_names import line_names
-from gearwhine.coupling.time.recorded_transient import SolvedTransient
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.medium import Medium

@@ -6,6 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.analyses.recording import (
+    RECORD_BYTES,
+    Arrays,
+    Blocks,
+    Sampling,
+    Signals,
+    TransientPlan,
+    TransientRecord,
+    block_arrays,
+    record_spectra,
+    sampling,
+)
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
@@ -22,18 +34,6 @@ from gearwhine.coupling.time.histories import (
 )
 from gearwhine.coupling.time.histories import histories as coupled_histories
 from gearwhine.coupling.time.integration import Checkpoint
-from gearwhine.coupling.time.recording import (
-    RECORD_BYTES,
-    Arrays,
-    Blocks,
-    Sampling,
-    Signals,
-    TransientPlan,
-    TransientRecord,
-    block_arrays,
-    record_spectra,
-    sampling,
-)
 from gearwhine.coupling.time.settings import MotionRecord
 from gearwhine.coupling.time.transient import (
     TransientFigures,
@@ -208,7 +208,7 @@ def solve_transient(
     Where the record holds whole turns of every shaft and whole periods of every excitation, the spectra are taken as
     they are, each line exact; otherwise, and over a run, under Hann's window. A run is sampled for its highest speed,
     and ``discard`` counts revolutions as they are turned. A record that is too long for memory is filtered and stored
-    at fewer samples, see :mod:`gearwhine.coupling.time.recording`.
+    at fewer samples, see :mod:`gearwhine.coupling.analyses.recording`.
 
     Parameters
     ----------

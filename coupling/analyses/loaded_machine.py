@@ -1,0 +1,88 @@
+"""Machine about its operating point: parts linearised there, gear pairs under load, and the coupled system."""
+
+from dataclasses import dataclass, replace
+
+from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
+from gearwhine.coupling.gears import GearError
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.linear.frequency_response import BasisError
+from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.machine.excitation import Run
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.rotors import EquilibriumError, RotorError
+
+NO_OPERATING_POINT = (CouplingError, EquilibriumNotFoundError, EquilibriumError, GearError, RotorError)
+"""Errors of a machine whose equilibrium is not found."""
+
+_MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparison, which gives the error
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMachine:
+    """Machine about its operating point: its parts, its gear pairs under load, and the coupled system.
+
+    Attributes
+    ----------
+    machine : Machine
+        Bearings and flanks that are left to the operating point are those of it.
+    pairs : tuple of LoadedGearPair
+    coupled : CoupledMachine
+        Assembled for its run.
+    run : SpeedRun, FreeRun or None
+        None at constant speed.
+    """
+
+    machine: Machine
+    pairs: tuple[LoadedGearPair, ...]
+    coupled: CoupledMachine
+    run: Run | None
+
+    def basis_error(self, progress: Progress = silent) -> BasisError | None:
+        """Estimate the modal truncation error by a machine of other residual attachments and more shaft modes.
+
+        None where there is no housing, and so no sensor.
+        """
+        housing = self.machine.housing_component
+        if housing is None or housing.coarser is None or not housing.sensors:
+            return None
+        progress("comparing with another modal basis")
+        other = replace(self.machine, housing=housing.coarser)
+        components = other.rotor_components(limit_factor=_MORE_MODES)
+        return BasisError(self.coupled, other.assemble(self.pairs, components, self.run))
+
+    @property
+    def mechanisms(self) -> LineMechanisms:
+        """What excites the lines of its sensors."""
+        return LineMechanisms(self.coupled)
+
+
+def load_machine(
+    machine: Machine,
+    point: OperatingPoint | None,
+    run: Run | None = None,
+    progress: Progress = silent,
+) -> LoadedMachine:
+    """Assemble a machine about its operating point.
+
+    Parameters
+    ----------
+    machine : Machine
+    point : OperatingPoint or None
+        None where nothing loads the machine, or where it is not found: flanks are aligned then.
+    run : SpeedRun or FreeRun, optional
+    progress : callable
+
+    Raises
+    ------
+    gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
+        Where the parts do not make a machine, or a bearing is left to an operating point that is not there.
+    gearwhine.coupling.TransientError
+        Where a free speed cannot start or stalls.
+    """
+    about = machine.linearised(point)
+    pairs = about.loaded_pairs(progress)
+    coupled = about.assemble(pairs, about.rotor_components(progress=progress), run)
+    return LoadedMachine(about, pairs, coupled, run)
