@@ -1,5 +1,6 @@
 """Bearings and gears at their places in a machine: a bearing between rotor and seat, and a mesh of two gears."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import atan2
 
@@ -13,7 +14,7 @@ from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, RollingLaw
 from gearwhine.coupling.machine.face_compliance import FaceCompliance
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
-from gearwhine.housing.own_copies import keep_arrays
+from gearwhine.housing.own_copies import keep_arrays, keep_tuples
 from gearwhine.numerics.findings import Instance, Rule, Text, attribute_findings, refuse
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.errors import require_finite
@@ -43,6 +44,9 @@ class MountedBearing:
     damping_time : float
         Damping over stiffness of a bearing whose stiffness follows from its load [s], beside the damping that the
         bearing has.
+    design_load : tuple of float or None
+        Force of the shaft along x, y, z for which its stiffness is made [N]; None where that depends on no load, or is
+        still to follow from it.
     """
 
     bearing: Bearing
@@ -52,10 +56,12 @@ class MountedBearing:
     rolling: RollingBearing | None = None
     offset: FloatArray | None = field(default=None, compare=False)
     damping_time: float = 0.0
+    design_load: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check that parts and places are such."""
         keep_arrays(self, "offset")
+        keep_tuples(self, "design_load")
         refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)
         rules: dict[str, Rule] = {
             "rotor": Text(),

@@ -32,7 +32,14 @@ from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
-from gearwhine.solve.operating_point import SolvedLoad, find_load, load_warnings, require_load, solve_load
+from gearwhine.solve.operating_point import (
+    SolvedLoad,
+    find_load,
+    load_of_case,
+    load_warnings,
+    require_load,
+    sensitivity_warnings,
+)
 from gearwhine.solve.plausibility import (
     add_mechanisms,
     add_uncertainty,
@@ -43,6 +50,7 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
+from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 from gearwhine.solve.sound import check_before_modes
 
 if TYPE_CHECKING:
@@ -204,18 +212,14 @@ def operating_point(
         refuse = check_before_modes(case) if ranked else None
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
     part = None if housing is None else reduce_housing(case, housing, progress)
-    solved = solve_load(
-        case,
-        described_machine(case, part),
-        progress,
-        over_torque=over_torque,
-        sensitivity=ranked,
-        line=line,
-        over_hunting_period=True,
-        housing=housing,
-    )
+    machine = described_machine(case, part)
+    solved = load_of_case(case, machine, progress, over_torque=over_torque, over_hunting_period=True)
+    warnings = load_warnings(solved)
+    if ranked:
+        ranking = solve_load_sensitivity(case, machine, solved.point, housing, progress, line=line)
+        solved, warnings = replace(solved, sensitivity=ranking), [*warnings, *sensitivity_warnings(ranking)]
     document = load_document(case.title, solved)
-    add_warnings(document, load_warnings(case, solved))
+    add_warnings(document, warnings)
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_load
@@ -436,7 +440,7 @@ def steady(
     if solved.curve is not None:
         solved = replace(solved, assumed_damping=assumed_mesh_damping(case))
     document = steady_document(case.title, solved)
-    add_warnings(document, [*constant_speed_warnings(case), *machine_warnings(loaded.machine)])
+    add_warnings(document, [*constant_speed_warnings(loaded.loaded.machine), *machine_warnings(loaded.machine)])
     add_warnings(document, parted_flank_warnings(loaded.machine, solved.contact_loss))
     loaded.add_to(document, progress)
 

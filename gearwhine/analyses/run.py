@@ -208,11 +208,14 @@ def run(
                 signature = solve_signature(transient, system.modes, frequencies)
             run_signature = solve_run_signature(case, transient)
             document = joined(document, transient_document(transient, signature, run_signature))
-            add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(transient), known=warnings_of_load))
+            add_warnings(
+                document,
+                bearing_load_warnings(loaded.machine.bearings, mean_bearing_forces(transient), known=warnings_of_load),
+            )
             add_warnings(document, beyond_limit_warnings(transient))
             add_warnings(document, parted_flank_warnings(transient.machine, transient.result.contact_loss))
             if signature is not None:
-                add_warnings(document, settling_warnings(case, transient, signature))
+                add_warnings(document, settling_warnings(transient, signature))
             add_uncertainty(document, basis, transient.trusted_limit)
             add_mechanisms(document, mechanisms, transient.line_tolerance_hz)
             add_warnings(

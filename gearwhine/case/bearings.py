@@ -288,7 +288,7 @@ class _Mounted(Table):
         # The inner ring carries all rows along: its displacement is an offset towards some and away from others.
         moved = sense * self.axial_offset
         rows = tuple(replace(one, axial_offset=pressed + one.direction * moved) for one in rows)
-        return RollingBearing(rows, spring, label, self.floating)
+        return RollingBearing(rows, spring, label, self.floating, self.dynamic_rating)
 
     def _rows(self, row: Row) -> tuple[Row, ...]:
         """All rows in their places, from one of them."""

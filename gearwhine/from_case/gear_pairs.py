@@ -11,6 +11,7 @@ from gearwhine.case import Case, CaseError, Problem, pair_torques, require, roto
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.input_files import ChangedFileError
+from gearwhine.coupling import Machine
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
 from gearwhine.coupling.gears.errors import ThinTipError
 from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
@@ -73,7 +74,18 @@ class TakenMisalignment:
     found: float | None
 
 
-def taken_misalignments(
+def taken_misalignments(machine: Machine, point: OperatingPoint) -> tuple[TakenMisalignment, ...]:
+    """Misalignment of every gear pair of a machine, beside that of its operating point."""
+    misalignments = []
+    for pair, load in zip(machine.gear_pairs, point.pairs, strict=False):
+        if pair.misalignment is None:
+            misalignments.append(TakenMisalignment(load.misalignment, "operating point", load.misalignment))
+        else:
+            misalignments.append(TakenMisalignment(pair.misalignment, "case", load.misalignment))
+    return tuple(misalignments)
+
+
+def misalignments_of_case(
     case: Case, point: OperatingPoint | None, *, is_sought: bool = True
 ) -> tuple[TakenMisalignment, ...]:
     """Misalignment of every gear pair of the case, beside that of its operating point where it is solved.

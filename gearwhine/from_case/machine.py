@@ -8,7 +8,14 @@ from gearwhine.coupling import Machine, MountedBearing, Shaft
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.from_case.gear_pairs import build_pair
-from gearwhine.from_case.rotors import bearing_law, build_bearings, rolling_elements, rolling_states, shaft_gears
+from gearwhine.from_case.rotors import (
+    bearing_law,
+    build_bearings,
+    design_load,
+    rolling_elements,
+    rolling_states,
+    shaft_gears,
+)
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.rolling_bearings import RollingState
 
@@ -52,6 +59,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
         laws = {entry.name: bearing_law(case, n) for n, entry in own_bearings}
         elements = {entry.name: rolling_elements(case, n) for n, entry in own_bearings}
         damping_times = {entry.name: entry.damping_time for _, entry in own_bearings}
+        design_loads = {entry.name: design_load(case, entry) for _, entry in own_bearings}
         # Bearings of the rotor's own file stand on the ground.
         seats = {entry.name: entry.seat for _, entry in own_bearings if not entry.grounded}
         bearings += [
@@ -62,6 +70,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None, *, gro
                 laws.get(bearing.name),
                 elements.get(bearing.name),
                 damping_time=damping_times.get(bearing.name, 0.0),
+                design_load=design_loads.get(bearing.name),
             )
             for bearing in build_bearings(case, rotor.name)
         ]

@@ -74,7 +74,7 @@ def rolling_state(case: Case, index: int) -> rolling.RollingState | None:
     entry = case.bearing[index]
     if not isinstance(entry.stiffness, RollingStiffness) or case.finds_load(entry):
         return None
-    load = (0.0, 0.0, 0.0) if entry.load is None else (entry.load.x, entry.load.y, entry.load.z)
+    load = _given_load(entry)
     try:
         bearing = entry.stiffness.rolling.build(entry.name)
         return rolling.rolling_equilibrium(bearing, [*load, 0.0, 0.0], held={"rx": 0.0, "ry": 0.0})
@@ -150,11 +150,21 @@ def _bearing(case: Case, index: int) -> RotorBearing:
     )
 
 
+def design_load(case: Case, entry: Bearing) -> tuple[float, float, float] | None:
+    """Force along x, y, z for which a bearing's stiffness is made [N]; None where it depends on none, or is found."""
+    if not isinstance(entry.stiffness, RollingStiffness | StopStiffness) or case.finds_load(entry):
+        return None
+    return _given_load(entry)
+
+
+def _given_load(entry: Bearing) -> tuple[float, float, float]:
+    return (0.0, 0.0, 0.0) if entry.load is None else (entry.load.x, entry.load.y, entry.load.z)
+
+
 def _stiffness(case: Case, index: int) -> FloatArray:
     entry = case.bearing[index]
     if isinstance(entry.stiffness, StopStiffness):
-        load = (0.0, 0.0) if entry.load is None else (entry.load.x, entry.load.y)
-        return entry.stiffness.stop.build().tangent(load)
+        return entry.stiffness.stop.build().tangent(_given_load(entry)[:2])
     if not isinstance(entry.stiffness, RollingStiffness):
         return entry.stiffness.build()
     if case.finds_load(entry):

@@ -25,7 +25,9 @@ def life_quantities(
     Parameters
     ----------
     rated : callable
-        Maps the name of an attribute of :class:`gearwhine.solve.bearing_lives.BearingLife` to a function of a row.
+        Maps the name of an attribute of
+        :class:`gearwhine.rotors.rolling_bearings.rated_life.BearingLife` to a function of
+        a row.
     name : str
         Name of the bearings in the NetCDF file, such as ``bearing``.
     headings : tuple of str

@@ -28,7 +28,7 @@ from gearwhine.results.bearing_lives import life_quantities
 if TYPE_CHECKING:
     from gearwhine.coupling.linear.line_sensitivity import Line
     from gearwhine.coupling.statics.operating_point import OperatingPoint
-    from gearwhine.solve.bearing_lives import BearingLife
+    from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
     from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
     from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity
     from gearwhine.solve.sound.mesh_harmonics import HarmonicSound

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from gearwhine.rotors.analyses.campbell import Crossing
     from gearwhine.rotors.rolling_bearings import RollingState
+    from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
     from gearwhine.rotors.whirl.whirl_modes import WhirlModes
-    from gearwhine.solve.bearing_lives import BearingLife
     from gearwhine.solve.rotors import Crossings, ProbeReading, SolvedResponse, SolvedRotor
 
 _ROTATING = (

@@ -13,8 +13,8 @@ from gearwhine.from_case.gear_pairs import (
     TakenMisalignment,
     build_pair,
     geometry_warnings,
+    misalignments_of_case,
     pair_geometries,
-    taken_misalignments,
 )
 from gearwhine.from_case.machine import require_machine
 from gearwhine.from_case.mesh import build_mesh, material_of
@@ -25,6 +25,7 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.solve.comparison import require_comparable
+from gearwhine.solve.machine import described_machine
 from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 from gearwhine.solve.sound import check_before_modes
@@ -131,7 +132,8 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings += fit_warnings(
         case, {rotor.given.name: rotor.built for rotor in rotors}, None if mesh is None else mesh.mesh
     )
-    warnings += operation_warnings(case)
+    if case.gear_pair and case.rotor and case.operation is not None:
+        warnings += operation_warnings(described_machine(case, None))
     locations = axial_locations(case)
     speeds = {rotor.given.name: rotor.speed for rotor in rotors if rotor.speed is not None}
     warnings += centrifugal_warnings(
@@ -174,7 +176,7 @@ def checked_pairs(case: Case) -> Iterator[CheckedPair]:
     number = len(case.gear_pair)
     frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
     torques = pair_torques(case) if case.operation is not None else (None,) * number
-    misalignments = taken_misalignments(case, None, is_sought=False)
+    misalignments = misalignments_of_case(case, None, is_sought=False)
     origins = force_origins(case)
     for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, origins, strict=True):
         pair = CheckedPair(*row)

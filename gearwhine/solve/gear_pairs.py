@@ -42,7 +42,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phase
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
+from gearwhine.from_case.gear_pairs import TakenMisalignment, misalignments_of_case
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing
@@ -268,7 +268,7 @@ def analyse_pairs(
 
     ``point`` is the machine's operating point, where it is solved.
     """
-    rows = zip(case.gear_pair, solved, taken_misalignments(case, point), strict=True)
+    rows = zip(case.gear_pair, solved, misalignments_of_case(case, point), strict=True)
     analysed = (_analysis(case, entry, pair, misalignment) for entry, pair, misalignment in rows)
     origins = force_origins(case)
     return tuple(replace(pair, force_origin=origin) for pair, origin in zip(analysed, origins, strict=True))

@@ -1,4 +1,4 @@
-"""Operating point of a case: static equilibrium of the whole machine under its mean load, and its plausibility.
+"""Operating point of a machine: static equilibrium under its mean load, lives of its bearings, and its plausibility.
 
 The equilibrium is that of :meth:`gearwhine.coupling.Machine.operating_point`. This module adds the lives of its
 bearings, and warnings: bearings beyond their ratings or tilts, faces that carry unevenly, and numbers of the case that
@@ -14,23 +14,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, RollingStiffness, StopStiffness, require
+from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
-from gearwhine.from_case.gear_pairs import TakenMisalignment, taken_misalignments
+from gearwhine.from_case.gear_pairs import TakenMisalignment, misalignments_of_case, taken_misalignments
 from gearwhine.from_case.machine import require_machine
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
-from gearwhine.solve.bearing_lives import BearingLife, given_ratings
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
 from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
 from gearwhine.solve.sensitivity.influences import LoadSensitivity
-from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,14 +61,16 @@ class LoadedBearing:
     preload : float or None
         Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
         bearing of the shaft has an axial offset or a spring.
-    given_load : ndarray, shape (3,), or None
-        Force of the shaft along x, y, z for which the case has the stiffness made [N].
     """
 
     load: BearingLoad
     rated: BearingLife | None = None
     preload: float | None = None
-    given_load: FloatArray | None = None
+
+    @property
+    def given_load(self) -> Sequence[float] | None:
+        """Force of the shaft along x, y, z for which its stiffness is made [N]; None where there is none."""
+        return self.load.mounted.design_load
 
     @property
     def peak_pressure(self) -> float | None:
@@ -192,34 +192,22 @@ def _deflected(deflection: ShaftDeflection, machine: Machine) -> DeflectedShaft:
 
 
 def solve_load(
-    case: Case,
     machine: Machine,
     progress: Progress = silent,
     *,
     over_torque: bool = False,
-    sensitivity: bool = False,
-    line: str | None = None,
     over_hunting_period: bool = False,
-    housing: SolvedHousing | None = None,
 ) -> SolvedLoad:
-    """Find the static equilibrium of a case's machine under its torques and its weight.
+    """Find the static equilibrium of a machine under its torques and its weight.
 
     Parameters
     ----------
-    case : Case
     machine : Machine
-        Its machine, on rigid seats where it has no housing.
     progress : callable
     over_torque : bool
         Whether to solve for the equilibria at `TORQUES` as well.
-    sensitivity : bool
-        Whether to compute its gradients, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
-    line : str, optional
-        Line that parameters are ranked by, see :func:`gearwhine.solve.sensitivity.ranking.solve_load_sensitivity`.
     over_hunting_period : bool
         Whether to solve pairs with pitch deviations or damaged teeth over their hunting period, too.
-    housing : SolvedHousing, optional
-        Solved housing of the machine, by which there are gradients.
 
     Raises
     ------
@@ -239,27 +227,21 @@ def solve_load(
         ]
         loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
         points[part * machine.torque] = loaded.operating_point()
-    ratings, loads, preloads = given_ratings(case), _given_loads(case), _preloads(machine, progress)
+    preloads = _preloads(machine, progress)
     bearings = tuple(
         LoadedBearing(
             bearing,
-            None
-            if bearing.rolling is None
-            else BearingLife(bearing.rolling, ratings.get(bearing.name), machine.speeds[bearing.mounted.rotor]),
+            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.speeds[bearing.mounted.rotor]),
             preloads.get(bearing.name),
-            loads.get(bearing.name),
         )
         for bearing in point.bearings
     )
-    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(case, point)))
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine, point)))
     if over_hunting_period:
         pairs = tuple(
             replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
         )
-    gradients = None
-    if sensitivity:
-        gradients = solve_load_sensitivity(case, machine, point, housing, progress, line=line)
-    return SolvedLoad(machine, point, bearings, pairs, points, gradients)
+    return SolvedLoad(machine, point, bearings, pairs, points)
 
 
 def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:
@@ -273,48 +255,6 @@ def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> Loade
     torque = math.copysign(load.force * geometry.driver.base_radius, machine.pair_torques[number])
     speed = machine.speeds[load.pair.driver.shaft]
     return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting
-
-
-def _given_loads(case: Case) -> dict[str, FloatArray]:
-    """Return the force along x, y, z for which the case has each bearing's stiffness made [N], by bearing."""
-    return {
-        bearing.name: np.array([bearing.load.x, bearing.load.y, bearing.load.z])
-        for bearing in case.bearing
-        if isinstance(bearing.stiffness, RollingStiffness | StopStiffness) and bearing.load is not None
-    }
-
-
-def find_load(
-    case: Case, machine: Machine, progress: Progress = silent
-) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
-    """Find the operating point of a case beside another analysis, and its warnings.
-
-    The point is None where nothing loads the machine. Where no equilibrium is found and the case does not need one, a
-    warning gives the reason, and the analysis goes on.
-
-    Parameters
-    ----------
-    case, machine, progress
-        As :func:`solve_load`.
-
-    Raises
-    ------
-    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
-        Where bearings or flanks are left to an operating point that is not found.
-    """
-    if not case.is_loaded:
-        return None, []
-    try:
-        solved = solve_load(case, machine, progress)
-    except NO_OPERATING_POINT as error:
-        if case.needs_operating_point:
-            raise
-        message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
-        aligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
-        if aligned:
-            message += f"; the misalignment of {', '.join(aligned)} is taken as 0"
-        return None, [warning("operating point", message)]
-    return solved, load_warnings(case, solved)
 
 
 def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
@@ -339,51 +279,23 @@ def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
     return preloads
 
 
-def require_load(case: Case) -> None:
-    """Refuse a case whose machine nothing loads, before anything is solved.
-
-    Raises
-    ------
-    CaseError, gearwhine.coupling.CouplingError
-        As :func:`solve_load`.
-    """
-    require(case, "rotor", "bearing", "operation", command="load")
-    if not case.is_loaded:
-        expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
-        raise CaseError([Problem("operation.torque", 0.0, expected)])
-    require_machine(case)
-
-
-def load_warnings(case: Case, solved: SolvedLoad) -> list[dict[str, Any]]:
+def load_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
     """Warnings of an operating point that is formally right and physically doubtful."""
-    ranked = solved.sensitivity
+    machine = solved.machine
     of_loads = bearing_load_warnings(
-        case, {bearing.name: bearing.force[:3] for bearing in solved.point.bearings}, "the equilibrium"
+        machine.bearings, {bearing.name: bearing.force[:3] for bearing in solved.point.bearings}, "the equilibrium"
     )
     loads = {entry["bearing"] for entry in of_loads}
     return [
-        *operation_warnings(case),
-        *([] if ranked is None or ranked.note is None else [warning("sensitivity", ranked.note)]),
-        *_sound_warnings(ranked),
+        *operation_warnings(machine),
         *of_loads,
         *(entry for bearing in solved.bearings for entry in _bearing_warnings(bearing)),
         *_speed_warnings(solved),
-        *_stiffness_warnings(case, solved, loads),
+        *_stiffness_warnings(solved, loads),
         *(entry for pair in solved.point.pairs for entry in _face_warnings(pair)),
         *_misalignment_warnings(solved),
         *_free_motion_warnings(solved),
     ]
-
-
-def _sound_warnings(ranked: LoadSensitivity | None) -> Iterator[dict[str, Any]]:
-    """Warn of mesh harmonics whose sound the pressure inside does not prove."""
-    if ranked is None or not ranked.loudest_lines:
-        return
-    # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound.proofs import doubts
-
-    for harmonic in ranked.loudest_lines:
-        yield from doubts(harmonic.sound, "a mesh harmonic")
 
 
 def _bearing_warnings(bearing: LoadedBearing) -> Iterator[dict[str, Any]]:
@@ -457,17 +369,14 @@ def _speed_warnings(solved: SolvedLoad) -> list[dict[str, Any]]:
     )
 
 
-def _stiffness_warnings(case: Case, solved: SolvedLoad, warned: set[str]) -> Iterator[dict[str, Any]]:
+def _stiffness_warnings(solved: SolvedLoad, warned: set[str]) -> Iterator[dict[str, Any]]:
     """Warn of bearings whose stiffness in the linear analyses differs from the tangent at the equilibrium.
 
     Bearings in ``warned`` have a warning that they are made for another load, and are left out.
     """
-    depend = {
-        bearing.name for bearing in case.bearing if isinstance(bearing.stiffness, RollingStiffness | StopStiffness)
-    }
     for bearing in solved.bearings:
         mounted, name = bearing.load.mounted, bearing.load.name
-        if name not in depend - warned or mounted.needs_load:
+        if mounted.design_load is None or name in warned or mounted.needs_load:
             continue
         assumed = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
         tangent = np.diag(bearing.load.stiffness)[:3]
@@ -544,3 +453,82 @@ def _free_motion_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
             yield warning(
                 "free motion", f"nothing holds {motion}; no load drives it, and it stays at zero", motion=motion
             )
+
+
+def load_of_case(
+    case: Case,
+    machine: Machine,
+    progress: Progress = silent,
+    *,
+    over_torque: bool = False,
+    over_hunting_period: bool = False,
+) -> SolvedLoad:
+    """Find the static equilibrium of a case's machine, with what the case gives and leaves open of misalignments.
+
+    The parameters are those of :func:`gearwhine.coupling.analyses.operating_point.solve_load`.
+    """
+    solved = solve_load(machine, progress, over_torque=over_torque, over_hunting_period=over_hunting_period)
+    taken = misalignments_of_case(case, solved.point)
+    pairs = [replace(pair, misalignment=one) for pair, one in zip(solved.pairs, taken, strict=False)]
+    return replace(solved, pairs=tuple(pairs))
+
+
+def find_load(
+    case: Case, machine: Machine, progress: Progress = silent
+) -> tuple[SolvedLoad | None, list[dict[str, Any]]]:
+    """Find the operating point of a case beside another analysis, and its warnings.
+
+    The point is None where nothing loads the machine. Where no equilibrium is found and the case does not need one, a
+    warning gives the reason, and the analysis goes on.
+
+    Parameters
+    ----------
+    case, machine, progress
+        As :func:`load_of_case`.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError, gearwhine.rotors.EquilibriumError
+        Where bearings or flanks are left to an operating point that is not found.
+    """
+    if not case.is_loaded:
+        return None, []
+    try:
+        solved = load_of_case(case, machine, progress)
+    except NO_OPERATING_POINT as error:
+        if case.needs_operating_point:
+            raise
+        message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
+        aligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
+        if aligned:
+            message += f"; the misalignment of {', '.join(aligned)} is taken as 0"
+        return None, [warning("operating point", message)]
+    return solved, load_warnings(solved)
+
+
+def require_load(case: Case) -> None:
+    """Refuse a case whose machine nothing loads, before anything is solved.
+
+    Raises
+    ------
+    CaseError, gearwhine.coupling.CouplingError
+        As :func:`load_of_case`.
+    """
+    require(case, "rotor", "bearing", "operation", command="load")
+    if not case.is_loaded:
+        expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
+        raise CaseError([Problem("operation.torque", 0.0, expected)])
+    require_machine(case)
+
+
+def sensitivity_warnings(ranked: LoadSensitivity) -> Iterator[dict[str, Any]]:
+    """Warnings of a ranking: what it leaves out, and mesh harmonics whose sound the pressure inside does not prove."""
+    if ranked.note is not None:
+        yield warning("sensitivity", ranked.note)
+    if not ranked.loudest_lines:
+        return
+    # The acoustics' kernels are for these cases alone.
+    from gearwhine.solve.sound.proofs import doubts
+
+    for harmonic in ranked.loudest_lines:
+        yield from doubts(harmonic.sound, "a mesh harmonic")

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, RollingStiffness, StopStiffness, pair_torques
 from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.transient import SolvedTransient
-from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.linear.complex_modes import Stability
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.machine.base_motion import BaseHistory
 from gearwhine.coupling.machine.excitation import Run
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.numerics.result_warnings import warning
@@ -41,19 +41,20 @@ _OFF_LINE = 0.05  # difference of a line from the torque of operation without a 
 
 
 def bearing_load_warnings(
-    case: Case,
+    bearings: Sequence[MountedBearing],
     mean_force: Mapping[str, FloatArray],
     found_by: str = "the run",
     known: Sequence[Mapping[str, Any]] = (),
 ) -> list[dict[str, Any]]:
     """Warn of bearings whose stiffness was made for another load than the mean force of the shaft on them.
 
-    The stiffness of rolling bearings and stops depends on the load that the case gives. Radial forces are compared as
+    The stiffness of rolling bearings and stops depends on their load. Radial forces are compared as
     vectors, since elements are pressed where the load points; the axial ones beside them. A difference counts against
     the resultant load, so that a small component does not matter.
 
     Parameters
     ----------
+    bearings : sequence of MountedBearing
     mean_force : mapping of str to ndarray, shape (3,)
         Mean force on each bearing along x, y, z [N].
     found_by : str
@@ -63,13 +64,12 @@ def bearing_load_warnings(
     """
     warnings = []
     named = {entry["bearing"] for entry in known if entry["name"] == "bearing load"}
-    for bearing in case.bearing:
-        depends = isinstance(bearing.stiffness, RollingStiffness | StopStiffness) and not case.finds_load(bearing)
-        if not depends or bearing.name not in mean_force or bearing.name in named:
+    for mounted in bearings:
+        name = mounted.bearing.name
+        if mounted.design_load is None or name not in mean_force or name in named:
             continue
-        load = bearing.load
-        assumed = np.zeros(3) if load is None else np.array([load.x, load.y, load.z])
-        actual = np.asarray(mean_force[bearing.name], dtype=np.float64)
+        assumed = np.array(mounted.design_load)
+        actual = np.asarray(mean_force[name], dtype=np.float64)
         scale = max(float(np.linalg.norm(assumed)), float(np.linalg.norm(actual)))
         radial = float(np.hypot(*(actual - assumed)[:2]))
         axial = abs(float(actual[2] - assumed[2]))
@@ -81,11 +81,11 @@ def bearing_load_warnings(
         warnings.append(
             warning(
                 "bearing load",
-                f'bearing "{bearing.name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
+                f'bearing "{name}": its stiffness was made for a load of {sizes[0][0]:.4g} N radial and '
                 f"{sizes[0][1]:.4g} N axial, {found_by} finds {sizes[1][0]:.4g} N radial and "
                 f"{sizes[1][1]:.4g} N axial; "
                 f"give it the load {{ x = {actual[0]:.4g}, y = {actual[1]:.4g}, z = {actual[2]:.4g} }} N",
-                bearing=bearing.name,
+                bearing=name,
                 assumed_force_n=assumed.tolist(),
                 mean_force_n=actual.tolist(),
             )
@@ -93,19 +93,16 @@ def bearing_load_warnings(
     return warnings
 
 
-def settling_warnings(case: Case, transient: SolvedTransient, signature: SolvedSignature) -> list[dict[str, Any]]:
+def settling_warnings(transient: SolvedTransient, signature: SolvedSignature) -> list[dict[str, Any]]:
     """Warn of high lines near coupled modes whose free vibration from the start is still there when the record begins.
 
     Parameters
     ----------
-    case : Case
-        With a transient at steady speed.
     transient : SolvedTransient
+        At steady speed.
     signature : SolvedSignature
         Its lines; the highest of each sensor count.
     """
-    assert case.operation is not None
-    assert case.transient is not None
     begin = transient.record.sampling.settings.record_from
     near: dict[int, TracedLine] = {}
     for lines in signature.lines.values():
@@ -118,7 +115,7 @@ def settling_warnings(case: Case, transient: SolvedTransient, signature: SolvedS
         left = float(np.exp(-decay * begin))
         if decay <= 0.0 or left <= _SETTLED:
             continue
-        turns = int(np.ceil(np.log(1.0 / _SETTLED) / decay * abs(case.operation.speed) / (2.0 * np.pi)))
+        turns = int(np.ceil(np.log(1.0 / _SETTLED) / decay * abs(transient.speed) / (2.0 * np.pi)))
         hertz = float(signature.modes.frequencies_hz[mode])
         message = (
             f"{line.named.name} at {line.frequency:.5g} Hz stands near a coupled mode of {hertz:.5g} Hz whose free "
@@ -155,39 +152,33 @@ def beyond_limit_warnings(transient: SolvedTransient) -> list[dict[str, Any]]:
     return [warning("power beyond the limit", message, trusted_below_hz=limit, parts=parts)]
 
 
-def operation_warnings(case: Case) -> list[dict[str, Any]]:
+def operation_warnings(machine: Machine) -> list[dict[str, Any]]:
     """Warn of gear pairs without torque in a loaded train, and of torque lines that miss the torque of operation.
 
-    Outputs that the case names may leave a pair idle on purpose.
-
-    Parameters
-    ----------
-    case : Case
-        With an operation; without gear pairs there is nothing to warn of.
+    Outputs that are named may leave a pair idle on purpose.
     """
-    operation = case.operation
-    if operation is None or not case.gear_pair:
+    if not machine.gear_pairs:
         return []
     warnings = []
-    torques = np.abs(pair_torques(case))
-    for pair, torque in zip(case.gear_pair, torques, strict=True):
-        if not operation.output and torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
+    torques = np.abs(machine.pair_torques)
+    for pair, torque in zip(machine.gear_pairs, torques, strict=True):
+        if not machine.outputs and torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
             message = (
-                f"{pair_label(pair.driver, pair.driven)} carries no torque, as nothing is taken off behind it: are its "
-                "driver and driven exchanged, or does an [[operation.output]] lack?"
+                f"{pair.label} carries no torque, as nothing is taken off behind it: are its driver and driven "
+                "exchanged, or does an [[operation.output]] lack?"
             )
             warnings.append(warning("idle gear pair", message, gear_pair=f"{pair.driver} -> {pair.driven}"))
-    for name, line in (("motor", operation.motor), ("load", operation.load)):
+    for name, line in (("motor", machine.motor), ("load", machine.load)):
         if line is None:
             continue
-        torque = float(np.interp(abs(operation.speed), line.speed, line.torque))
-        if abs(torque - operation.torque) > _OFF_LINE * max(abs(torque), abs(operation.torque)):
+        torque = line.at(abs(machine.speed))
+        if abs(torque - machine.torque) > _OFF_LINE * max(abs(torque), abs(machine.torque)):
             message = (
                 f"[operation.{name}] has {torque:.4g} N m at the speed of operation, where the torque is "
-                f"{operation.torque:.4g} N m: only a [transient.run] whose speed is free follows the line, all else "
+                f"{machine.torque:.4g} N m: only a [transient.run] whose speed is free follows the line, all else "
                 "has the torque"
             )
-            warnings.append(warning("torque line", message, line=name, line_n_m=torque, torque_n_m=operation.torque))
+            warnings.append(warning("torque line", message, line=name, line_n_m=torque, torque_n_m=machine.torque))
     return warnings
 
 
@@ -205,14 +196,11 @@ def unbalanced_torque_warnings(machine: Machine, run: Run | None) -> list[dict[s
     return [warning("unbalanced torque", message, torque_n_m=net)]
 
 
-def constant_speed_warnings(case: Case) -> list[dict[str, Any]]:
+def constant_speed_warnings(machine: Machine) -> list[dict[str, Any]]:
     """Warn of loads over time, which have no part in a motion that repeats at constant speed and torque."""
-    operation = case.operation
-    if operation is None:
-        return []
-    left_out = [key for key in ("over_time",) if operation.over_time is not None]
-    left_out += ["output.over_time" for output in operation.output if output.over_time is not None][:1]
-    if operation.base is not None and operation.base.over_time is not None:
+    left_out = [key for key in ("over_time",) if machine.torque_over_time is not None]
+    left_out += ["output.over_time" for output in machine.outputs if output.over_time is not None][:1]
+    if machine.base is not None and any(isinstance(part, BaseHistory) for part in machine.base.parts):
         left_out.append("base.over_time")
     if not left_out:
         return []

@@ -59,8 +59,8 @@ from gearwhine.rotors.analyses.unbalance import SynchronousResponse
 from gearwhine.rotors.modes.lateral import LateralModes
 from gearwhine.rotors.modes.torsional_and_axial import TorsionalModes
 from gearwhine.rotors.rolling_bearings import RollingState
+from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
 from gearwhine.rotors.whirl.whirl_modes import MOSTLY_AXIAL
-from gearwhine.solve.bearing_lives import BearingLife, given_ratings
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -451,7 +451,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     """
     require(case, "rotor", command="rotors")
     analysis = case.rotor_analysis or RotorAnalysis()
-    built, ratings = rotor_bearings(case), given_ratings(case)
+    built = rotor_bearings(case)
     solved = []
     for table in case.rotor:
         progress(f"rotor {table.name}")
@@ -492,7 +492,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
                 torsion=solve_torsion(analysis, table, rotor, torsional),
                 stiffness_map=_stiffness_map(analysis, rotor, bearings),
                 rolling=rolling,
-                lives={name: BearingLife(state, ratings.get(name), operation) for name, state in rolling.items()},
+                lives={name: BearingLife(state, operation) for name, state in rolling.items()},
             )
         )
     return tuple(solved)

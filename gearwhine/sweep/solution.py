@@ -185,7 +185,8 @@ def _reduced(
     add_warnings(document, () if housing is None else housing.warnings)
     add_warnings(document, machine_warnings(solved.machine))
     add_warnings(document, warnings_of_load)
-    add_warnings(document, bearing_load_warnings(case, mean_bearing_forces(solved), known=warnings_of_load))
+    mean_forces = mean_bearing_forces(solved)
+    add_warnings(document, bearing_load_warnings(solved.machine.bearings, mean_forces, known=warnings_of_load))
     forces = solved.histories.bearing_load
     frequencies, rates, names = np.empty(0), np.empty((0, 0, 2)), list[LineName]()
     if case.acoustics is not None and solved.machine.housing is not None:

@@ -37,6 +37,8 @@ class RollingBearing:
     floating : bool
         Whether the outer ring slides freely in its seat along z; q is then the inner ring's displacement against the
         seat.
+    catalogue_rating : float, optional
+        Dynamic rating C by its maker [N]; by default that of its geometry by ISO 281.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class RollingBearing:
     axial_preload: float = 0.0
     name: str = "rolling bearing"
     floating: bool = False
+    catalogue_rating: float | None = None
 
     def __post_init__(self) -> None:
         """Check for at least one row, and that a preloaded bearing has axial stiffness; keep a tuple."""
@@ -56,6 +59,8 @@ class RollingBearing:
         if not self.rows:
             raise RotorError(f"{self.name} has no rows; expected at least one")
         require_finite(f"axial preload of {self.name}", self.axial_preload)
+        if self.catalogue_rating is not None:
+            require_finite(f"dynamic rating of {self.name}", self.catalogue_rating, positive=True)
         self._require_rows_apart()
         if self.floating:
             self._require_floats()

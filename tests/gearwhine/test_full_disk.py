@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearwhine.solve.transient_record import stored_record
 
 import gearwhine as gw
 from gearwhine import workers
@@ -15,6 +14,7 @@ from gearwhine.cli import run_command
 from gearwhine.failures import WorkersError, explain
 from gearwhine.housing.storage.netcdf import reserve_space, write_netcdf
 from gearwhine.output import staging
+from gearwhine.output.checkpoints import stored_record
 from gearwhine.output.manifest import require_as_written
 
 

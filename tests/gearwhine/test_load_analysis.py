@@ -314,7 +314,7 @@ def test_doubtful_points_are_warned_of(helical: Result[SolvedLoad]) -> None:
     )
     point = replace(solved.point, free=("the tilt about x of shaft 'input'", "the rotation of shaft 'input'"))
     changed = replace(solved, bearings=(replace(one, load=tilted),), point=point)
-    found = {entry["name"]: entry for entry in load_warnings(gw.load("spur-pair").case, changed)}
+    found = {entry["name"]: entry for entry in load_warnings(changed)}
     assert "4.3 GPa, beyond the 4.2 GPa" in found["static rating"]["message"]
     assert "10.7' out of line; deep groove ball bearings usually take 10'" in found["bearing tilt"]["message"]
     assert found["free motion"]["motion"] == "the tilt about x of shaft 'input'"

@@ -22,26 +22,29 @@ def case_of(text: str, **operation: object) -> Case:
 
 def test_a_pair_behind_which_nothing_is_taken_off_is_told() -> None:
     """With driver and driven of the second stage exchanged the torque leaves at the middle shaft."""
-    assert operation_warnings(case_of(reducer())) == []
+    assert operation_warnings(described_machine(case_of(reducer()), None)) == []
     exchanged = reducer().replace('driver = "c"\ndriven = "d"', 'driver = "d"\ndriven = "c"')
-    (told,) = operation_warnings(case_of(exchanged))
+    (told,) = operation_warnings(described_machine(case_of(exchanged), None))
     assert told["name"] == "idle gear pair"
     assert told["gear_pair"] == "d -> c"
     assert "exchanged" in told["message"]
     idle = case_of(exchanged)
     assert told in check_case(idle).warnings
-    assert told in load_warnings(idle, solve_load(idle, described_machine(idle, None)))
+    assert told in load_warnings(solve_load(described_machine(idle, None)))
     # Where the case says where the torque leaves, it is meant so.
     output = f'output = [{{ rotor = "middle", torque = {60.0 * 72.0 / 21.0} }}]\n'
-    assert operation_warnings(case_of(exchanged + output)) == []
-    assert operation_warnings(case_of(reducer().replace('torque = "60 N*m"', 'torque = "0 N*m"'))) == []
+    assert operation_warnings(described_machine(case_of(exchanged + output), None)) == []
+    assert (
+        operation_warnings(described_machine(case_of(reducer().replace('torque = "60 N*m"', 'torque = "0 N*m"')), None))
+        == []
+    )
 
 
 @pytest.mark.parametrize(("at_speed", "warned"), [(62.0, False), (45.0, True)])
 def test_a_line_of_torque_that_misses_the_torque_of_operation_is_told(at_speed: float, *, warned: bool) -> None:
     motor = {"speed": ["0 rpm", "3000 rpm", "3300 rpm"], "torque": ["90 N*m", "60 N*m", "0 N*m"]}
     load = {"speed": ["0 rpm", "3000 rpm"], "torque": ["0 N*m", f"{at_speed} N*m"]}
-    told = operation_warnings(case_of(reducer(), motor=motor, load=load))
+    told = operation_warnings(described_machine(case_of(reducer(), motor=motor, load=load), None))
     assert [(entry["line"], entry["line_n_m"], entry["torque_n_m"]) for entry in told] == [
         ("load", pytest.approx(at_speed), 60.0)
     ] * warned

@@ -5,7 +5,8 @@ import pytest
 from coupled_cases import about_operating_point
 
 import gearwhine as gw
-from gearwhine.case import CaseError, load_case
+from gearwhine.case import load_case
+from gearwhine.coupling import CouplingError
 from gearwhine.coupling.analyses.recording import Sampling, sampling
 from gearwhine.coupling.signals.spectrum import Spectrum, amplitude_spectrum
 from gearwhine.coupling.signals.tones import hann_tones
@@ -100,7 +101,7 @@ def test_a_step_over_time_asks_for_no_more_than_its_own_spectrum() -> None:
 
 
 def test_samples_without_end_are_refused() -> None:
-    with pytest.raises(CaseError, match="an excitation at 1e\\+07 Hz"):
+    with pytest.raises(CouplingError, match="an excitation at 1e\\+07 Hz"):
         sampled(ripple("frequency='10 MHz'"), recorded=3000)
 
 

@@ -86,7 +86,11 @@ def long_run(solved: SolvedTransient, orders: dict[float, float]) -> SolvedTrans
     force = 1000.0 + sum(size * np.cos(2.0 * np.pi * order * turns + order) for order, size in orders.items())
     name = solved.machine.system.contacts[0].name
     histories = replace(solved.histories, times=times, sensor_acceleration={}, mesh_force={name: force})
-    return replace(solved, turning=turning, signals=replace(solved.signals, histories=histories))
+    return replace(
+        solved,
+        machine=replace(solved.machine, speed_profile=turning),
+        signals=replace(solved.signals, histories=histories),
+    )
 
 
 @pytest.mark.slow
@@ -255,7 +259,7 @@ def test_a_run_without_orders_says_that_its_lines_are_means() -> None:
     assert "highest lines" not in shown.lower()
     assert "means over the run: Hz (m/s², peak)" in shown
     assert shown.count("means over its speeds") == 2
-    steady = transient_document(replace(run, turning=None))
+    steady = transient_document(replace(run, machine=replace(run.machine, speed_profile=None)))
     assert "kind" not in steady["sensors"][0]["peaks"][0]
     assert "highest lines: Hz (m/s², peak)" in words(steady)
 

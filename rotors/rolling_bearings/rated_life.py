@@ -1,12 +1,12 @@
-"""Rated lives of a case's rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281 by the rating given or derived."""
+"""Rated lives of rolling bearings: L10 of ISO 281 and L10r of ISO/TS 16281, by the maker's rating or the geometry's."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from gearwhine.case import Case, RollingStiffness
-from gearwhine.rotors.rolling_bearings import RollingState, dynamic_rating
+from gearwhine.rotors.rolling_bearings.equilibrium import RollingState
 from gearwhine.rotors.rolling_bearings.life import equivalent_load, rated_revolutions, reference_revolutions
+from gearwhine.rotors.rolling_bearings.ratings import dynamic_rating
 
 _HOUR = 3600.0
 
@@ -18,26 +18,25 @@ class BearingLife:
     Attributes
     ----------
     state : RollingState
-    given_rating : float or None
-        Dynamic rating C that the case gives [N].
     speed : float or None
         Speed of its shaft in operation [rad/s]; None or 0 where it has no life in hours.
     """
 
     state: RollingState
-    given_rating: float | None
     speed: float | None
 
     @property
     def rating(self) -> float:
-        """Dynamic rating C [N]: as given, else of the geometry by ISO 281."""
-        rows = self.state.bearing.rows
-        return dynamic_rating(rows[0], len(rows)) if self.given_rating is None else self.given_rating
+        """Dynamic rating C [N]: by its maker, else of the geometry by ISO 281."""
+        bearing = self.state.bearing
+        if bearing.catalogue_rating is not None:
+            return bearing.catalogue_rating
+        return dynamic_rating(bearing.rows[0], len(bearing.rows))
 
     @property
     def rating_from(self) -> str:
         """Source of the rating: "case" or "geometry"."""
-        return "geometry" if self.given_rating is None else "case"
+        return "geometry" if self.state.bearing.catalogue_rating is None else "case"
 
     @property
     def equivalent_load(self) -> float | None:
@@ -59,13 +58,3 @@ class BearingLife:
             return None
         revolutions = life(self.state, self.rating)
         return None if revolutions is None else revolutions * 2.0 * math.pi / (abs(self.speed) * _HOUR)
-
-
-def given_ratings(case: Case) -> dict[str, float]:
-    """Dynamic ratings C that the case gives [N], by the names of its rolling bearings."""
-    ratings = {
-        bearing.name: bearing.stiffness.rolling.dynamic_rating
-        for bearing in case.bearing
-        if isinstance(bearing.stiffness, RollingStiffness)
-    }
-    return {name: rating for name, rating in ratings.items() if rating is not None}
