@@ -15,6 +15,8 @@ from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.run_up import run_signature_warnings, solve_run_signature
+from gearwhine.coupling.analyses.signature import solve_signature
 from gearwhine.coupling.analyses.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.coupling.errors import TransientError
 from gearwhine.from_case.gear_pairs import solve_gears
@@ -48,7 +50,7 @@ from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
+from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of, tracking_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
@@ -62,14 +64,14 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import solve_rotors
-from gearwhine.solve.run_up import run_signature_warnings, solve_run_signature
-from gearwhine.solve.signature import solve_signature
 from gearwhine.solve.sound import check_before_modes, is_in_run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.run_up import RunSignature
+    from gearwhine.coupling.analyses.signature import SolvedSignature
     from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
     from gearwhine.housing.correlation import Comparison
@@ -77,8 +79,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
-    from gearwhine.solve.run_up import RunSignature
-    from gearwhine.solve.signature import SolvedSignature
     from gearwhine.solve.sound.solution import SolvedSound
 
 _DRAWN_LINES = 6  # operating shapes of a run
@@ -206,7 +206,7 @@ def run(
             if has_traced_lines(machine):
                 frequencies = None if housing is None else housing.modes.frequencies_hz
                 signature = solve_signature(transient, system.modes, frequencies)
-            run_signature = solve_run_signature(case, transient)
+            run_signature = solve_run_signature(transient, tracking_of(case))
             document = joined(document, transient_document(transient, signature, run_signature))
             add_warnings(
                 document,
@@ -219,7 +219,11 @@ def run(
             add_uncertainty(document, basis, transient.trusted_limit)
             add_mechanisms(document, mechanisms, transient.line_tolerance_hz)
             add_warnings(
-                document, [*run_signature_warnings(case, transient), *unbalanced_torque_warnings(described, loaded.run)]
+                document,
+                [
+                    *run_signature_warnings(transient, tracking_of(case)),
+                    *unbalanced_torque_warnings(described, loaded.run),
+                ],
             )
             if run_signature is not None:
                 document["run_signature"] = run_signature_document(run_signature)

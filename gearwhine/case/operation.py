@@ -32,6 +32,7 @@ from gearwhine.case.fields import (
 if TYPE_CHECKING:
     from gearwhine.coupling import BaseMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
+    from gearwhine.coupling.analyses.run_up import OrderTracking as BuiltTracking
     from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
     from gearwhine.coupling.machine.loads import Ripple, TorqueOverTime
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
@@ -120,6 +121,12 @@ class OrderTracking(Table):
     Default: as fine as the orders of shafts and meshes need, as far as the run has revolutions for it."""
     overlap: Annotated[float, Quantity(units.RATIO, at_least=0.0, at_most=0.99)] = 0.9
     """Part of a window that the next one shares. There are at most 400 windows."""
+
+    def build(self) -> BuiltTracking:
+        """Build the windows."""
+        from gearwhine.coupling.analyses.run_up import OrderTracking as BuiltTracking
+
+        return BuiltTracking(self.window, self.resolution, self.overlap)
 
 
 class Run(Table):

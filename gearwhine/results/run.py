@@ -39,14 +39,14 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gearwhine.coupling.analyses.recording import Signals
+    from gearwhine.coupling.analyses.run_up import RunSignature
+    from gearwhine.coupling.analyses.signature import ShaftSidebands, SolvedSignature, TracedLine
     from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.signals import LineName
     from gearwhine.coupling.signals.sidebands import Sideband
     from gearwhine.coupling.signals.spectrum import Spectrum
     from gearwhine.coupling.time.transient import TransientFigures
-    from gearwhine.solve.run_up import RunSignature
-    from gearwhine.solve.signature import ShaftSidebands, SolvedSignature, TracedLine
 
 MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 _HERTZ_LONG = ("Hz", "frequency")

@@ -15,7 +15,6 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 - :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
   and sound at that equilibrium; changes of the housing, and the model of the lines.
 - :mod:`gearwhine.solve.sound`: the sound of modes and lines.
-- :mod:`~gearwhine.solve.signature`, :mod:`~gearwhine.solve.run_up`, :mod:`~gearwhine.solve.operating_shapes`: spectra,
-  orders and operating shapes of the machine's motion over time.
+- :mod:`~gearwhine.solve.operating_shapes`: operating shapes of the machine's motion.
 - :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """

@@ -10,6 +10,7 @@ from gearwhine.case import Case, require
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.analyses.run_up import OrderTracking
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
 from gearwhine.coupling.machine.excitation import Run
@@ -77,6 +78,12 @@ def plan_of(case: Case) -> TransientPlan:
     require(case, "transient", command="run")
     assert case.transient is not None
     return case.transient.build()
+
+
+def tracking_of(case: Case) -> OrderTracking:
+    """Return the windows of the order cuts of a case's run."""
+    run = None if case.transient is None else case.transient.run
+    return OrderTracking() if run is None else run.orders.build()
 
 
 def run_of(case: Case) -> Run | None:

@@ -23,7 +23,7 @@ from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
 
 if TYPE_CHECKING:
-    from gearwhine.solve.signature import SolvedSignature
+    from gearwhine.coupling.analyses.signature import SolvedSignature
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

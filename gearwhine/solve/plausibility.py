@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.analyses.signature import SolvedSignature, TracedLine
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.linear.complex_modes import Stability
 from gearwhine.coupling.linear.damping_band import DampingBand
@@ -26,7 +27,6 @@ from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import RollingBearing
-from gearwhine.solve.signature import SolvedSignature, TracedLine
 
 FloatArray = npt.NDArray[np.float64]
 

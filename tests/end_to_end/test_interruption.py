@@ -17,6 +17,7 @@ from gearwhine.analyses.run import RunSolution, run_arrays
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.signature import solve_signature
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.output.dataset import arrays_of
 from gearwhine.results.operating_point import LOAD
@@ -25,7 +26,6 @@ from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import described_machine, plan_of, reduce_housing
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.rotors import solve_rotors
-from gearwhine.solve.signature import solve_signature
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
 COARSE = ("--set", "housing.box.mesh_size=50 mm")

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
+from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse
@@ -25,7 +26,6 @@ from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.rotors import Campbell
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of
-from gearwhine.solve.signature import SolvedSignature, solve_signature
 
 
 class Drawn(NamedTuple):

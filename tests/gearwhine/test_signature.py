@@ -11,11 +11,11 @@ from coupled_cases import about_operating_point
 from gearwhine.case import load_case
 from gearwhine.coupling import coupled_modes
 from gearwhine.coupling.analyses import recording
+from gearwhine.coupling.analyses.signature import solve_signature
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.results.run import transient_document
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of
-from gearwhine.solve.signature import solve_signature
 
 TURNING = 5500.0 / 60.0  # of all shafts [Hz]
 SHAFT = """

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from gearwhine.coupling import SpeedProfile
+from gearwhine.coupling.analyses.signature import Contribution, TracedLine
 from gearwhine.coupling.signals import LineName, order_map, resample_by_angle, spectrogram
 from gearwhine.figures import save
 from gearwhine.figures.gears.transmission_error import _name
@@ -18,7 +19,6 @@ from gearwhine.figures.machine.transient import (
     draw_orbits,
     outlined,
 )
-from gearwhine.solve.signature import Contribution, TracedLine
 
 
 def test_run_up(tmp_path: Path) -> None:

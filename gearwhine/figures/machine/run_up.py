@@ -7,6 +7,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from gearwhine.case import Case, mesh_frequencies
+from gearwhine.coupling.analyses.run_up import RunSignature
 from gearwhine.coupling.signals import OrderMap, Spectrogram, decibels, peak_of_rms
 from gearwhine.figures.spectra import draw_level_map
 from gearwhine.figures.style import (
@@ -23,7 +24,6 @@ from gearwhine.figures.style import (
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.run_up import RunSignature
 
 FloatArray = npt.NDArray[np.float64]
 

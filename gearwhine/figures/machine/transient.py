@@ -19,6 +19,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.analyses.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.signals import decibels
 from gearwhine.coupling.signals.spectrum import Window, signal_parts
@@ -55,7 +56,6 @@ from gearwhine.figures.style import (
 from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.output.sections import arrowed, counted
 from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.signature import Contribution, SolvedSignature, TracedLine
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,11 +13,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, OrderTracking, mesh_frequencies, speed_ratios
 from gearwhine.coupling import signals as signature
 from gearwhine.coupling.analyses.transient import SolvedTransient
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.excitation_orders import excitation_lines
 from gearwhine.coupling.signals import decibels, peak_of_rms
+from gearwhine.coupling.signals.spectrum import Window
+from gearwhine.numerics.findings import Number, attribute_findings, refuse
 from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
@@ -140,24 +142,51 @@ class _Windows:
     merged: tuple[str, ...]
 
 
-def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | None:
+@dataclass(frozen=True)
+class OrderTracking:
+    """Windows of the order cuts along a run, by revolutions of the first driver's shaft.
+
+    Attributes
+    ----------
+    window : {"hann", "uniform"}
+        Weights of a window's samples.
+    resolution : float or None
+        Spacing of the orders that a window tells apart: it is as many revolutions long as the inverse, rounded up. By
+        default as fine as the orders of shafts and meshes need, as far as the run has revolutions for it.
+    overlap : float
+        Part of a window that the next one shares.
+    """
+
+    window: Window = "hann"
+    resolution: float | None = None
+    overlap: float = 0.9
+
+    def __post_init__(self) -> None:
+        """Require a resolution and an overlap that leave windows."""
+        resolution = Number(above=0.0, at_most=1.0, optional=True)
+        overlap = Number(at_least=0.0, below=1.0)
+        findings = attribute_findings(("order tracking", ""), self, resolution=resolution, overlap=overlap)
+        refuse(findings, CouplingError)
+
+
+def solve_run_signature(solved: SolvedTransient, tracking: OrderTracking) -> RunSignature | None:
     """Spectra and orders of sensors and mesh forces along a run, as far as it is held in memory.
 
     None at steady speed, and where the run has too few turns to tell orders apart: :func:`run_signature_warnings` says
     why.
     """
-    cut = _windows(case, solved)
+    cut = _windows(solved, tracking)
     turning = solved.turning
-    if not isinstance(cut, _Windows) or turning is None or case.operation is None:
+    if not isinstance(cut, _Windows) or turning is None:
         return None
     span, named = cut.span, cut.named
     times = solved.histories.times[span]
     interval = float(times[1] - times[0])
-    turns_per_second, sense = abs(case.operation.speed) / _TWO_PI, math.copysign(1.0, case.operation.speed)
+    turns_per_second, sense = abs(solved.speed) / _TWO_PI, math.copysign(1.0, solved.speed)
     slowest = turns_per_second * float(turning.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * _ABOVE * max(named.values())))
-    length = _window_length(case, solved, times)
+    length = _window_length(solved, times)
     step = max(round((1.0 - _SPECTRUM_OVERLAP) * length), len(times) // _MOST_WINDOWS, 1)
     units, spectra, overall, orders = {}, {}, {}, {}
     signals = {name: (signal, "m/s²") for name, signal in solved.histories.sensor_acceleration.items()}
@@ -173,7 +202,7 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
             signal[span], times, turning, turns_per_second, per_turn=per_turn, whole_turns=False
         )
         mapped = signature.order_map(
-            turned, turns=cut.turns, step=cut.step, window=_tracking(case).window, follow=sorted(set(named.values()))
+            turned, turns=cut.turns, step=cut.step, window=tracking.window, follow=sorted(set(named.values()))
         )
         mapped = _orders_up_to(replace(mapped, speeds=sense * mapped.speeds), _ABOVE * max(named.values()))
         orders[name] = (
@@ -184,27 +213,21 @@ def solve_run_signature(case: Case, solved: SolvedTransient) -> RunSignature | N
     return RunSignature(units, spectra, speeds_rpm, overall, orders, named, cut.turns, solved.trusted_limit)
 
 
-def _tracking(case: Case) -> OrderTracking:
-    """Return the windows of the order cuts."""
-    run = None if case.transient is None else case.transient.run
-    return OrderTracking() if run is None else run.orders
-
-
-def _window_length(case: Case, solved: SolvedTransient, times: FloatArray) -> int:
+def _window_length(solved: SolvedTransient, times: FloatArray) -> int:
     """Return the number of samples of a window of the spectra: T = 2 / √(o n') for the highest mesh order o."""
     assert solved.turning is not None
-    assert case.operation is not None
-    turns_per_second = abs(case.operation.speed) / _TWO_PI
+    turns_per_second = abs(solved.speed) / _TWO_PI
     gain = turns_per_second * float(np.abs(solved.turning.at(times)[2]).max())
-    order = max(mesh_frequencies(case)) / turns_per_second
+    contacts = solved.machine.system.contacts
+    order = max(abs(contact.mesh_frequency) for contact in contacts) / turns_per_second
     interval, longest = float(times[1] - times[0]), len(times) // _LONGEST
     shortest = 2.0 / math.sqrt(order * gain) / interval if gain > 0.0 else longest
     return 2 * max(round(0.5 * min(shortest, longest)), 2)
 
 
-def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str, Any]]:
+def run_signature_warnings(solved: SolvedTransient, tracking: OrderTracking) -> list[dict[str, Any]]:
     """Warn of missing parts of a run's signature, with the reason; steady speed has none."""
-    cut = _windows(case, solved)
+    cut = _windows(solved, tracking)
     if cut is None:
         return []
     if isinstance(cut, str):
@@ -218,16 +241,16 @@ def run_signature_warnings(case: Case, solved: SolvedTransient) -> list[dict[str
     return [warning("run signature", text, turns=cut.turns)]
 
 
-def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
+def _windows(solved: SolvedTransient, tracking: OrderTracking) -> _Windows | str | None:
     """Return the windows of a run; in words why there are none, and None at steady speed or without gears."""
     turning, times = solved.turning, solved.histories.times
-    if turning is None or case.operation is None or not case.gear_pair:
+    if turning is None or not solved.machine.meshes:
         return None
     span = _turning_span(turning.at(times)[1])
     times = times[span]
     if len(times) < _FEWEST_SAMPLES:
         return f"{len(times)} samples in which the machine turns; expected {_FEWEST_SAMPLES} or more"
-    turns_per_second = abs(case.operation.speed) / _TWO_PI
+    turns_per_second = abs(solved.speed) / _TWO_PI
     first, last = turns_per_second * turning.at(times[[0, -1]])[0]
     # As `resample_by_angle` counts them: the end of the last sample's interval closes a turn.
     last += turns_per_second * float(turning.at(times[-1:])[1][0]) * float(times[1] - times[0])
@@ -237,17 +260,16 @@ def _windows(case: Case, solved: SolvedTransient) -> _Windows | str | None:
             f"{last - first:.3g} turns of the leading shaft in the record, {max(total, 0)} whole ones; "
             f"expected {_FEWEST_TURNS} or more"
         )
-    named = _named_orders(case, solved)
+    named = _named_orders(solved)
     # As many turns as separate the closest orders, and the lowest from zero, as far as the run leaves some windows.
     ascending = np.unique([0.0, *named.values()])
     needed = math.ceil(_APART / float(np.diff(ascending).min()) - 1e-9)
     turns = max(2 * total // _WINDOWS, 2, needed)
-    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    whole = math.lcm(*(ratio.denominator for ratio in solved.machine.speed_ratios.values()))
     if whole <= turns:
         # Windows of whole turns of every shaft have every order as a line.
         turns = math.ceil(turns / whole) * whole
     turns = min(turns, max(2 * total // _FEWEST, 2))
-    tracking = _tracking(case)
     if tracking.resolution is not None:
         turns = math.ceil(1.0 / tracking.resolution - 1e-9)
         if turns > total:
@@ -274,11 +296,11 @@ def _turning_span(rates: FloatArray) -> slice:
     return slice(int(begins[longest]), int(ends[longest]))
 
 
-def _named_orders(case: Case, solved: SolvedTransient) -> dict[str, float]:
+def _named_orders(solved: SolvedTransient) -> dict[str, float]:
     """Shafts and harmonics of the meshes, by the turns of the leading shaft."""
     lines = excitation_lines(solved.machine, shaft_orders=(1.0,), mesh_harmonics=tuple(range(1, _HARMONICS + 1)))
     # Exact fractions: the machine's speeds are rounded.
-    whole = math.lcm(*(ratio.denominator for ratio in speed_ratios(case).values()))
+    whole = math.lcm(*(ratio.denominator for ratio in solved.machine.speed_ratios.values()))
     together: dict[float, list[str]] = {}
     for line in lines:
         together.setdefault(round(line.order * whole) / whole, []).append(line.name)
