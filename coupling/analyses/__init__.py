@@ -4,6 +4,7 @@
 - :mod:`~gearwhine.coupling.analyses.modes_and_responses`: complex modes, stability, Campbell diagram, responses.
 - :mod:`~gearwhine.coupling.analyses.steady_state`: periodic motions, and their branch over speed.
 - :mod:`~gearwhine.coupling.analyses.transient`: motion over time, by the blocks and the sampling of
-  :mod:`~gearwhine.coupling.analyses.recording`; its lines by their origin, :mod:`~gearwhine.coupling.analyses.signature`,
-  and the spectra and orders of a run-up, :mod:`~gearwhine.coupling.analyses.run_up`.
+  :mod:`~gearwhine.coupling.analyses.recording`.
+- :mod:`~gearwhine.coupling.analyses.signature`: lines of that motion by their origin.
+- :mod:`~gearwhine.coupling.analyses.run_up`: spectra and orders along a run.
 """

@@ -20,7 +20,7 @@ from gearwhine.coupling.analyses.recording import (
 )
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.coupling.machine.speed_profile import SpeedProfile
+from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile
 from gearwhine.coupling.signals.peaks import SpectralPeaks, spectral_peaks
 from gearwhine.coupling.signals.spectrum import SignalParts, Spectrum, signal_parts
 from gearwhine.coupling.time.exponential_collocation import integration_method
@@ -73,6 +73,8 @@ class SolvedTransient:
         Gear-mesh force [N]; likewise.
     trusted_limit : float
         Highest frequency that the housing's modes carry [Hz].
+    plan : TransientPlan
+        What was integrated and recorded.
     """
 
     machine: CoupledMachine
@@ -83,6 +85,12 @@ class SolvedTransient:
     sensor_spectra: dict[str, Spectrum]
     force_spectra: dict[str, Spectrum]
     trusted_limit: float
+    plan: TransientPlan
+
+    @property
+    def free_run(self) -> bool:
+        """Whether the speed follows from the motor and the load."""
+        return isinstance(self.plan.run, FreeRun)
 
     @property
     def speed(self) -> float:
@@ -272,7 +280,7 @@ def solve_transient(
     stretch = record.last_stretch()
     of_sensors, of_meshes = record_spectra(record, stretch.histories, limit)
     method = integration_method(machine.system, chosen.settings, profile or SpeedProfile.steady())
-    return SolvedTransient(machine, method, figures, record, stretch, of_sensors, of_meshes, limit)
+    return SolvedTransient(machine, method, figures, record, stretch, of_sensors, of_meshes, limit, plan)
 
 
 def _with_code(key: str, chosen: Sampling) -> str:

@@ -14,7 +14,7 @@ from gearwhine.meshes import Mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
+from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.comparison import (
     COMPARISON,
@@ -114,7 +114,7 @@ def modes(
         case,
         solved,
         modes_document(solved, detail=detail),
-        _arrays=lambda: labelled(case, (HOUSING, solved)),
+        _arrays=lambda: labelled(labels_of(case), (HOUSING, solved)),
         _files=files,
         _housing=solved,
     )
@@ -171,7 +171,7 @@ def compare(
         case,
         comparison,
         joined(document, origin_document(solved)),
-        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(case)),
+        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(labels_of(case))),
         _figures=figures,
         _files=files,
         _housing=solved,

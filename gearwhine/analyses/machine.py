@@ -18,7 +18,7 @@ from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import labelled
+from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
@@ -99,7 +99,7 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         case,
         solved,
         document,
-        _arrays=lambda: labelled(case, (ROTORS, solved)),
+        _arrays=lambda: labelled(labels_of(case), (ROTORS, solved)),
         _figures=figures,
         _files=files,
     )
@@ -161,7 +161,7 @@ def gears(
         case,
         pairs,
         document,
-        _arrays=lambda: labelled(case, (GEARS, pairs)),
+        _arrays=lambda: labelled(labels_of(case), (GEARS, pairs)),
         _figures=figures,
     )
 
@@ -224,7 +224,7 @@ def operating_point(
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_load
 
-        return draw_load(case, solved)
+        return draw_load(solved)
 
     def files(place: Path, *, pictures: bool) -> None:
         if pictures:
@@ -235,7 +235,7 @@ def operating_point(
         case,
         solved,
         joined(document, {} if housing is None else origin_document(housing)),
-        _arrays=lambda: labelled(case, (LOAD, solved)),
+        _arrays=lambda: labelled(labels_of(case), (LOAD, solved)),
         _figures=figures,
         _files=files,
         _housing=housing,
@@ -289,7 +289,7 @@ class _LoadedCase:
         from gearwhine.figures import draw_load
 
         if self.load is not None:
-            yield from draw_load(self.case, self.load)
+            yield from draw_load(self.load)
 
 
 def _loaded_case(
@@ -381,7 +381,7 @@ def system(
         case,
         solved,
         joined(document, origin_document(loaded.housing)),
-        _arrays=lambda: labelled(case, (HOUSING, loaded.housing), (LOAD, loaded.load), (SYSTEM, solved)),
+        _arrays=lambda: labelled(labels_of(case), (HOUSING, loaded.housing), (LOAD, loaded.load), (SYSTEM, solved)),
         _figures=figures,
         _housing=loaded.housing,
         _options=(SYSTEM_OPTIONS, SYSTEM_SAME),
@@ -455,7 +455,7 @@ def steady(
         case,
         solved,
         joined(document, origin_document(loaded.housing)),
-        _arrays=lambda: labelled(case, (HOUSING, loaded.housing), (LOAD, loaded.load), (STEADY, solved)),
+        _arrays=lambda: labelled(labels_of(case), (HOUSING, loaded.housing), (LOAD, loaded.load), (STEADY, solved)),
         _figures=figures,
         _housing=loaded.housing,
         _options=(STEADY_OPTIONS, STEADY_SAME),
@@ -515,7 +515,7 @@ def sound(
         from gearwhine.figures import draw_sound
 
         progress("drawing the sound")
-        yield from draw_sound(case, solved)
+        yield from draw_sound(case.title, solved)
 
     def files(place: Path, *, pictures: bool) -> None:
         if pictures:
@@ -526,7 +526,7 @@ def sound(
         case,
         solved,
         joined(document, origin_document(housing)),
-        _arrays=lambda: labelled(case, (HOUSING, housing), (SOUND, solved)),
+        _arrays=lambda: labelled(labels_of(case), (HOUSING, housing), (SOUND, solved)),
         _figures=figures,
         _files=files,
         _housing=housing,

@@ -25,7 +25,7 @@ from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operati
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
 from gearwhine.output.checkpoints import stored_record
-from gearwhine.output.dataset import LabelledArrays, labelled
+from gearwhine.output.dataset import LabelledArrays, labelled, labels_of
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.comparison import comparison_document, write_comparison
@@ -376,7 +376,7 @@ def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
     """Return the labelled arrays of the analyses that were made."""
     streams = () if solved.transient is None else (HistoryStream(solved.transient),)
     return labelled(
-        case,
+        labels_of(case),
         (HOUSING, solved.housing),
         (ROTORS, solved.rotors),
         (GEARS, solved.pairs),
@@ -396,19 +396,19 @@ def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tu
     if solved.pairs:
         yield from figures.draw_gear_pairs(solved.pairs, progress)
     if solved.load is not None:
-        yield from figures.draw_load(case, solved.load)
+        yield from figures.draw_load(solved.load)
     if solved.system is not None:
         progress("drawing the coupled system")
         yield from figures.draw_system(solved.system)
     if solved.transient is not None:
         progress("drawing the motion")
         parts_of_motion = solved.transient, solved.signature, solved.housing, solved.comparison
-        yield from figures.draw_transient(case, *parts_of_motion)
-    if solved.run_signature is not None:
-        yield from figures.draw_run(case, solved.run_signature, solved.housing)
+        yield from figures.draw_transient(case.title, *parts_of_motion)
+    if solved.transient is not None and solved.run_signature is not None:
+        yield from figures.draw_run(case.title, solved.transient, solved.run_signature)
     if solved.sound is not None:
         progress("drawing the sound")
-        yield from figures.draw_sound(case, solved.sound)
+        yield from figures.draw_sound(case.title, solved.sound)
     if solved.housing is not None and solved.comparison is not None:
         progress("drawing the comparison with measured modes")
         yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

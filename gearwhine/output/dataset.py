@@ -75,7 +75,30 @@ class LabelledArrays:
         return xr.Dataset(variables, self.scalars, self.attributes)
 
 
-def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
+@dataclass(frozen=True)
+class Labels:
+    """Labels of a file of results.
+
+    Attributes
+    ----------
+    title : str
+    speed : float or None
+        Speed of the first driver [rad/s]; None where there is none.
+    case : str or None
+        The case as TOML; None for objects of Python.
+    """
+
+    title: str
+    speed: float | None = None
+    case: str | None = None
+
+
+def labels_of(case: Case) -> Labels:
+    """Return the labels of results of a case."""
+    return Labels(case.title, None if case.operation is None else case.operation.speed, dump_case(case))
+
+
+def labelled(labels: Labels, *parts: tuple[Fields, Any], streams: Sequence[Stream] = ()) -> LabelledArrays:
     """Return solved objects, each with the declaration of its quantities, as labelled arrays; None is left out."""
     variables: Variables = {}
     for fields, solved in parts:
@@ -83,18 +106,18 @@ def labelled(case: Case, *parts: tuple[Fields, Any], streams: Sequence[Stream] =
     for stream in streams:
         variables = stream.labels() | variables
     scalars: Variables = {}
-    if case.operation is not None:
+    if labels.speed is not None:
         attributes = {"units": "rpm", "long_name": "speed of the first driver"}
-        scalars["speed"] = ((), case.operation.speed * RPM, attributes)
-    return LabelledArrays(variables, scalars, file_attributes(case), tuple(streams))
+        scalars["speed"] = ((), labels.speed * RPM, attributes)
+    return LabelledArrays(variables, scalars, file_attributes(labels), tuple(streams))
 
 
-def file_attributes(case: Case) -> dict[str, str]:
+def file_attributes(labels: Labels) -> dict[str, str]:
     """Attributes of every file of results."""
     return {
-        "title": case.title,
+        "title": labels.title,
         "source": f"gearwhine {__version__}",
-        "case": dump_case(case),
+        **({} if labels.case is None else {"case": labels.case}),
         "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
         "phase_convention": PHASE_CONVENTION,
     }

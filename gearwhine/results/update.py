@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearwhine.case.errors import key_of
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes
+from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labels_of
 from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 
@@ -277,7 +277,7 @@ def update_document(case: "Case", solved: "SolvedUpdate") -> dict[str, Any]:
 def update_arrays(case: "Case", solved: "SolvedUpdate") -> LabelledArrays:
     """Fitted parameters and the pairs of modes before and after as labelled arrays."""
     variables = arrays_of(UPDATE, solved)
-    return LabelledArrays(variables, {"unit": variables.pop("unit")}, file_attributes(case))
+    return LabelledArrays(variables, {"unit": variables.pop("unit")}, file_attributes(labels_of(case)))
 
 
 _FEW = 0.05  # part of random sets fitted as well, above which the errors alone show little

@@ -68,9 +68,10 @@ class LoadedBearing:
     preload: float | None = None
 
     @property
-    def given_load(self) -> Sequence[float] | None:
+    def given_load(self) -> FloatArray | None:
         """Force of the shaft along x, y, z for which its stiffness is made [N]; None where there is none."""
-        return self.load.mounted.design_load
+        load = self.load.mounted.design_load
+        return None if load is None else np.array(load)
 
     @property
     def peak_pressure(self) -> float | None:

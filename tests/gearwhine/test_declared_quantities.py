@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import gearwhine as gw
-from gearwhine.output.dataset import arrays_of, labelled
+from gearwhine.output.dataset import arrays_of, labelled, labels_of
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.report import Contents, report_page
 from gearwhine.output.report.elements import in_cell
@@ -82,7 +82,7 @@ def test_arrays_have_si_units_and_nothing_where_there_is_nothing() -> None:
 def test_the_speed_beside_every_result_is_in_its_unit() -> None:
     case = gw.load("spur-pair").case
     assert case.operation is not None
-    _, value, attributes = labelled(case).scalars["speed"]
+    _, value, attributes = labelled(labels_of(case)).scalars["speed"]
     assert attributes["units"] == "rpm"
     assert gw.rpm(float(np.asarray(value))) == pytest.approx(case.operation.speed, rel=1e-12)
 

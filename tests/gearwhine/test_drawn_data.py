@@ -48,7 +48,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     solved = solve_transient(machine, plan_of(case))
     modes = solve_system(machine).modes
     signature = solve_signature(solved, modes, housing.modes.frequencies_hz)
-    figures = {f"{name}.png": figure for name, figure in draw_transient(case, solved, signature, housing, None)}
+    figures = {f"{name}.png": figure for name, figure in draw_transient(case.title, solved, signature, housing, None)}
     return Drawn(solved, signature, figures)
 
 

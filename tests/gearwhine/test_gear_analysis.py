@@ -29,7 +29,7 @@ from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.output.dataset import arrays_of, labelled
+from gearwhine.output.dataset import arrays_of, labelled, labels_of
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
@@ -285,7 +285,7 @@ def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
 def test_the_results_file_has_labelled_curves(tmp_path: Path) -> None:
     pair = analysed(*PITCHED)
     path = tmp_path / "results.nc"
-    labelled(case_of(*PITCHED), (GEARS, (pair,))).write(path)
+    labelled(labels_of(case_of(*PITCHED)), (GEARS, (pair,))).write(path)
     with opened_dataset(path) as data:
         curves = data.isel(gear_pair=0)
         assert all("units" in data[name].attrs for name in data.data_vars)

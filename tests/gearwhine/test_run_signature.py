@@ -190,7 +190,7 @@ def test_orders_of_a_sensor_end_where_the_model_is_complete() -> None:
     beyond = np.outer(speeds, arrays["order"][1]) > LIMIT
     np.testing.assert_array_equal(np.isnan(arrays["run_orders"][1][0]), beyond)
     assert arrays["run_orders"][2]["units"] == arrays["run_spectrum"][2]["units"] == "see run_unit"
-    figures = dict(draw_run(case, found, None))
+    figures = dict(draw_run(case.title, run, found))
     for stem, ends in (("top", True), ("pinion-wheel", False)):
         figure = figures[f"run-up-orders-{stem}"]
         notes = " ".join(" ".join(text.get_text() for text in figure.texts).split())

@@ -25,7 +25,7 @@ def solved() -> SolvedSound:
 
 @pytest.fixture(scope="module")
 def figures(solved: SolvedSound) -> dict[str, Figure]:
-    return dict(draw_sound(sound_of_modes().case, solved))
+    return dict(draw_sound(sound_of_modes().case.title, solved))
 
 
 def test_there_are_figures_of_what_was_solved(figures: dict[str, Figure]) -> None:
@@ -103,7 +103,7 @@ def test_efficiencies_are_those_of_modes_and_lines(solved: SolvedSound, figures:
 
 def test_efficiencies_of_one_decade_have_plain_numbers(solved: SolvedSound) -> None:
     modes = tuple(replace(mode, radiation_efficiency=0.3) for mode in solved.modes)
-    figures = dict(draw_sound(sound_of_modes().case, replace(solved, modes=modes, lines=())))
+    figures = dict(draw_sound(sound_of_modes().case.title, replace(solved, modes=modes, lines=())))
     axes = figures["sound-efficiency"].axes[0]
     low, high = axes.get_ylim()
     axes.figure.draw_without_rendering()  # type: ignore[union-attr]
@@ -139,7 +139,7 @@ def test_an_estimate_has_neither_directivity_nor_efficiency(solved: SolvedSound)
         replace(line, sound=estimate.solve(line.frequency_hz, line.sound.coordinates)) for line in solved.lines
     )
     case = sound_of_modes().case
-    figures = dict(draw_sound(case, replace(solved, radiation=estimate, lines=lines)))
+    figures = dict(draw_sound(case.title, replace(solved, radiation=estimate, lines=lines)))
     assert list(figures) == ["sound-power"]
     assert "ERP, an estimate" not in {text.get_text() for text in figures["sound-power"].legends[0].get_texts()}
 

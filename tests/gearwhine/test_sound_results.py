@@ -10,7 +10,7 @@ from sounding_box import COARSE, sound_of_lines, sound_of_modes
 import gearwhine as gw
 from gearwhine.housing.acoustics.boundary_elements import SoundField
 from gearwhine.housing.acoustics.radiation import HousingRadiation
-from gearwhine.output.dataset import labelled
+from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results import chapters_of, run
 from gearwhine.results.first_page import first_page
@@ -123,7 +123,7 @@ def test_parts_of_a_line_are_its_largest(solved: SolvedSound, document: dict[str
 
 
 def test_arrays_are_those_of_the_lines(solved: SolvedSound) -> None:
-    arrays = labelled(sound_of_modes().case, (SOUND, solved)).dataset()
+    arrays = labelled(labels_of(sound_of_modes().case), (SOUND, solved)).dataset()
     assert arrays["sound_power"].values == pytest.approx([line.sound.power for line in solved.lines])
     ratio = arrays["sound_power"].values / arrays["equivalent_radiated_power"].values
     assert ratio == pytest.approx([line.sound.radiation_efficiency for line in solved.lines])
@@ -269,7 +269,7 @@ def test_known_sources_are_held_against_microphones_too(solved: SolvedSound, doc
     told = [one["known_source_error"] for one in document["microphones"]]
     assert told == pytest.approx(np.max(errors, axis=0))
     assert 0.0 < max(told) < 0.1
-    arrays = labelled(sound_of_modes().case, (SOUND, solved)).dataset()
+    arrays = labelled(labels_of(sound_of_modes().case), (SOUND, solved)).dataset()
     assert arrays["microphone_known_source_error"].sel(microphone="ear 2").item() == told[1]
     assert arrays["sound_known_source_error"].values == pytest.approx(
         [line["known_source_error"] for line in document["lines"]]

@@ -11,10 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 
-from gearwhine.case import Case
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.figures.gears.contact import draw_contact_pattern
-from gearwhine.figures.rotors import rotor_assembly
+from gearwhine.figures.rotors import shaft_assembly
 from gearwhine.figures.rotors.assembly import RotorAssembly
 from gearwhine.figures.rotors.shaft import MM, ShaftView
 from gearwhine.figures.style import (
@@ -473,14 +472,12 @@ def _drawn(at: float, force: FloatArray, *, of_gear: bool) -> DrawnForce:
     return DrawnForce(at, (x, y), of_gear, z, (about_x, about_y))
 
 
-def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
-    """Draw the operating point of a case.
+def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
+    """Draw the operating point of a machine.
 
     Parameters
     ----------
-    case : Case
     solved : SolvedLoad
-        Operating point of the case.
 
     Yields
     ------
@@ -501,7 +498,7 @@ def draw_load(case: Case, solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
     stems = file_stems([shaft.name for shaft in solved.shafts], "load-shaft-")
     for stem, shaft in zip(stems, solved.shafts, strict=True):
         on_shaft = [load.mounted.bearing for load in solved.point.bearings if load.mounted.rotor == shaft.name]
-        assembly = rotor_assembly(case, solved.machine.rotor(shaft.name), on_shaft)
+        assembly = shaft_assembly(solved.machine, shaft.name, on_shaft)
         title = f"Shaft {shortened(shaft.name, 20)} under load"
         yield stem, draw_deflected_shaft(title, assembly, shaft, acting[shaft.name])
     pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling.analyses.run_up import RunSignature
+from gearwhine.coupling.analyses.transient import SolvedTransient
 from gearwhine.coupling.signals import OrderMap, Spectrogram, decibels, peak_of_rms
 from gearwhine.figures.spectra import draw_level_map
 from gearwhine.figures.style import (
@@ -23,7 +23,6 @@ from gearwhine.figures.style import (
 )
 from gearwhine.output import file_stems
 from gearwhine.output.sections import arrowed
-from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,19 +34,20 @@ _LEVELS = 100.0  # decibels below the highest level that they show at most
 _TIME = "time [s]"
 
 
-def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> Iterator[tuple[str, Figure]]:
+def draw_run(title: str, solved: SolvedTransient, run: RunSignature) -> Iterator[tuple[str, Figure]]:
     """Draw the level map and the orders of every signal of a run.
 
     Yields ``run-up-map-SIGNAL`` and ``run-up-orders-SIGNAL``, each with its figure.
     """
-    assert case.operation is not None
-    turns_per_second = abs(case.operation.speed) / (2.0 * np.pi)
-    mesh_orders = [frequency / turns_per_second for frequency in mesh_frequencies(case)]
-    modes = None if housing is None else housing.modes.frequencies_hz
+    machine = solved.machine
+    turns_per_second = abs(solved.speed) / (2.0 * np.pi)
+    contacts = machine.system.contacts[: len(machine.meshes)]
+    mesh_orders = [abs(contact.mesh_frequency) / turns_per_second for contact in contacts]
+    modes = None if machine.housing is None else machine.housing.frequencies_hz
     names = [name.replace(" -> ", "-") for name in run.spectra]
-    pairs = [f"{pair.driver} → {pair.driven}" for pair in case.gear_pair]
+    pairs = [f"{mesh.driver.name} → {mesh.driven.name}" for mesh in machine.meshes]
     for stem, (name, spectra) in zip(file_stems(names), run.spectra.items(), strict=True):
-        unit, signal_name, remark = run.units[name], arrowed(name), f"{case.title}; {run_words(case, run)}"
+        unit, signal_name, remark = run.units[name], arrowed(name), f"{title}; {run_words(run, free=solved.free_run)}"
         level_map = draw_run_up_map(
             f"{signal_name}: level over frequency and speed",
             spectra,
@@ -72,12 +72,11 @@ def draw_run(case: Case, run: RunSignature, housing: SolvedHousing | None) -> It
         yield f"run-up-orders-{stem}", slices
 
 
-def run_words(case: Case, signature: RunSignature) -> str:
+def run_words(signature: RunSignature, *, free: bool) -> str:
     """Return the kind of a run and the range of its spectra in words."""
     first, last = float(signature.speeds_rpm[0]), float(signature.speeds_rpm[-1])
-    run = None if case.transient is None else case.transient.run
     kind = "run-up" if abs(last) > abs(first) else "run-down"
-    if run is not None and run.free:
+    if free:
         kind = "free run"
     return f"{kind}, spectra from {first:.0f} to {last:.0f} rpm"
 

@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MultipleLocator
 
-from gearwhine.case import Case
 from gearwhine.figures.style import (
     BLUE,
     FOOT,
@@ -263,14 +262,13 @@ def _directed(line: "SoundLine", directions: FloatArray) -> FloatArray:
     return np.where(behind, np.nan, levels)
 
 
-def draw_sound(case: Case, solved: "SolvedSound") -> Iterator[tuple[str, Figure]]:
-    """Draw the figures of a case's sound.
+def draw_sound(title: str, solved: "SolvedSound") -> Iterator[tuple[str, Figure]]:
+    """Draw the figures of a sound.
 
     Parameters
     ----------
-    case : Case
+    title : str
     solved : SolvedSound
-        Sound of the case.
 
     Yields
     ------
@@ -279,9 +277,9 @@ def draw_sound(case: Case, solved: "SolvedSound") -> Iterator[tuple[str, Figure]
     matplotlib.figure.Figure
     """
     if loudest_lines(solved):
-        yield "sound-power", draw_sound_power(case.title, solved)
+        yield "sound-power", draw_sound_power(title, solved)
     directed = [line for line in loudest_lines(solved, _HEARD)[:_LOUDEST] if sound_field(line) is not None]
     if directed:
-        yield "sound-directivity", draw_directivity(case.title, directed)
+        yield "sound-directivity", draw_directivity(title, directed)
     if any(mode.radiation_efficiency > 0.0 for mode in solved.modes) and solved.radiation.method != "erp":
-        yield "sound-efficiency", draw_radiation_efficiency(case.title, solved)
+        yield "sound-efficiency", draw_radiation_efficiency(title, solved)

@@ -17,7 +17,6 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gearwhine.case import Case, mesh_frequencies
 from gearwhine.coupling import amplitude_spectrum
 from gearwhine.coupling.analyses.signature import Contribution, SolvedSignature, TracedLine
 from gearwhine.coupling.analyses.transient import SolvedTransient
@@ -497,7 +496,7 @@ _ORBIT_SAMPLES = 1 << 14  # samples drawn of a long record: hundreds of thousand
 
 
 def draw_transient(
-    case: Case,
+    title: str,
     solved: SolvedTransient,
     signature: SolvedSignature | None,
     housing: SolvedHousing | None,
@@ -507,22 +506,23 @@ def draw_transient(
     lines: dict[str, tuple[TracedLine, ...]] = dict.fromkeys(solved.sensor_spectra, ())
     if signature is not None:
         lines = signature.lines
-    meshes = mesh_frequencies(case) if case.gear_pair else ()
-    speed = _speed(case, solved)
+    machine = solved.machine
+    meshes = tuple(abs(contact.mesh_frequency) for contact in machine.system.contacts[: len(machine.meshes)])
+    speed = _speed(solved)
     # Along a run no line stands still.
     marks = meshes if solved.turning is None else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
         kind = "dominant" if comparison is None or comparison.pairing == "dominance" else "measured"
         legend = "housing modes" if comparison is None else f"{kind} housing modes"
-        heading = f"{case.title}, {speed}"
+        heading = f"{title}, {speed}"
         spectra = draw_sensor_spectra(heading, solved, lines, mesh_frequencies=marks, marked=marked, marked_as=legend)
         yield "spectrum", spectra
     if any(lines.values()):
-        parts = draw_contributions(f"{case.title}, {speed}", lines)
+        parts = draw_contributions(f"{title}, {speed}", lines)
         yield "contributions", parts
     if solved.force_spectra:
-        yield "mesh-force", _mesh_force(case, solved, meshes)
+        yield "mesh-force", _mesh_force(title, solved, meshes)
     carrying = [contact for contact in solved.machine.system.contacts if contact.name in solved.histories.mesh_friction]
     if rates := {
         contact.name: abs(contact.mesh_frequency) for contact in carrying if contact.loaded and contact.mesh_frequency
@@ -530,7 +530,7 @@ def draw_transient(
         yield (
             "friction",
             draw_friction(
-                "Friction between the teeth", solved.histories, rates, note=f"{case.title}, {speed}; six mesh periods"
+                "Friction between the teeth", solved.histories, rates, note=f"{title}, {speed}; six mesh periods"
             ),
         )
     if solved.histories.gear_motion:
@@ -542,7 +542,7 @@ def draw_transient(
         refined = int(np.ceil(_SMOOTH * most * float(times[1] - times[0]))) or 1
         # Beyond that a path takes long to draw, and memory.
         refined = min(refined, max(_ORBIT_SAMPLES // len(times), 1))
-        yield "orbits", draw_orbits("Orbits of the gears", motions, note=f"{case.title}, {speed}", refined=refined)
+        yield "orbits", draw_orbits("Orbits of the gears", motions, note=f"{title}, {speed}", refined=refined)
     if solved.modal.coordinates:
         window = next(iter(solved.force_spectra.values())).window if solved.force_spectra else "hann"
         limit = min(solved.trusted_limit, 1.2 * max(meshes)) if meshes else solved.trusted_limit
@@ -552,15 +552,15 @@ def draw_transient(
             solved.modal.coordinates,
             limit,
             window,
-            note=f"{case.title}, {speed}",
+            note=f"{title}, {speed}",
         )
         yield "modal-coordinates", modal
 
 
-def _mesh_force(case: Case, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:
+def _mesh_force(title: str, solved: SolvedTransient, meshes: tuple[float, ...]) -> Figure:
     drives = [solved.machine.system.contacts[number].name for number in solved.machine.loaded_contacts]
     times = solved.histories.times
-    figure, rows = _rows_of_pairs(len(drives), "Gear-mesh force", f"{case.title}, {_speed(case, solved)}")
+    figure, rows = _rows_of_pairs(len(drives), "Gear-mesh force", f"{title}, {_speed(solved)}")
     for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
         period, span = 1.0 / frequency, "six mesh periods"
         if solved.turning is not None:
@@ -592,11 +592,10 @@ def _marked_modes(housing: SolvedHousing | None, comparison: Comparison | None) 
     return np.empty(0) if housing is None else housing.modes.frequencies_hz
 
 
-def _speed(case: Case, solved: SolvedTransient) -> str:
+def _speed(solved: SolvedTransient) -> str:
     """Speed and torque for a caption; of a run, the speeds that its record goes through."""
-    assert case.operation is not None
     if solved.turning is not None:
         rates = solved.turning.at(solved.histories.times[[0, -1]])[1]
-        first, last = case.operation.speed * rates * 60.0 / (2.0 * np.pi)
+        first, last = solved.speed * rates * 60.0 / (2.0 * np.pi)
         return f"{first:.0f} to {last:.0f} rpm, averaged over the run"
-    return f"{case.operation.speed * 60.0 / (2.0 * np.pi):.0f} rpm, {case.operation.torque:.4g} N·m"
+    return f"{solved.speed * 60.0 / (2.0 * np.pi):.0f} rpm, {solved.machine.input_torque:.4g} N·m"

@@ -7,6 +7,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from gearwhine.case import Case, RollingStiffness, Segment
+from gearwhine.coupling import Machine, ShaftGear
 from gearwhine.coupling.machine.parts import gear_disc
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
@@ -69,28 +70,13 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
     """Return the assembly of a rotor of a case as it is drawn: its gears by their size rather than as discs."""
     name = rotor.name
     entry = case.rotor_named(name)
-    gears = []
-    for mounted in shaft_gears(case, name):
-        built = mounted.gear
-        gears.append(
-            DrawnGear(
-                name=mounted.name,
-                at=mounted.at,
-                face_width=built.face_width,
-                tip_diameter=2.0 * built.tip_radius,
-                pitch_diameter=2.0 * built.pitch_radius,
-                root_diameter=2.0 * built.root_circle_radius,
-                teeth=built.teeth,
-                disc=gear_disc(mounted, rotor),
-            )
-        )
     on_it = [bearing for bearing in case.bearing if bearing.rotor == name]
     # The materials of a rotor's own file have no names in the case.
     rows = zip(rotor.segments, entry.segments, strict=True) if entry.saved is None else ()
     return RotorAssembly(
         rotor=rotor,
         bearings=bearings,
-        gears=gears,
+        gears=_drawn_gears(shaft_gears(case, name), rotor),
         unbalances=[DrawnUnbalance(mass.at, mass.moment, mass.phase) for mass in entry.unbalance],
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},
@@ -100,6 +86,35 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
             if isinstance(part, RotorSegment) and isinstance(segment, Segment)
         },
     )
+
+
+def shaft_assembly(machine: Machine, name: str, bearings: Sequence[Bearing]) -> RotorAssembly:
+    """Return the assembly of a shaft of a machine as it is drawn, with these bearings."""
+    rotor, mounted = machine.rotor(name), [one for one in machine.bearings if one.rotor == name]
+    return RotorAssembly(
+        rotor=rotor,
+        bearings=bearings,
+        gears=_drawn_gears([gear for gear in machine.gears if gear.shaft == name], rotor),
+        unbalances=[DrawnUnbalance(mass.at, mass.moment, mass.phase) for mass in machine.shaft(name).unbalances],
+        rolling={one.bearing.name for one in mounted if one.rolling is not None},
+        seats={one.bearing.name: one.seat for one in mounted if one.seat is not None},
+    )
+
+
+def _drawn_gears(gears: Sequence[ShaftGear], rotor: Rotor) -> list[DrawnGear]:
+    return [
+        DrawnGear(
+            name=mounted.name,
+            at=mounted.at,
+            face_width=mounted.gear.face_width,
+            tip_diameter=2.0 * mounted.gear.tip_radius,
+            pitch_diameter=2.0 * mounted.gear.pitch_radius,
+            root_diameter=2.0 * mounted.gear.root_circle_radius,
+            teeth=mounted.gear.teeth,
+            disc=gear_disc(mounted, rotor),
+        )
+        for mounted in gears
+    ]
 
 
 def _figures(case: Case, solved: SolvedRotor) -> list[tuple[str, Figure]]:
