@@ -30,7 +30,7 @@ def machine_of(mesh_size: str, limit: float, *, told: bool) -> tuple[coupling.Co
     housing = reduce_housing(case, solve_housing(case))
     machine = described_machine(case, housing)
     loaded = load_machine(machine, machine.operating_point())
-    return loaded.coupled, loaded.basis_error() if told else None
+    return loaded.coupled, loaded.basis_error if told else None
 
 
 def study(mesh_size: str, limit: float) -> None:

@@ -272,6 +272,13 @@ class Machine:
         """Mean torque that each pair takes from its driver [N m], positive where power flows to the driven gear."""
         return self.train.mean_pair_torques(self.constant_torques, self.speed)
 
+    @property
+    def is_loaded(self) -> bool:
+        """Whether torque, force, weight or preload loads the shafts in their bearings."""
+        preloaded = any(mounted.elements is not None and mounted.elements.is_preloaded for mounted in self.bearings)
+        loads = bool(self.torque or self.forces or preloaded) or self.gravity is not None
+        return loads and bool(self.bearings)
+
     @cached_property
     def unbalanced_torque(self) -> float:
         """Largest torque over time that nothing balances, by which the train turns away from its rotation [N m]."""

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from gearwhine.rotors import RotorError as RotorError
     from gearwhine.rotors import Segment as Segment
     from gearwhine.rotors import ShaftMaterial as ShaftMaterial
+    from gearwhine.study import MachineStudy as MachineStudy
     from gearwhine.study import Study as Study
     from gearwhine.study import build as build
     from gearwhine.study import load as load
@@ -74,7 +75,7 @@ _HOMES = {
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
-    "gearwhine.study": ("Study", "build", "load"),
+    "gearwhine.study": ("MachineStudy", "Study", "build", "load"),
     "gearwhine.housing": (
         "Housing",
         "HousingError",

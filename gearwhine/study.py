@@ -8,17 +8,20 @@ import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, CaseSource, LoadedCase, load_case
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.analyses.case import Format
+    from gearwhine.analyses.of_machine import MachineMotion, MachineUnderLoad
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.coupling import Machine
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.recording import TransientPlan
+    from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
@@ -91,6 +94,124 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
     2.7744
     """
     return Study(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
+
+
+class MachineStudy:
+    """A machine of Python and its analyses, each a call that returns a labelled result.
+
+    The results are those of the same machine in a case: the same numbers, warnings, figures and files.
+
+    Parameters
+    ----------
+    machine : Machine
+        Machine; where its housing is the result of :meth:`gearwhine.Housing.modes`, it stands in that.
+    title : str
+        Title of its results.
+    progress : callable
+        Receives the progress of long work in words; silent by default.
+
+    Examples
+    --------
+    A shaft of 0.5 m on two stiff bearings:
+
+    >>> import gearwhine as gw
+    >>> shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.5, 0.03, 0.0, gw.ShaftMaterial(207e9, 0.3, 7850.0))]))
+    >>> bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"at {at}", at, 1e8), "shaft", None) for at in (0.02, 0.48)]
+    >>> study = gw.MachineStudy(gw.Machine([shaft], bearings, speed=100.0))
+    >>> modes = study.system()
+    >>> modes.dataset["system_frequency"].attrs["units"]
+    'Hz'
+    """
+
+    def __init__(self, machine: Machine, title: str = "", progress: Progress = silent) -> None:
+        self.machine = machine
+        self.title = title
+        self.progress = progress
+        self._under_load: MachineUnderLoad | None = None
+        self._lock = threading.RLock()
+
+    def __repr__(self) -> str:
+        """Return the machine's own words."""
+        return f"<Study of {self.machine!r}>"
+
+    def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
+        """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""
+        from gearwhine.analyses import of_machine
+
+        return of_machine.operating_point(self.machine, self.title, over_torque=over_torque, progress=self.progress)
+
+    def system(
+        self,
+        *,
+        speeds: Sequence[float] = (),
+        sidebands: int = 0,
+        mesh_harmonics: int = 3,
+        mesh_phase: float | None = None,
+    ) -> Result[SolvedSystem]:
+        """Find the complex modes of the coupled machine, and their course over signed speeds [rad/s].
+
+        See :func:`gearwhine.analyses.of_machine.system`.
+        """
+        from gearwhine.analyses import of_machine
+
+        return of_machine.system(
+            self._loaded(),
+            mesh_phase=mesh_phase,
+            over_speed=speeds,
+            sidebands=sidebands,
+            mesh_harmonics=mesh_harmonics,
+            progress=self.progress,
+        )
+
+    def steady(
+        self, *, speeds: tuple[float, float] | None = None, points: int = 100, exact: bool = False
+    ) -> Result[SolvedSteady]:
+        """Find the periodic motion, and its branch from one signed speed to another [rad/s].
+
+        See :func:`gearwhine.analyses.of_machine.steady`.
+        """
+        from gearwhine.analyses import of_machine
+
+        return of_machine.steady(self._loaded(), over_speed=speeds, points=points, exact=exact, progress=self.progress)
+
+    def simulate(
+        self, plan: TransientPlan | None = None, /, tracking: OrderTracking | None = None, **settings: Any
+    ) -> Result[MachineMotion]:
+        """Integrate the motion over time.
+
+        Parameters
+        ----------
+        plan : TransientPlan, optional
+            Stretch of the motion; or its attributes by name: ``revolutions=40, discard=20``.
+        tracking : OrderTracking, optional
+            Windows of the orders along a run.
+        **settings
+            See :class:`gearwhine.coupling.analyses.recording.TransientPlan`.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where the plan cannot be followed.
+        gearwhine.coupling.TransientError
+            Where the motion cannot be followed or its energies do not balance.
+        """
+        from gearwhine.analyses import of_machine
+        from gearwhine.coupling.analyses.recording import TransientPlan
+
+        plan = TransientPlan(**settings) if plan is None else plan
+        machine = self._loaded()
+        if plan.run is not None:
+            machine = of_machine.machine_under_load(self.machine, self.title, plan.run, self.progress)
+        return of_machine.simulate(machine, plan, tracking, self.progress)
+
+    def _loaded(self) -> MachineUnderLoad:
+        """Return the machine about its operating point at constant speed, assembled once."""
+        with self._lock:
+            if self._under_load is None:
+                from gearwhine.analyses.of_machine import machine_under_load
+
+                self._under_load = machine_under_load(self.machine, self.title, progress=self.progress)
+            return self._under_load
 
 
 @dataclass

@@ -1,6 +1,7 @@
 """Machine about its operating point: parts linearised there, gear pairs under load, and the coupled system."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
@@ -40,7 +41,8 @@ class LoadedMachine:
     coupled: CoupledMachine
     run: Run | None
 
-    def basis_error(self, progress: Progress = silent) -> BasisError | None:
+    @cached_property
+    def basis_error(self) -> BasisError | None:
         """Estimate the modal truncation error by a machine of other residual attachments and more shaft modes.
 
         None where there is no housing, and so no sensor.
@@ -48,12 +50,11 @@ class LoadedMachine:
         housing = self.machine.housing_component
         if housing is None or housing.coarser is None or not housing.sensors:
             return None
-        progress("comparing with another modal basis")
         other = replace(self.machine, housing=housing.coarser)
         components = other.rotor_components(limit_factor=_MORE_MODES)
         return BasisError(self.coupled, other.assemble(self.pairs, components, self.run))
 
-    @property
+    @cached_property
     def mechanisms(self) -> LineMechanisms:
         """What excites the lines of its sensors."""
         return LineMechanisms(self.coupled)

@@ -2,17 +2,18 @@
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearwhine.analyses import of_machine
+from gearwhine.analyses.of_machine import MachineUnderLoad
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
-from gearwhine.coupling import CoupledMachine
-from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
-from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem, solve_system
+from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
@@ -22,13 +23,10 @@ from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
-from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
+from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.sound import SOUND, sound_document
-from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
-from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
-from gearwhine.solve.damping import assumed_mesh_damping, damping_document, damping_warnings
-from gearwhine.solve.gear_bodies import gear_body_document
+from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
@@ -41,13 +39,7 @@ from gearwhine.solve.operating_point import (
     sensitivity_warnings,
 )
 from gearwhine.solve.plausibility import (
-    add_mechanisms,
-    add_uncertainty,
     centrifugal_warnings,
-    constant_speed_warnings,
-    machine_warnings,
-    parted_flank_warnings,
-    unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
@@ -244,54 +236,6 @@ def operating_point(
     return result
 
 
-@dataclass(frozen=True)
-class _LoadedCase:
-    """Machine of a case, assembled about its operating point.
-
-    Attributes
-    ----------
-    case : Case
-        The case whose torques and speed over time the machine has.
-    loaded : LoadedMachine
-    housing : SolvedHousing or None
-    load : SolvedLoad or None
-        Its operating point; None where nothing loads it.
-    warnings : list of dict
-        Warnings of the operating point.
-    """
-
-    case: Case
-    loaded: LoadedMachine
-    housing: SolvedHousing | None
-    load: SolvedLoad | None
-    warnings: list[dict[str, Any]]
-
-    @property
-    def machine(self) -> CoupledMachine:
-        """The coupled system and its parts."""
-        return self.loaded.coupled
-
-    def add_to(self, document: dict[str, Any], progress: Progress) -> None:
-        """Add the operating point, its warnings and the errors of the modal basis to a document of the machine."""
-        if self.load is not None:
-            document["load"] = load_part(self.load)
-        add_warnings(document, self.warnings)
-        add_uncertainty(document, self.loaded.basis_error(progress), document["trusted_below_hz"])
-        progress("mechanisms of the lines, and their bands by damping")
-        add_mechanisms(document, self.loaded.mechanisms)
-        document["damping"] = damping_document(self.case)
-        if bodies := gear_body_document(self.case):
-            document["gear_bodies"] = bodies
-        add_warnings(document, damping_warnings(self.case))
-
-    def figures(self) -> "Iterator[tuple[str, Figure]]":
-        """Draw the operating point."""
-        from gearwhine.figures import draw_load
-
-        if self.load is not None:
-            yield from draw_load(self.load)
-
-
 def _loaded_case(
     case: Case,
     housing: SolvedHousing | None,
@@ -300,7 +244,7 @@ def _loaded_case(
     *,
     fresh: bool,
     varies: bool = True,
-) -> _LoadedCase:
+) -> MachineUnderLoad:
     """Solve the housing and the operating point of a case, and assemble its machine about that.
 
     ``varies`` takes the speed and the torques over time of a `[transient]`; without, they are those of operation.
@@ -313,7 +257,7 @@ def _loaded_case(
     load, warnings = find_load(case, machine, progress)
     taken = case if varies else case.model_copy(update={"transient": None})
     loaded = load_machine(machine, None if load is None else load.point, run_of(taken), progress)
-    return _LoadedCase(taken, loaded, housing, load, warnings)
+    return MachineUnderLoad(case.title, loaded, load, warnings, taken, housing)
 
 
 def system(
@@ -358,33 +302,13 @@ def system(
     loaded = _loaded_case(case, housing, folder, progress, fresh=fresh)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     over_speed = campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS
-    solved = solve_system(
-        loaded.machine,
-        progress,
+    return of_machine.system(
+        loaded,
         mesh_phase=mesh_phase,
         over_speed=diagram_speeds(case) if over_speed else (),
         sidebands=sidebands,
         mesh_harmonics=mesh_harmonics,
-    )
-    document = system_document(solved, loaded.housing)
-    add_warnings(document, unstable_modes_warnings(solved.stability))
-    loaded.add_to(document, progress)
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_system
-
-        yield from draw_system(solved)
-        yield from loaded.figures()
-
-    return Result(
-        "system",
-        case,
-        solved,
-        joined(document, origin_document(loaded.housing)),
-        _arrays=lambda: labelled(labels_of(case), (HOUSING, loaded.housing), (LOAD, loaded.load), (SYSTEM, solved)),
-        _figures=figures,
-        _housing=loaded.housing,
-        _options=(SYSTEM_OPTIONS, SYSTEM_SAME),
+        progress=progress,
     )
 
 
@@ -430,36 +354,19 @@ def steady(
     if case.operation.speed == 0.0:
         raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
     loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
-    solved = solve_steady(
-        loaded.machine,
-        progress,
+
+    def with_assumed_damping(solved: SolvedSteady) -> SolvedSteady:
+        return solved if solved.curve is None else replace(solved, assumed_damping=assumed_mesh_damping(case))
+
+    result = of_machine.steady(
+        loaded,
         over_speed=branch_speeds(case, downwards=down) if curve or down else None,
         points=points,
         exact=exact,
+        change=with_assumed_damping,
+        progress=progress,
     )
-    if solved.curve is not None:
-        solved = replace(solved, assumed_damping=assumed_mesh_damping(case))
-    document = steady_document(case.title, solved)
-    add_warnings(document, [*constant_speed_warnings(loaded.loaded.machine), *machine_warnings(loaded.machine)])
-    add_warnings(document, parted_flank_warnings(loaded.machine, solved.contact_loss))
-    loaded.add_to(document, progress)
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_steady
-
-        yield from draw_steady(case.title, solved)
-        yield from loaded.figures()
-
-    return Result(
-        "steady",
-        case,
-        solved,
-        joined(document, origin_document(loaded.housing)),
-        _arrays=lambda: labelled(labels_of(case), (HOUSING, loaded.housing), (LOAD, loaded.load), (STEADY, solved)),
-        _figures=figures,
-        _housing=loaded.housing,
-        _options=(STEADY_OPTIONS, STEADY_SAME),
-    )
+    return replace(result, case=case)
 
 
 def sound(
@@ -504,7 +411,7 @@ def sound(
     steady = case.model_copy(update={"transient": None})
     if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
         loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
-        machine, further_warnings = loaded.machine, loaded.warnings
+        machine, further_warnings = loaded.coupled, list(loaded.warnings)
         steady_state = solve_steady(machine, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))
     solved = solve_sound(case, housing, motion, machine, progress)

@@ -18,7 +18,7 @@ from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import COMMANDS, finite, json_text, staging
-from gearwhine.output.files import finish_moves
+from gearwhine.output.files import SUMMARY, finish_moves
 from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
@@ -62,14 +62,14 @@ def _no_files(place: Path, *, pictures: bool) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Result(Generic[Solved]):
-    """Result of an analysis of a case.
+    """Result of an analysis of a case, or of a machine of Python.
 
     Attributes
     ----------
     command : str
         Name of the analysis.
-    case : Case
-        Case that is analysed.
+    case : Case or None
+        Case that is analysed; None for objects of Python.
     solved
         Objects of the library: solved housing, rotors, gear pairs, coupled modes, motion.
     document : dict
@@ -82,7 +82,7 @@ class Result(Generic[Solved]):
     """
 
     command: str
-    case: Case
+    case: Case | None
     solved: Solved
     document: dict[str, Any]
     _arrays: Callable[[], LabelledArrays | xr.Dataset] | None = None
@@ -92,10 +92,17 @@ class Result(Generic[Solved]):
     _data_file: str = "results.nc"
     _started: float | None = None
     _options: tuple[Sequence[Option], Sequence[str]] = ((), ())
+    _title: str = ""
 
     def __post_init__(self) -> None:
         """Give the document its list of warnings, with those of the case."""
-        add_warnings(self.document, [warning("case", text) for text in warnings_of(self.case)])
+        of_case = () if self.case is None else warnings_of(self.case)
+        add_warnings(self.document, [warning("case", text) for text in of_case])
+
+    @property
+    def title(self) -> str:
+        """Title of the case or the machine."""
+        return self._title if self.case is None else self.case.title
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the fields for a pickle: the arrays themselves, in place of the functions that make and draw them."""
@@ -105,12 +112,12 @@ class Result(Generic[Solved]):
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""
-        return f"<Result of {self.command!r} on {self.case.title!r}: {', '.join(self.document)}>"
+        return f"<Result of {self.command!r} on {self.title!r}: {', '.join(self.document)}>"
 
     def _repr_html_(self) -> str:
         from gearwhine.notebook import result_html
 
-        return result_html(self.command, self.case.title, self.document)
+        return result_html(self.command, self.title, self.document)
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -118,7 +125,7 @@ class Result(Generic[Solved]):
         if self._arrays is None:
             import xarray as xr
 
-            return xr.Dataset(attrs={"title": self.case.title})
+            return xr.Dataset(attrs={"title": self.title})
         from gearwhine.output.dataset import LabelledArrays
 
         arrays = self._arrays()
@@ -191,7 +198,7 @@ class Result(Generic[Solved]):
             del self.document[key]
         options, same = self._options
         finish_moves(Path(folder))
-        if options and (earlier := earlier_result(Path(folder), self.command)) is not None:
+        if self.case is not None and options and (earlier := earlier_result(Path(folder), self.command)) is not None:
             place = earlier[0].relative_to(folder)
             try:
                 require_as_written(Path(folder), lambda name: Path(name).parent == place)
@@ -224,12 +231,13 @@ class Result(Generic[Solved]):
 
                 write_mode_cache(place, self._housing)
 
-        if self.command in COMMANDS:
+        if self.case is not None and self.command in COMMANDS:
             cached = self._housing is not None and self._housing.source is not None
             store_results(self.command, self.document, self.case, Path(folder), write_with_modes, modes_stored=cached)
         else:
             with staging(Path(folder)) as place:
                 write(place)
+                (place / SUMMARY).write_text(f"{self.json()}\n", encoding="utf-8")
                 files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
             self.document.update(folder=str(folder), files=files)
         return list(self.document["files"])

@@ -10,14 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearwhine.analyses.of_machine import add_motion, solve_motion
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
-from gearwhine.coupling.analyses.run_up import run_signature_warnings, solve_run_signature
-from gearwhine.coupling.analyses.signature import solve_signature
-from gearwhine.coupling.analyses.transient import has_traced_lines, mean_bearing_forces, solve_transient
 from gearwhine.coupling.errors import TransientError
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
@@ -40,8 +38,6 @@ from gearwhine.results.run import (
     TRANSIENT,
     HistoryStream,
     TracedTransient,
-    run_signature_document,
-    transient_document,
 )
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
@@ -56,11 +52,6 @@ from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.plausibility import (
     add_mechanisms,
     add_uncertainty,
-    bearing_load_warnings,
-    beyond_limit_warnings,
-    parted_flank_warnings,
-    settling_warnings,
-    unbalanced_torque_warnings,
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import solve_rotors
@@ -172,14 +163,15 @@ def run(
     transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
     if loaded is not None and described is not None:
         begin = time.perf_counter()
-        machine, mechanisms, basis = loaded.coupled, loaded.mechanisms, loaded.basis_error(progress)
+        progress("comparing with another modal basis")
+        machine, mechanisms, basis = loaded.coupled, loaded.mechanisms, loaded.basis_error
         system = solve_system(machine, progress)
         document["system"] = system_document(system, housing)
         add_warnings(document, unstable_modes_warnings(system.stability))
         add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
         add_mechanisms(document["system"], mechanisms)
         document["damping"] = damping_document(case)
-        if bodies := gear_body_document(case):
+        if bodies := gear_body_document(loaded.machine):
             document["gear_bodies"] = bodies
         add_warnings(document, damping_warnings(case))
         timed("system", begin)
@@ -197,36 +189,14 @@ def run(
             if folder is not None and until_written is not None:
                 keep = partial(_checkpoints, folder, until_written, fresh=fresh)
             try:
-                transient = solve_transient(machine, plan_of(case), progress, keep=keep)
+                motion = solve_motion(loaded, plan_of(case), tracking_of(case), system.modes, progress, keep=keep)
             except TransientError as error:
                 # Under a load that no tooth bears the advice of the integration is beside the point.
                 if told := overload(case):
                     raise TransientError(f"{told}; no motion under this load is found") from error
                 raise
-            if has_traced_lines(machine):
-                frequencies = None if housing is None else housing.modes.frequencies_hz
-                signature = solve_signature(transient, system.modes, frequencies)
-            run_signature = solve_run_signature(transient, tracking_of(case))
-            document = joined(document, transient_document(transient, signature, run_signature))
-            add_warnings(
-                document,
-                bearing_load_warnings(loaded.machine.bearings, mean_bearing_forces(transient), known=warnings_of_load),
-            )
-            add_warnings(document, beyond_limit_warnings(transient))
-            add_warnings(document, parted_flank_warnings(transient.machine, transient.result.contact_loss))
-            if signature is not None:
-                add_warnings(document, settling_warnings(transient, signature))
-            add_uncertainty(document, basis, transient.trusted_limit)
-            add_mechanisms(document, mechanisms, transient.line_tolerance_hz)
-            add_warnings(
-                document,
-                [
-                    *run_signature_warnings(transient, tracking_of(case)),
-                    *unbalanced_torque_warnings(described, loaded.run),
-                ],
-            )
-            if run_signature is not None:
-                document["run_signature"] = run_signature_document(run_signature)
+            transient, signature, run_signature = motion.transient, motion.signature, motion.run_signature
+            document = add_motion(document, loaded, motion, warnings_of_load)
             timed("transient", begin)
             seconds["time_stepping"] = transient.result.seconds
 
@@ -237,10 +207,10 @@ def run(
         from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
 
         begin = time.perf_counter()
-        motion, without = None, []
+        lines, without = None, []
         if transient is not None and not (without := left_out_warnings(case)):
-            motion = lines_of_run(transient, highest_estimated(case, housing))
-        sound = solve_sound(case, housing, motion, machine, progress)
+            lines = lines_of_run(transient, highest_estimated(case, housing))
+        sound = solve_sound(case, housing, lines, machine, progress)
         if transient is not None:
             sound, housing = with_histories(case, housing, sound, transient, progress)
         document["sound"] = sound_document(sound)

@@ -129,7 +129,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
         result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
         if load is not None:
             result.document["load"] = load_part(load)
-        add_uncertainty(result.document, loaded.basis_error(), solved.trusted_limit)
+        add_uncertainty(result.document, loaded.basis_error, solved.trusted_limit)
         add_mechanisms(result.document, loaded.mechanisms, solved.line_tolerance_hz)
         for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency

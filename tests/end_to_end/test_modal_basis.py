@@ -63,7 +63,7 @@ def test_the_told_error_covers_the_true_one(housings: dict[float, HousingCompone
     frequencies = HERTZ * np.arange(60.0, LIMIT_HZ, 20.0)
     ours, exact = by_mesh_error(housings, frequencies)
     case = case_of(LIMIT_HZ)
-    error = loaded(case, housings[LIMIT_HZ]).basis_error()
+    error = loaded(case, housings[LIMIT_HZ]).basis_error
     assert error is not None
     for name, told in error.at(frequencies).items():
         true = np.abs(ours[name] / exact[name] - 1.0)

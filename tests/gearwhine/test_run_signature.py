@@ -75,7 +75,7 @@ def test_four_turns_are_enough_for_orders() -> None:
 
 
 def test_captions_of_a_run_name_its_speeds() -> None:
-    assert _speed(*run_up((27, 29), 0.06)) == "1500 to 4500 rpm, averaged over the run"
+    assert _speed(run_up((27, 29), 0.06)[1]) == "1500 to 4500 rpm, averaged over the run"
 
 
 def long_run(solved: SolvedTransient, orders: dict[float, float]) -> SolvedTransient:
