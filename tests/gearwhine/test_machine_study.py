@@ -1,0 +1,112 @@
+"""A machine of Python has the results of the same machine in a case: numbers, warnings, figures and files."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gearwhine as gw
+from gearwhine.coupling import CouplingError, TorqueOverTime
+from gearwhine.coupling.machine.speed_profile import SpeedRun
+
+SHORT = {"transient.revolutions": 6, "transient.discard": 3}
+# What a case says beside its machine, and what depends on the clock or the folder.
+OF_THE_CASE = {
+    "title",
+    "damping",
+    "warnings",
+    "seconds",
+    "gear_pairs",
+    "housing",
+    "rotors",
+    "pairs",
+    "system",
+    "steps_per_second",
+}
+
+
+def alike(found: dict[str, Any], expected: dict[str, Any]) -> None:
+    """Every key of the machine's document is in the case's, with the same value."""
+    for key in found.keys() - OF_THE_CASE:
+        assert json.dumps(found[key], default=str) == json.dumps(expected[key], default=str), key
+    messages = {entry["message"] for entry in expected["warnings"]}
+    assert {entry["message"] for entry in found["warnings"]} <= messages
+
+
+@pytest.fixture(scope="module")
+def study() -> gw.Study:
+    return gw.load("spur-pair", SHORT)
+
+
+@pytest.fixture(scope="module")
+def machine(study: gw.Study) -> gw.MachineStudy:
+    return gw.MachineStudy(study.machine, "two spur gears")
+
+
+def test_modes_and_responses_are_those_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+    found, expected = machine.system(), study.system()
+    alike(found.document, expected.document)
+    for name, array in expected.dataset.data_vars.items():
+        np.testing.assert_array_equal(found.dataset[name], array)
+        assert found.dataset[name].attrs == array.attrs
+    assert found.proofs.keys() == expected.proofs.keys()
+    assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
+
+
+def test_the_operating_point_is_that_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+    found, expected = machine.operating_point(), study.operating_point()
+    alike(found.document, expected.document)
+    assert found.document["bearings"][0]["force_n"] == expected.document["bearings"][0]["force_n"]
+
+
+def test_the_periodic_motion_is_that_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+    alike(machine.steady().document, study.steady().document)
+
+
+def test_motion_over_time_is_that_of_the_case_and_is_written(
+    study: gw.Study, machine: gw.MachineStudy, tmp_path: Path
+) -> None:
+    found, expected = machine.simulate(revolutions=6.0, discard=3.0), study.simulate()
+    assert found.document["steps"] == expected.document["steps"]
+    for name in ("mesh_force", "bearing_force"):
+        np.testing.assert_array_equal(found.dataset[name], expected.dataset[name])
+    peaks = [pair["peak_force_n"] for pair in found.document["gear_pairs"]]
+    assert peaks == [pair["peak_force_n"] for pair in expected.document["gear_pairs"]]
+    files = found.write(tmp_path, pictures=False)
+    assert {"results.nc", "summary.json"} <= set(files)
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
+        assert data.attrs["title"] == "two spur gears"
+        np.testing.assert_array_equal(data["mesh_force"], found.dataset["mesh_force"])
+    assert json.loads((tmp_path / "summary.json").read_text())["steps"] == found.document["steps"]
+    assert "two spur gears" in found._repr_html_()
+    assert found.plot("mesh-force").axes
+
+
+def test_a_run_up_of_a_machine_is_that_of_the_case() -> None:
+    run = {"run": {"from": "600 rpm", "to": "1500 rpm", "time": "60 ms"}}
+    study = gw.load("spur-pair", {"transient": run})
+    speeds = tuple(np.array([600.0, 1500.0]) * np.pi / 30.0)
+    found = gw.MachineStudy(study.machine).simulate(run=SpeedRun((0.0, 0.06), speeds))
+    expected = study.simulate()
+    np.testing.assert_allclose(found.dataset["mesh_force"], expected.dataset["mesh_force"], rtol=1e-9)
+
+
+def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.MachineStudy) -> None:
+    """The mean mesh force of the last revolution follows a torque that has risen by half."""
+    from dataclasses import replace
+
+    given = machine.machine
+    risen = replace(given, torque_over_time=TorqueOverTime((0.0, 1e-3), (0.0, 0.5 * given.torque)))
+    plan = {"revolutions": 6.0, "discard": 5.0, "tolerance": 1e-4}
+    forces = [
+        float(gw.MachineStudy(one).simulate(**plan).dataset["mesh_force"].isel(contact=0).mean())
+        for one in (given, risen)
+    ]
+    assert forces[1] == pytest.approx(1.5 * forces[0], rel=0.02)
+    with pytest.raises(CouplingError, match="torque over time: times is .*; expected numbers that ascend"):
+        TorqueOverTime((1.0, 0.0), (1.0, 2.0))
+    with pytest.raises(CouplingError, match="expected one of the two"):
+        machine.simulate()
