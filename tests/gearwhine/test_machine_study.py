@@ -1,6 +1,7 @@
 """A machine of Python has the results of the same machine in a case: numbers, warnings, figures and files."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,8 @@ import pytest
 import xarray as xr
 
 import gearwhine as gw
-from gearwhine.coupling import CouplingError, TorqueOverTime
-from gearwhine.coupling.machine.speed_profile import SpeedRun
+from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
+from gearwhine.solve.machine import plan_of
 
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
 # What a case says beside its machine, and what depends on the clock or the folder.
@@ -69,7 +70,7 @@ def test_the_periodic_motion_is_that_of_the_case(study: gw.Study, machine: gw.Ma
 def test_motion_over_time_is_that_of_the_case_and_is_written(
     study: gw.Study, machine: gw.MachineStudy, tmp_path: Path
 ) -> None:
-    found, expected = machine.simulate(revolutions=6.0, discard=3.0), study.simulate()
+    found, expected = machine.simulate(plan_of(study.case)), study.simulate()
     assert found.document["steps"] == expected.document["steps"]
     for name in ("mesh_force", "bearing_force"):
         np.testing.assert_array_equal(found.dataset[name], expected.dataset[name])
@@ -89,15 +90,14 @@ def test_a_run_up_of_a_machine_is_that_of_the_case() -> None:
     run = {"run": {"from": "600 rpm", "to": "1500 rpm", "time": "60 ms"}}
     study = gw.load("spur-pair", {"transient": run})
     speeds = tuple(np.array([600.0, 1500.0]) * np.pi / 30.0)
-    found = gw.MachineStudy(study.machine).simulate(run=SpeedRun((0.0, 0.06), speeds))
+    plan = replace(plan_of(study.case), run=SpeedRun((0.0, 0.06), speeds))
+    found = gw.MachineStudy(study.machine).simulate(plan)
     expected = study.simulate()
     np.testing.assert_allclose(found.dataset["mesh_force"], expected.dataset["mesh_force"], rtol=1e-9)
 
 
 def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.MachineStudy) -> None:
     """The mean mesh force of the last revolution follows a torque that has risen by half."""
-    from dataclasses import replace
-
     given = machine.machine
     risen = replace(given, torque_over_time=TorqueOverTime((0.0, 1e-3), (0.0, 0.5 * given.torque)))
     plan = {"revolutions": 6.0, "discard": 5.0, "tolerance": 1e-4}
@@ -106,7 +106,7 @@ def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.MachineS
         for one in (given, risen)
     ]
     assert forces[1] == pytest.approx(1.5 * forces[0], rel=0.02)
-    with pytest.raises(CouplingError, match="torque over time: times is .*; expected numbers that ascend"):
+    with pytest.raises(CouplingError, match=r"torque over time: times is .*; expected numbers that ascend"):
         TorqueOverTime((1.0, 0.0), (1.0, 2.0))
     with pytest.raises(CouplingError, match="expected one of the two"):
         machine.simulate()
