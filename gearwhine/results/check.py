@@ -349,7 +349,7 @@ CHECK = (
     _optional_part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
     _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
     _optional("provenance", lambda checked: checked.case.provenance or None),
-    _optional("gear_bodies", lambda checked: gear_body_document(checked.case) or None),
+    _optional("gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None),
     _optional("damping", lambda checked: damping_document(checked.case) or None),
     _optional("warnings", lambda checked: checked.warnings or None),
 )

@@ -6,6 +6,7 @@ from typing import Any
 
 from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
+from gearwhine.coupling import Machine
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.coupling.machine.axial_location import AxialLocation
 from gearwhine.from_case import mesh_health
@@ -92,6 +93,8 @@ class CheckedCase:
     pairs : tuple of CheckedPair
     locations : tuple of gearwhine.coupling.machine.axial_location.AxialLocation
         Axial location of each rotor.
+    machine : Machine or None
+        Machine of the case on rigid seats; None without rotors and an operation.
     warnings : list of dict
         Warnings, as in the documents.
     """
@@ -101,6 +104,7 @@ class CheckedCase:
     rotors: tuple[CheckedRotor, ...]
     pairs: tuple[CheckedPair, ...]
     locations: tuple[AxialLocation, ...]
+    machine: Machine | None
     warnings: list[dict[str, Any]]
 
 
@@ -132,8 +136,9 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings += fit_warnings(
         case, {rotor.given.name: rotor.built for rotor in rotors}, None if mesh is None else mesh.mesh
     )
-    if case.gear_pair and case.rotor and case.operation is not None:
-        warnings += operation_warnings(described_machine(case, None))
+    machine = described_machine(case, None) if case.rotor and case.operation is not None else None
+    if machine is not None:
+        warnings += operation_warnings(machine)
     locations = axial_locations(case)
     speeds = {rotor.given.name: rotor.speed for rotor in rotors if rotor.speed is not None}
     warnings += centrifugal_warnings(
@@ -144,7 +149,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, locations, warnings)
+    return CheckedCase(case, mesh, rotors, pairs, locations, machine, warnings)
 
 
 def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]:
