@@ -30,7 +30,7 @@ from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
 from gearwhine.meshes.box.surface_points import point_off_box
-from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribute_findings, refuse
+from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribute_findings, kind_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -89,16 +89,8 @@ class Housing:
         yield from attribute_findings(
             _PART, self, mesh=Instance(Mesh, "a mesh"), material=material, damping_ratio=ratio
         )
-        kinds: dict[str, tuple[type, ...]] = {
-            "fixtures": (Support, Mount, Joint, LumpedMass),
-            "seats": (Seat,),
-            "sensors": (Sensor,),
-        }
-        for attribute, kind in kinds.items():
-            for number, part in enumerate(getattr(self, attribute)):
-                if not isinstance(part, kind):
-                    names = " or ".join(one.__name__ for one in kind)
-                    yield Finding(_PART, f"{attribute}.{number}", part, f"a {names}")
+        fixtures = (Support, Mount, Joint, LumpedMass)
+        yield from kind_findings(_PART, self, fixtures=fixtures, seats=Seat, sensors=Sensor)
 
     def _fit_findings(self) -> Iterator[Finding]:
         """Yield names that are given twice or lead nowhere, and sensors far from the surface."""
@@ -222,6 +214,7 @@ class Housing:
             (
                 Finding(("sensor", sensor.name), "position", sensor.position, expected)
                 for sensor in sensors
+                if isinstance(sensor, Sensor)
                 if (expected := point_off_box(sensor.position, box))
             ),
             HousingError,

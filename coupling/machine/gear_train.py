@@ -34,7 +34,7 @@ from gearwhine.coupling.machine.loads import (
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Number, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Instance, Number, Rule, Text, attribute_findings, kind_findings, refuse
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -115,8 +115,15 @@ class Output:
         """Keep own copies; check that torque and place are numbers."""
         keep_tuples(self, "ripple")
         place = Number(at_least=0.0, optional=True, unit="m")
-        rules: dict[str, Rule] = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
-        refuse(attribute_findings(("output", str(self.shaft)), self, **rules), CouplingError)
+        rules: dict[str, Rule] = {
+            "shaft": Text(),
+            "torque": Number(optional=True, unit="N m"),
+            "at": place,
+            "over_time": Instance(TorqueOverTime, "a TorqueOverTime, or None", optional=True),
+        }
+        part = ("output", str(self.shaft))
+        findings = [*attribute_findings(part, self, **rules), *kind_findings(part, self, ripple=Ripple)]
+        refuse(findings, CouplingError)
 
 
 @dataclass(frozen=True)

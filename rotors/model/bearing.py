@@ -89,6 +89,9 @@ class Pedestal:
                 matrix.shape == (2, 2), f"pedestal {attribute} shape", matrix.shape, "(2, 2), rows and columns x, y"
             )
             object.__setattr__(self, attribute, matrix)
+        if self.stiffness.diagonal().min() <= 0.0:
+            expected = "a matrix whose direct stiffnesses along x and y are above 0 N/m"
+            refuse([Finding(("pedestal", ""), "stiffness", self.stiffness.tolist(), expected)], RotorError)
         is_held = bool(np.linalg.det(self.stiffness) != 0.0)
         require(is_held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
 
@@ -145,6 +148,9 @@ class Bearing:
                 shapes += [(self.speeds.size, 2, 2), (self.speeds.size, 5, 5)]
             require(matrix.shape in shapes, f"{label} {attribute} shape", matrix.shape, f"one of {shapes}")
             object.__setattr__(self, attribute, matrix)
+        if (self.damping[..., (0, 1), (0, 1)] < 0.0).any():
+            expected = "a damping of at least 0 N s/m along x and along y: a negative one feeds energy in"
+            refuse([Finding(part, "damping", self.damping.tolist(), expected)], RotorError)
         tabled = self.stiffness.ndim == 3 or self.damping.ndim == 3
         require(
             tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"

@@ -9,7 +9,16 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.numerics.findings import Finding, Number, Part, Severity, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Part,
+    Severity,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.model.material import ShaftMaterial
 from gearwhine.rotors.model.profile import (
@@ -141,7 +150,7 @@ class Rotor:
         object.__setattr__(self, "discs", tuple(self.discs))
         object.__setattr__(self, "stiffness_diameters", tuple(self.stiffness_diameters))
         part = ("rotor", str(self.name))
-        refuse([*attribute_findings(part, self, name=Text()), *self._kind_findings(part)], RotorError)
+        refuse([*attribute_findings(part, self, name=Instance(str, "a name")), *self._kind_findings(part)], RotorError)
         places = {f"discs.{number}.at": disc.at for number, disc in enumerate(self.discs)}
         refuse((finding for key, at in places.items() for finding in self.station_findings(part, key, at)), RotorError)
         for stiffness in self.stiffness_diameters:
@@ -154,11 +163,7 @@ class Rotor:
         """Yield segments and discs of another kind, and an unknown mass model."""
         if not self.segments:
             yield Finding(part, "segments", (), "at least one segment")
-        kinds: dict[str, tuple[type, ...]] = {"segments": (Segment, Coupling), "discs": (Disc,)}
-        for attribute, kind in kinds.items():
-            for number, entry in enumerate(getattr(self, attribute)):
-                if not isinstance(entry, kind):
-                    yield Finding(part, f"{attribute}.{number}", entry, f"a {attribute[:-1]}")
+        yield from kind_findings(part, self, segments=(Segment, Coupling), discs=Disc)
         if self.mass_model not in ("distributed", "lumped"):
             yield Finding(part, "mass_model", self.mass_model, "'distributed' or 'lumped'")
 

@@ -10,9 +10,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from math import pi
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
@@ -28,9 +27,7 @@ from gearwhine.case.speeds_and_torques import pair_torques
 if TYPE_CHECKING:
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.machine.gear_train import GearTrain
-
-NEAREST_POINTS = 1e-6
-"""Distance between two points of a bow below which they are one, as a part of the rotor's length."""
+    from gearwhine.numerics.findings import Finding as PartFinding
 
 
 def millimetres(length: float) -> str:
@@ -91,8 +88,17 @@ def _analysed(
 
 def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Finding]:
     """Yield a finding where a station lies beyond the right end of its rotor."""
-    if at > rotor.length * (1.0 + 1e-9):
-        yield Finding(location, f'a station on rotor "{rotor.name}", which is {millimetres(rotor.length)} long')
+    from gearwhine.rotors.model.shaft import station_findings
+
+    yield from _at(location[:-1], station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length))
+
+
+def _at(entry: Location, findings: Iterable[PartFinding]) -> Iterator[Finding]:
+    """Put findings of a part at its entry of the case; one without a value is of the entry's relation to others."""
+    for finding in findings:
+        steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
+        location = (*entry, *steps)
+        yield Finding(location, finding.expected, *([UNSAID] if finding.value is None else []))
 
 
 def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
@@ -109,51 +115,26 @@ def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Loc
 
 def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
     """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already."""
-    if len(rotor.bow) == 1:
-        expected = (
-            "two points or more: the centre line through one is straight and bends no shaft; add the points that stay "
-            "on the axis, such as the bearings', with an amplitude of 0"
-        )
-        yield Finding(("rotor", index, "bow"), expected, UNSAID)
-    for place, point in enumerate(rotor.bow):
-        if any(abs(point.at - other.at) <= NEAREST_POINTS * rotor.length for other in rotor.bow[:place]):
-            yield Finding(
-                ("rotor", index, "bow", place, "at"), "a station of its own; another point of the bow is here"
-            )
+    if rotor.bow:
+        from gearwhine.coupling.machine.parts import bow_findings
 
-
-_BORE_ERROR = 1e-3  # offset of a seat below which it is one of manufacture [m]
+        places = [point.at for point in rotor.bow]
+        yield from _at(("rotor", index), bow_findings(("shaft", rotor.name), places, rotor.length))
 
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
-    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
+    from gearwhine.coupling.machine.arrangement import SeatPlace, seat_findings
 
-    offset = math.hypot(rotor.axis[0] - seat.center[0], rotor.axis[1] - seat.center[1])
-    if offset > LARGEST_OFFSET:
-        expected = (
-            f'a seat on the axis of rotor "{rotor.name}"; the seat\'s centre is {millimetres(offset)} off it '
-            f"(axis at {millimetres(rotor.axis[0])}, {millimetres(rotor.axis[1])}; "
-            f"centre at {millimetres(seat.center[0])}, {millimetres(seat.center[1])})"
-        )
-        if offset < _BORE_ERROR:
-            expected += "; what a bore out of place does to the flanks is errors.helix.slope of a gear"
-        yield Finding(("bearing", index, "seat"), expected)
     wall = 0.0
     if draft.box is not None:
         wall = draft.box.walls.front if seat.center[2] > 0.0 else draft.box.walls.back
-    reach = seat.diameter / 2.0 + wall + (seat.boss.length if seat.boss is not None else 0.0)
-    gap = rotor.start + bearing.at - seat.center[2]
-    if abs(gap) > reach and bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
-        expected = (
-            f'a station within {millimetres(reach)} of seat "{seat.name}" along z (this one is at '
-            f"z = {millimetres(rotor.start + bearing.at)}, the seat at {millimetres(seat.center[2])})"
-        )
-        yield Finding(("bearing", index, "at"), expected)
-
-
-_ROUNDING = 1e-9  # relative rounding of printed speeds
-_RPM = 30.0 / pi
+    boss = seat.boss.length if seat.boss is not None else 0.0
+    place = SeatPlace(seat.name, seat.center, 0.5 * seat.diameter + wall + boss)
+    part = ("bearing", bearing.name)
+    for finding in seat_findings(part, rotor.name, rotor.axis, rotor.start, bearing.at, place):
+        if finding.attribute != "at" or bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
+            yield from _at(("bearing", index), [finding])
 
 
 def check_bearings(draft: Draft) -> Iterator[Finding]:
@@ -163,8 +144,10 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:
-            expected = f'no pedestal under a bearing in seat "{bearing.seat}", which moves with the housing'
-            yield Finding(("bearing", index, "pedestal"), expected)
+            from gearwhine.coupling.machine.arrangement import pedestal_finding
+
+            part = ("bearing", bearing.name)
+            yield from _at(("bearing", index), [pedestal_finding(part, bearing.seat, bearing.pedestal)])
         if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
@@ -211,13 +194,11 @@ def _check_reach(
     draft: Draft, index: int, bearing: Bearing, table: tuple[float, ...], ratio: float
 ) -> Iterator[Finding]:
     """Yield a table that does not hold every speed that the case names."""
+    from gearwhine.coupling.machine.arrangement import table_findings_of_speeds
+
     needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
-    if needed and (min(needed) < table[0] * (1.0 - _ROUNDING) or max(needed) > table[-1] * (1.0 + _ROUNDING)):
-        expected = (
-            f'a table that holds the speeds of rotor "{bearing.rotor}" in this case, {min(needed) * _RPM:.6g} to '
-            f"{max(needed) * _RPM:.6g} rpm (it goes from {table[0] * _RPM:.6g} to {table[-1] * _RPM:.6g} rpm)"
-        )
-        yield Finding(("bearing", index, "speeds"), expected)
+    part = ("bearing", bearing.name)
+    yield from _at(("bearing", index), table_findings_of_speeds(part, bearing.rotor, table, needed))
 
 
 def _named_speeds(draft: Draft) -> list[float]:
