@@ -29,7 +29,12 @@ from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift
 from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
-from gearwhine.coupling.machine.arrangement import table_findings_of_speeds
+from gearwhine.coupling.machine.arrangement import (
+    BACKLASH_OF_A_BRAKE,
+    POWER_FROM_THE_DRIVER,
+    output_elsewhere,
+    table_findings_of_speeds,
+)
 from gearwhine.coupling.machine.axial_location import AxialLocation, axial_support
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
@@ -71,7 +76,7 @@ from gearwhine.coupling.machine.parts import (
     carrying_length,
     gear_inertia_on_shaft,
     inertia_with_discs,
-    require_names,
+    name_findings,
     rotor_with_gears,
     station_findings,
 )
@@ -154,8 +159,9 @@ class Machine:
     CouplingError
         Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
         twice, both gears of a pair sit on one shaft, faces are not in one plane, outputs do not balance the torque or
-        nothing takes it, a part is beyond the end of its shaft, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
-        that it misses, a table of a bearing does not hold its speed, or nothing carries the thrust of helical gears.
+        nothing takes it, a part is beyond the end of its shaft, power flows from driven to driver, a bearing sits in a
+        seat that the housing does not have or that it misses, its table does not hold its speed, or nothing carries the
+        thrust of helical gears.
     gearwhine.coupling.gears.GearError
         Where the gears of a pair do not fit each other at the distance of their shafts.
     """
@@ -189,7 +195,7 @@ class Machine:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
         refuse(_type_findings(self), CouplingError)
-        require_names(self)
+        refuse(name_findings(self), CouplingError)
         refuse([*station_findings(self), *bearing_findings(self, self.housing_component)], CouplingError)
         refuse(self._reach_findings(), CouplingError)
         _ = self.speeds, self.pair_geometries, self.constant_torques
@@ -269,12 +275,15 @@ class Machine:
         """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
         if not self.gear_pairs:
             self._require_balance_of_each_shaft()
-        for output in self.outputs if self.gear_pairs else ():
-            if output.shaft == self.train.pairs[0].driver:
-                raise CouplingError(
-                    f"an output on shaft {output.shaft!r}; expected a shaft other than {output.shaft!r}, where the "
-                    "torque comes in"
-                )
+        first = self.train.pairs[0].driver if self.gear_pairs else None
+        refuse(
+            (
+                Finding(("machine", ""), f"outputs.{place}.shaft", first, output_elsewhere(first))
+                for place, output in enumerate(self.outputs)
+                if first is not None and output.shaft == first
+            ),
+            CouplingError,
+        )
         require_balanced_outputs(self.train, self.torque, self.outputs)
         return self.torques_from_outside(self.torque)
 
@@ -767,19 +776,12 @@ class Machine:
     def _require_power_flow(self) -> None:
         """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
         flanks = carrying_flanks(self.pair_torques, self.torque)
-        for pair, geometry, torque, flank in zip(
-            self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
-        ):
+        for pair, geometry, flank in zip(self.gear_pairs, self.pair_geometries, flanks, strict=True):
+            part = ("gear pair", f"{pair.driver} -> {pair.driven}")
             if flank == "reversed":
-                raise CouplingError(
-                    f"{pair.label}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
-                    "expected power to flow from driver to driven; swap the two names"
-                )
+                refuse([Finding(part, "", None, POWER_FROM_THE_DRIVER)], CouplingError)
             if flank == "back" and pair.backlash_of(geometry) is None:
-                raise CouplingError(
-                    f"{pair.label}: expected a backlash: the torque is negative, so the driven gear drives by "
-                    "the back flanks, which never meet without one"
-                )
+                refuse([Finding(part, "backlash", "None", BACKLASH_OF_A_BRAKE)], CouplingError)
 
     def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")

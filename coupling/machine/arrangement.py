@@ -72,10 +72,21 @@ def table_findings_of_speeds(
     """Yield a bearing's table over speeds that does not hold all speeds at which its rotor turns [rad/s]."""
     if needed and (min(needed) < speeds[0] * (1.0 - _ROUNDING) or max(needed) > speeds[-1] * (1.0 + _ROUNDING)):
         expected = (
-            f'a table that holds the speeds of rotor "{rotor}" in this case, {min(needed) * _RPM:.6g} to '
+            f'a table that holds the speeds of rotor "{rotor}", {min(needed) * _RPM:.6g} to '
             f"{max(needed) * _RPM:.6g} rpm (it goes from {speeds[0] * _RPM:.6g} to {speeds[-1] * _RPM:.6g} rpm)"
         )
         yield Finding(part, "speeds", speeds, expected)
+
+
+POWER_FROM_THE_DRIVER = "power to flow from driver to driven; swap the two names"
+BACKLASH_OF_A_BRAKE = (
+    "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet without one"
+)
+
+
+def output_elsewhere(first: str) -> str:
+    """Return what is expected of an output on the rotor of the first driver."""
+    return f'a rotor other than "{first}", where the torque comes in'
 
 
 def _mm(length: float) -> str:

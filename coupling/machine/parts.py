@@ -350,44 +350,45 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
-def require_names(machine: MachineParts) -> None:
-    """Refuse names given twice, unknown names, and gears that are a pair twice or with themselves."""
+def name_findings(machine: MachineParts) -> Iterator[Finding]:
+    """Yield names given twice, unknown names, and gears that are a pair twice or on one shaft."""
     kinds: Mapping[str, Sequence[str]] = {
         "shaft": [shaft.name for shaft in machine.shafts],
         "gear": [gear.name for gear in machine.gears],
         "bearing": [mounted.bearing.name for mounted in machine.bearings],
     }
+    whole: Part = ("machine", "")
     for kind, names in kinds.items():
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield Finding((kind, name), "name", name, f"each name once; it is given {names.count(name)} times")
         for name in names:
             twin = twin_of(name, names)
             if twin is not None:
-                expected = "names that look different: their characters are others, such as Cyrillic letters"
-                raise CouplingError(f"{kind} {name!r} looks like {kind} {twin!r}; expected {expected}")
+                expected = f"a name that does not look like {twin!r}: both are written with other characters"
+                yield Finding((kind, name), "name", name, expected)
     if not machine.shafts:
-        raise CouplingError("a machine without shafts; expected at least one")
-    needed = [(f"bearing {bearing.bearing.name!r}", "shaft", bearing.rotor) for bearing in machine.bearings]
-    needed += [(f"gear {gear.name!r}", "shaft", gear.shaft) for gear in machine.gears]
-    needed += [(pair.label, "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
-    needed += [("an output", "shaft", output.shaft) for output in machine.outputs]
-    needed += [("a force", "shaft", force.rotor) for force in machine.forces]
-    for where, kind, name in needed:
+        yield Finding(whole, "shafts", (), "at least one shaft")
+    pairs: list[tuple[Part, GearPair]] = [
+        (("gear pair", f"{pair.driver} -> {pair.driven}"), pair) for pair in machine.gear_pairs
+    ]
+    needed: list[tuple[Part, str, str, str]] = [
+        (("bearing", mounted.bearing.name), "rotor", "shaft", mounted.rotor) for mounted in machine.bearings
+    ]
+    needed += [(("gear", gear.name), "shaft", "shaft", gear.shaft) for gear in machine.gears]
+    needed += [(part, "driver", "gear", pair.driver) for part, pair in pairs]
+    needed += [(part, "driven", "gear", pair.driven) for part, pair in pairs]
+    needed += [(whole, f"outputs.{n}.shaft", "shaft", output.shaft) for n, output in enumerate(machine.outputs)]
+    needed += [(whole, f"forces.{n}.rotor", "shaft", force.rotor) for n, force in enumerate(machine.forces)]
+    for part, attribute, kind, name in needed:
         if name not in kinds[kind]:
-            named = ", ".join(map(repr, kinds[kind])) or "none"
-            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {named}")
-    gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
-    for number, pair in enumerate(machine.gear_pairs):
-        if any(
-            {pair.driver, pair.driven} == {earlier.driver, earlier.driven} for earlier in machine.gear_pairs[:number]
-        ):
-            raise CouplingError(f"{pair.label} is given twice; expected gears that are not yet a pair")
-        if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
-            raise CouplingError(
-                f"{pair.label}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
-                "another"
-            )
+            named = ", ".join(map(repr, kinds[kind])) or "there is none"
+            yield Finding(part, attribute, name, f"the name of a {kind} of this machine ({named})")
+    shafts = {gear.name: gear.shaft for gear in machine.gears}
+    for number, (part, pair) in enumerate(pairs):
+        if any({pair.driver, pair.driven} == {other.driver, other.driven} for _, other in pairs[:number]):
+            yield Finding(part, "", None, "gears that are not yet a pair; it is given twice")
+        if shafts.get(pair.driver, pair.driver) == shafts.get(pair.driven, pair.driven):
+            yield Finding(part, "driven", pair.driven, f'a gear on another rotor than "{shafts.get(pair.driver)}"')
 
 
 def station_findings(machine: MachineParts) -> Iterator[Finding]:

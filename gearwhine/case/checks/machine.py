@@ -267,7 +267,7 @@ def _check_pair(
     from gearwhine.coupling.gears import GearError, GearPairGeometry
     from gearwhine.coupling.gears.errors import StiffnessModelError
     from gearwhine.coupling.gears.stiffness.models import require_model_fit
-    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
+    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes, plane_findings
 
     try:
         require_model_fit(pair.stiffness.model, GearPairGeometry(*gears))
@@ -288,14 +288,9 @@ def _check_pair(
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {millimetres(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
-        shift = rotors[0].start + (tables[0].at or 0.0) - rotors[1].start - (tables[1].at or 0.0)
-        reach = 0.5 * min(gear.face_width for gear in gears)
-        if abs(shift) > reach + LARGEST_OFFSET:
-            expected = (
-                f"gears in one plane, within half a face width, {millimetres(reach)}; they are "
-                f"{millimetres(abs(shift))} apart along z"
-            )
-            yield Finding(("gear_pair", index, "driven"), expected)
+        places = [rotor.start + (table.at or 0.0) for rotor, table in zip(rotors, tables, strict=True) if rotor]
+        for finding in plane_findings(("gear pair", ""), places, gears):
+            yield Finding(("gear_pair", index, finding.attribute), finding.expected)
     try:
         if rotors[0] is not None and rotors[1] is not None:
             geometry_on_axes(*gears, (rotors[0].name, rotors[1].name), (rotors[0].axis, rotors[1].axis))
@@ -444,11 +439,12 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     rotor = draft.rotor(first) if draft.gear_pairs else None
     if rotor is not None and operation.at is not None:
         yield from check_station(rotor, operation.at, ("operation", "at"))
-    if draft.gear_pairs:
+    if draft.gear_pairs and first is not None:
+        from gearwhine.coupling.machine.arrangement import output_elsewhere
+
         for place, output in enumerate(operation.output):
             if output.rotor == first:
-                expected = f'a rotor other than "{first}", where the torque comes in'
-                yield Finding(("operation", "output", place, "rotor"), expected)
+                yield Finding(("operation", "output", place, "rotor"), output_elsewhere(first))
     if any(output.rotor not in ratios for output in operation.output):
         return
     if _lacks_input(operation):
@@ -504,6 +500,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
+    from gearwhine.coupling.machine.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
     from gearwhine.coupling.machine.gear_train import carrying_flanks
 
     names = draft.names("gear")
@@ -518,14 +515,9 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     flanks = carrying_flanks(pair_torques(case), operation.torque)
     for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
         if flank == "reversed":
-            expected = "power to flow from driver to driven; swap the two names"
-            yield Finding(("gear_pair", index), expected, UNSAID)
+            yield Finding(("gear_pair", index), POWER_FROM_THE_DRIVER, UNSAID)
         elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):
-            expected = (
-                "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
-                "without one"
-            )
-            yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
+            yield Finding(("gear_pair", index, "backlash"), BACKLASH_OF_A_BRAKE, NOTHING)
 
 
 def _has_designed_backlash(case: Case, pair: GearPair) -> bool:
