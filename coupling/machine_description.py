@@ -29,6 +29,12 @@ from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift
 from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
+from gearwhine.coupling.machine.arrangement import (
+    BACKLASH_OF_A_BRAKE,
+    POWER_FROM_THE_DRIVER,
+    output_elsewhere,
+    table_findings_of_speeds,
+)
 from gearwhine.coupling.machine.axial_location import AxialLocation, axial_support
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
@@ -66,13 +72,13 @@ from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, M
 from gearwhine.coupling.machine.parts import (
     Shaft,
     ShaftGear,
+    bearing_findings,
     carrying_length,
     gear_inertia_on_shaft,
     inertia_with_discs,
-    require_names,
-    require_seats,
-    require_stations,
+    name_findings,
     rotor_with_gears,
+    station_findings,
 )
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.solids import force_findings, machine_findings, unbalance_findings
@@ -94,7 +100,16 @@ from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import Motion, simulate
 from gearwhine.housing import HousingModes
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Finding, Instance, Number, attribute_findings, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Numbers,
+    Rule,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
@@ -144,12 +159,11 @@ class Machine:
     CouplingError
         Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
         twice, both gears of a pair sit on one shaft, faces are not in one plane, outputs do not balance the torque or
-        nothing takes it, power flows from driven to driver, a bearing sits in a seat that the housing does not have or
-        that is off its shaft, or nothing carries the thrust of helical gears.
+        nothing takes it, a part is beyond the end of its shaft, power flows from driven to driver, a bearing sits in a
+        seat that the housing does not have or that it misses, its table does not hold its speed, or nothing carries the
+        thrust of helical gears.
     gearwhine.coupling.gears.GearError
         Where the gears of a pair do not fit each other at the distance of their shafts.
-    gearwhine.rotors.RotorError
-        Where a gear, bearing or torque is beyond the end of its shaft.
     """
 
     shafts: Sequence[Shaft]
@@ -181,13 +195,21 @@ class Machine:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
         refuse(_type_findings(self), CouplingError)
-        require_names(self)
-        require_stations(self)
-        require_seats(self, self.housing_component)
+        refuse(name_findings(self), CouplingError)
+        refuse([*station_findings(self), *bearing_findings(self, self.housing_component)], CouplingError)
+        refuse(self._reach_findings(), CouplingError)
         _ = self.speeds, self.pair_geometries, self.constant_torques
         self._require_power_flow()
         self._require_thrust_carried()
         refuse(self.findings, CouplingError)
+
+    def _reach_findings(self) -> Iterator[Finding]:
+        """Yield bearings whose table does not hold the speed of their shaft."""
+        for mounted in self.bearings:
+            speeds = mounted.bearing.speeds
+            if speeds is not None:
+                part, turning = ("bearing", mounted.bearing.name), abs(self.speeds[mounted.rotor])
+                yield from table_findings_of_speeds(part, mounted.rotor, speeds.tolist(), [turning])
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -253,12 +275,15 @@ class Machine:
         """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
         if not self.gear_pairs:
             self._require_balance_of_each_shaft()
-        for output in self.outputs if self.gear_pairs else ():
-            if output.shaft == self.train.pairs[0].driver:
-                raise CouplingError(
-                    f"an output on shaft {output.shaft!r}; expected a shaft other than {output.shaft!r}, where the "
-                    "torque comes in"
-                )
+        first = self.train.pairs[0].driver if self.gear_pairs else None
+        refuse(
+            (
+                Finding(("machine", ""), f"outputs.{place}.shaft", first, output_elsewhere(first))
+                for place, output in enumerate(self.outputs)
+                if first is not None and output.shaft == first
+            ),
+            CouplingError,
+        )
         require_balanced_outputs(self.train, self.torque, self.outputs)
         return self.torques_from_outside(self.torque)
 
@@ -758,19 +783,12 @@ class Machine:
     def _require_power_flow(self) -> None:
         """Refuse pairs whose driven gear drives the driver, and braked pairs without back flanks."""
         flanks = carrying_flanks(self.pair_torques, self.torque)
-        for pair, geometry, torque, flank in zip(
-            self.gear_pairs, self.pair_geometries, self.pair_torques, flanks, strict=True
-        ):
+        for pair, geometry, flank in zip(self.gear_pairs, self.pair_geometries, flanks, strict=True):
+            part = ("gear pair", f"{pair.driver} -> {pair.driven}")
             if flank == "reversed":
-                raise CouplingError(
-                    f"{pair.label}: {abs(torque):g} N m flow from {pair.driven!r} to {pair.driver!r}; "
-                    "expected power to flow from driver to driven; swap the two names"
-                )
+                refuse([Finding(part, "", None, POWER_FROM_THE_DRIVER)], CouplingError)
             if flank == "back" and pair.backlash_of(geometry) is None:
-                raise CouplingError(
-                    f"{pair.label}: expected a backlash: the torque is negative, so the driven gear drives by "
-                    "the back flanks, which never meet without one"
-                )
+                refuse([Finding(part, "backlash", "None", BACKLASH_OF_A_BRAKE)], CouplingError)
 
     def _component(self, shaft: Shaft, limit_factor: float, progress: Callable[[str], None]) -> RotorComponent:
         progress(f"modes of rotor {shaft.name}")
@@ -930,10 +948,16 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
         "gear_pairs": GearPair,
         "outputs": Output,
         "forces": ShaftForce,
+        "ripple": Ripple,
     }
-    for attribute, kind in kinds.items():
-        for place, entry in enumerate(getattr(machine, attribute)):
-            if not isinstance(entry, kind):
-                yield Finding(part, f"{attribute}.{place}", entry, f"a {kind.__name__}")
-    housing = Instance((HousingModes, HousingComponent), "modes of a housing, or None", optional=True)
-    yield from attribute_findings(part, machine, housing=housing)
+    yield from kind_findings(part, machine, **kinds)
+    rules: dict[str, Rule] = {
+        "housing": Instance((HousingModes, HousingComponent), "modes of a housing, or None", optional=True),
+        "torque_over_time": Instance(TorqueOverTime, "a TorqueOverTime, or None", optional=True),
+        "motor": Instance(TorqueLine, "a TorqueLine, or None", optional=True),
+        "load": Instance(TorqueLine, "a TorqueLine, or None", optional=True),
+        "base": Instance(BaseMotion, "a BaseMotion, or None", optional=True),
+    }
+    if machine.gravity is not None:
+        rules["gravity"] = Numbers(3)
+    yield from attribute_findings(part, machine, **rules)

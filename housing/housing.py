@@ -4,7 +4,7 @@ The description is complete: natural modes are those of the mesh with every fixt
 left out on the way to the eigensolver.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from gearwhine.housing.model.bolted_joints import bolted_joint
 from gearwhine.housing.model.bushings import Bushing, Joint, Mount
 from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
 from gearwhine.housing.model.patches import Patch, rigid_motions
-from gearwhine.housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_port
+from gearwhine.housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_findings, sensor_port
 from gearwhine.housing.model.supports import Support
 from gearwhine.housing.modes.discretisation_error import discretisation_errors, fixture_nodes
 from gearwhine.housing.modes.effective_mass import damping_ratios, modal_damping
@@ -29,6 +29,8 @@ from gearwhine.housing.modes.health import HealthReport, health_report
 from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
+from gearwhine.meshes.box.surface_points import point_off_box
+from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribute_findings, kind_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,6 +38,7 @@ RESPONSE_ORDERS = 3
 """Responses of the discarded modes at each motion of a bearing: at rest, at the limit, and its derivative there."""
 
 _TWO_PI = 2.0 * np.pi
+_PART: Part = ("housing", "")
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,8 @@ class Housing:
     Raises
     ------
     HousingError
-        Where a name is given twice, the mesh lacks a volume, or the damping ratio is not from 0 to 1.
+        Where a part is of another kind, a name is given twice, the mesh lacks a volume or a seat's surface, a sensor is
+        far from the surface, or the damping ratio is not from 0 to 1.
     """
 
     mesh: Mesh
@@ -75,22 +79,41 @@ class Housing:
         """Keep own copies; check unique names, volumes of the materials, and the damping ratio."""
         keep_tuples(self, "fixtures", "seats", "sensors")
         object.__setattr__(self, "materials", dict(self.materials))
-        for kind, names in (
-            ("seat", [seat.name for seat in self.seats]),
-            ("sensor", [sensor.name for sensor in self.sensors]),
-            ("fixture", [fixture.name for fixture in self.fixtures]),
-        ):
-            twice = sorted({name for name in names if names.count(name) > 1})
-            if twice:
-                raise HousingError(
-                    f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once"
-                )
-        missing = [name for name in self.materials if name not in self.mesh.volumes]
-        if missing:
-            volumes = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
-            raise HousingError(f"no volume {missing[0]!r} in the mesh; expected one of {volumes}")
-        if not 0.0 <= self.damping_ratio < 1.0:
-            raise HousingError(f"a damping ratio of {self.damping_ratio}; expected at least 0 and below 1")
+        refuse(self._kind_findings(), HousingError)
+        refuse(self._fit_findings(), HousingError)
+
+    def _kind_findings(self) -> Iterator[Finding]:
+        """Yield parts of another kind, and a damping ratio that none has."""
+        material = Instance(Material, "a material")
+        ratio = Number(at_least=0.0, below=1.0)
+        yield from attribute_findings(
+            _PART, self, mesh=Instance(Mesh, "a mesh"), material=material, damping_ratio=ratio
+        )
+        fixtures = (Support, Mount, Joint, LumpedMass)
+        yield from kind_findings(_PART, self, fixtures=fixtures, seats=Seat, sensors=Sensor)
+
+    def _fit_findings(self) -> Iterator[Finding]:
+        """Yield names that are given twice or lead nowhere, and sensors far from the surface."""
+        parts: dict[str, Sequence[Fixture | Seat | Sensor]] = {
+            "seat": self.seats,
+            "sensor": self.sensors,
+            "fixture": self.fixtures,
+        }
+        for kind, entries in parts.items():
+            names = [entry.name for entry in entries]
+            for name in sorted({name for name in names if names.count(name) > 1}):
+                yield Finding((kind, name), "name", name, f"each name once; it is given {names.count(name)} times")
+        for name in self.materials:
+            if name not in self.mesh.volumes:
+                volumes = ", ".join(map(repr, sorted(self.mesh.volumes))) or "none"
+                yield Finding(_PART, "materials", name, f"a volume of the mesh, one of {volumes}")
+        for seat in self.seats:
+            if seat.name not in self.mesh.surfaces:
+                surfaces = ", ".join(map(repr, sorted(self.mesh.surfaces))) or "none"
+                expected = f"the name of a surface of the mesh, one of {surfaces}"
+                yield Finding(("seat", seat.name), "name", seat.name, expected)
+        for sensor in self.sensors:
+            yield from sensor_findings(self.mesh, sensor)
 
     @classmethod
     def from_step(
@@ -187,8 +210,17 @@ class Housing:
         HousingError
             As :class:`Housing`.
         """
+        refuse(
+            (
+                Finding(("sensor", sensor.name), "position", sensor.position, expected)
+                for sensor in sensors
+                if isinstance(sensor, Sensor)
+                if (expected := point_off_box(sensor.position, box))
+            ),
+            HousingError,
+        )
         mesh = mesh_box(box, mesh_size, order=order)
-        seats = [Seat(bore.name, bore.center, bore.diameter) for bore in box.bores]
+        seats = [Seat(bore.name, bore.center, bore.diameter, box.bore_depth(bore)) for bore in box.bores]
         fixtures = [*fixtures, *cover_joints(box, material)]
         return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
 

@@ -11,7 +11,7 @@ import numbers
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Literal, TypeVar
+from typing import Literal
 
 Severity = Literal["error", "warning"]
 Part = tuple[str, str]
@@ -92,6 +92,7 @@ class Number:
     at_most: float = math.inf
     optional: bool = False
     unit: str = ""
+    whole: bool = False
 
     @property
     def expected(self) -> str:
@@ -100,7 +101,11 @@ class Number:
         limits += [f"of at least {self.at_least:g}"] * (self.at_least > -math.inf)
         limits += [f"below {self.below:g}"] * (self.below < math.inf)
         limits += [f"of at most {self.at_most:g}"] * (self.at_most < math.inf)
-        words = " ".join(word for word in ("a finite number", " and ".join(limits), self.unit) if word)
+        words = " ".join(
+            word
+            for word in ("a whole number" if self.whole else "a finite number", " and ".join(limits), self.unit)
+            if word
+        )
         return f"{words}, or None" if self.optional else words
 
     def accepts(self, value: object) -> bool:
@@ -108,6 +113,8 @@ class Number:
         if value is None:
             return self.optional
         if isinstance(value, bool) or not isinstance(value, numbers.Real):
+            return False
+        if self.whole and not isinstance(value, numbers.Integral):
             return False
         number = float(value)
         within = self.at_least <= number <= self.at_most and self.above < number < self.below
@@ -182,7 +189,15 @@ class Flags:
 
 
 Rule = Number | Text | Instance | Numbers | Flags
-AnyOwner = TypeVar("AnyOwner")
+
+
+def kind_findings(part: Part, owner: object, **kinds: type | tuple[type, ...]) -> Iterator[Finding]:
+    """Yield a finding for each entry of a sequence in an attribute that is of another kind than its own."""
+    for attribute, kind in kinds.items():
+        names = " or ".join(one.__name__ for one in (kind if isinstance(kind, tuple) else (kind,)))
+        for place, entry in enumerate(getattr(owner, attribute)):
+            if not isinstance(entry, kind):
+                yield Finding(part, f"{attribute}.{place}", entry, f"a {names}")
 
 
 def attribute_findings(part: Part, owner: object, **rules: Rule) -> Iterator[Finding]:

@@ -17,6 +17,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
 from gearwhine.housing.own_copies import keep_arrays, keep_tuples
+from gearwhine.numerics.findings import Finding, Number, Numbers, attribute_findings, kind_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -33,8 +34,13 @@ class BaseHarmonic:
     amplitude: ComplexArray
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies; require a frequency above 0 and six finite amplitudes."""
         keep_arrays(self, "amplitude")
+        part = ("base motion", "")
+        findings = [*attribute_findings(part, self, frequency=Number(above=0.0, unit="rad/s"))]
+        if np.shape(self.amplitude) != (6,) or not np.isfinite(self.amplitude).all():
+            findings.append(Finding(part, "amplitude", self.amplitude, "6 numbers, each finite"))
+        refuse(findings, CouplingError)
 
 
 @dataclass(frozen=True)
@@ -47,11 +53,10 @@ class BaseHistory:
     def __post_init__(self) -> None:
         """Keep own copies; require six accelerations for each time, and times that ascend."""
         keep_arrays(self, "times", "values")
-        if self.values.shape != (len(self.times), 6) or not len(self.times) or np.any(np.diff(self.times) <= 0.0):
-            raise CouplingError(
-                f"a base's accelerations of shape {self.values.shape} at {len(self.times)} times; expected six for "
-                "each, and times that ascend"
-            )
+        fits = self.values.shape == (len(self.times), 6) and len(self.times) > 0
+        if not fits or not np.isfinite(self.values).all() or not np.all(np.diff(self.times) > 0.0):
+            expected = "six finite accelerations for each time, and times that ascend"
+            refuse([Finding(("base motion", ""), "values", self.values, expected)], CouplingError)
 
 
 @dataclass(frozen=True)
@@ -69,8 +74,11 @@ class BaseMotion:
     point: Point = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies; require parts that move, about a point."""
         keep_tuples(self, "parts", "point")
+        part = ("base motion", "")
+        kinds = kind_findings(part, self, parts=(BaseHarmonic, BaseHistory))
+        refuse([*kinds, *attribute_findings(part, self, point=Numbers(3))], CouplingError)
 
     def acceleration(self, times: FloatArray) -> FloatArray:
         """Acceleration of the base at some times [m/s², rad/s²], shape (s, 6)."""

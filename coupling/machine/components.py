@@ -10,7 +10,8 @@ the mass being the identity. A *direction* is a row vector d such that d q is a 
 its ports; by virtual work a force F along it adds F d to f.
 """
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -22,6 +23,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode
 from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
 from gearwhine.housing import HousingModes, ModeSet
+from gearwhine.numerics.findings import Finding, refuse
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.rotors import ModalRotor, Pedestal
 from gearwhine.rotors.modes.lateral import LateralModes
@@ -98,6 +100,14 @@ class HousingComponent(Component):
         The housing with fewer residual modes; the difference estimates the truncation error.
     warnings : tuple of dict
         Warnings about the housing's model.
+    seat_reach : mapping of str to float
+        Distance along z from a seat's centre within which a bearing sits in it [m], where it is known.
+
+    Raises
+    ------
+    CouplingError
+        Where a matrix or a motion is not finite or of another shape, K or C is not symmetric or has a negative
+        eigenvalue, G is not skew, or a seat has no place along z.
     """
 
     seats: Mapping[str, FloatArray]
@@ -109,6 +119,11 @@ class HousingComponent(Component):
     complete_below: float | None = None
     coarser: "HousingComponent | None" = None
     warnings: tuple[ResultWarning, ...] = ()
+    seat_reach: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that the matrices and motions are those of a housing."""
+        refuse(_component_findings(self), CouplingError)
 
     @property
     def frequencies_hz(self) -> FloatArray:
@@ -288,6 +303,42 @@ class RotorComponent(Component):
         return row
 
 
+def _component_findings(component: HousingComponent) -> Iterator[Finding]:
+    """Yield what no housing is: K and C without negative eigenvalues, G skew, motions by each coordinate."""
+    part, n = ("housing", component.name), component.size
+    shapes: dict[str, tuple[object, tuple[int, ...]]] = {
+        name: (getattr(component, name), (n, n)) for name in ("stiffness", "damping", "gyroscopic")
+    }
+    shapes |= {f"seats.{name}": (motion, (n, 6)) for name, motion in component.seats.items()}
+    shapes |= {f"sensors.{name}": (motion, (n,)) for name, motion in component.sensors.items()}
+    if component.participation is not None:
+        shapes["participation"] = (component.participation, (n, 6))
+    findings = []
+    for attribute, (array, shape) in shapes.items():
+        if np.shape(array) != shape:
+            findings.append(Finding(part, attribute, array, f"numbers of shape {shape}, for {n} coordinates"))
+        elif not np.isfinite(np.asarray(array)).all():
+            findings.append(Finding(part, attribute, array, "finite numbers"))
+    for name in component.seats:
+        z = component.seat_z.get(name, math.nan)
+        if not math.isfinite(z):
+            findings.append(Finding(part, f"seat_z.{name}", z, "a finite number m, the z of the seat's centre"))
+    yield from findings
+    if findings:
+        return
+    for attribute in ("stiffness", "damping"):
+        matrix = getattr(component, attribute)
+        scale = float(np.abs(matrix).max(initial=0.0))
+        if np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+            yield Finding(part, attribute, matrix, "a symmetric matrix")
+        elif n and (least := float(np.linalg.eigvalsh(matrix)[0])) < -_ROUNDING * n * scale:
+            expected = f"a matrix without negative eigenvalues, as of any housing; the least one is {least:.4g}"
+            yield Finding(part, attribute, matrix, expected)
+    skew = component.gyroscopic
+    if np.abs(skew + skew.T).max(initial=0.0) > _ROUNDING * np.abs(skew).max(initial=0.0):
+        yield Finding(part, "gyroscopic", skew, "a skew matrix")
+
+
 def housing_component(
     modes: ModeSet,
     damping_ratios: FloatArray,
@@ -299,6 +350,7 @@ def housing_component(
     participation: FloatArray | None = None,
     seat_axes: Mapping[str, tuple[float, float]] | None = None,
     sensor_places: Mapping[str, SensorPlace] | None = None,
+    seat_reach: Mapping[str, float] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -309,7 +361,7 @@ def housing_component(
         Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
-    seats, seat_z, sensors, participation, seat_axes, sensor_places
+    seats, seat_z, sensors, participation, seat_axes, sensor_places, seat_reach
         See :class:`HousingComponent`; by :meth:`gearwhine.housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -348,6 +400,7 @@ def housing_component(
         seat_axes=seat_axes or {},
         sensor_places=sensor_places or {},
         complete_below=modes.certificate.limit,
+        seat_reach=seat_reach or {},
     )
 
 
@@ -360,6 +413,7 @@ def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingC
         seats=modes.seats,
         seat_z={seat: center[2] for seat, center in seats.items()},
         seat_axes={seat: center[:2] for seat, center in seats.items()},
+        seat_reach={seat.name: seat.reach for seat in modes.housing.seats if seat.reach is not None},
         sensors=modes.sensors,
         sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensor_ports.items()},
         damping_matrix=modes.damping_matrix,

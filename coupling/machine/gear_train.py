@@ -34,7 +34,17 @@ from gearwhine.coupling.machine.loads import (
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Number, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Part,
+    Rule,
+    Text,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""
@@ -115,8 +125,15 @@ class Output:
         """Keep own copies; check that torque and place are numbers."""
         keep_tuples(self, "ripple")
         place = Number(at_least=0.0, optional=True, unit="m")
-        rules: dict[str, Rule] = {"shaft": Text(), "torque": Number(optional=True, unit="N m"), "at": place}
-        refuse(attribute_findings(("output", str(self.shaft)), self, **rules), CouplingError)
+        rules: dict[str, Rule] = {
+            "shaft": Text(),
+            "torque": Number(optional=True, unit="N m"),
+            "at": place,
+            "over_time": Instance(TorqueOverTime, "a TorqueOverTime, or None", optional=True),
+        }
+        part = ("output", str(self.shaft))
+        findings = [*attribute_findings(part, self, **rules), *kind_findings(part, self, ripple=Ripple)]
+        refuse(findings, CouplingError)
 
 
 @dataclass(frozen=True)
@@ -618,12 +635,18 @@ def require_one_plane(label: str, places: Sequence[float], gears: Sequence[Gear]
 
     A pair of which half the narrower face or more misses the other is one by mistake.
     """
+    refuse(plane_findings((label, ""), places, gears), CouplingError)
+
+
+def plane_findings(part: Part, places: Sequence[float], gears: Sequence[Gear]) -> Iterator[Finding]:
+    """Yield gears that are not in one plane, as :func:`require_one_plane`."""
     shift, reach = abs(places[0] - places[1]), 0.5 * min(gear.face_width for gear in gears)
     if shift > reach + LARGEST_OFFSET:
-        raise CouplingError(
-            f"{label}: the gears are {1e3 * shift:.6g} mm apart along z; expected them in one plane, within half a "
-            f"face width, {1e3 * reach:.6g} mm"
+        expected = (
+            f"gears in one plane, within half a face width, {1e3 * reach:.6g} mm; they are {1e3 * shift:.6g} mm "
+            "apart along z"
         )
+        yield Finding(part, "driven", None, expected)
 
 
 _MISFIT = 1e-3  # largest misfit over the pitch that may come from rounding of the axes

@@ -11,13 +11,12 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry, ToothContact
 from gearwhine.coupling.gears.contact.face_slices import FaceSlices
 from gearwhine.coupling.gears.geometry.pair import pair_label
-from gearwhine.coupling.machine.bearing_laws import BearingLaw, RollingLaw
+from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.face_compliance import FaceCompliance
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
 from gearwhine.housing.own_copies import keep_arrays, keep_tuples
-from gearwhine.numerics.findings import Instance, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.rotors import Bearing
-from gearwhine.rotors.errors import require_finite
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
@@ -66,10 +65,13 @@ class MountedBearing:
         rules: dict[str, Rule] = {
             "rotor": Text(),
             "seat": Text(optional=True),
+            "law": Instance((RollingLaw, GapLaw), "a law of a bearing, or None", optional=True),
             "rolling": Instance(RollingBearing, "a rolling bearing, or None", optional=True),
+            "damping_time": Number(at_least=0.0, unit="s"),
         }
+        if self.offset is not None:
+            rules["offset"] = Numbers(5)
         refuse(attribute_findings(("bearing", self.bearing.name), self, **rules), CouplingError)
-        require_finite(f"damping time of bearing {self.bearing.name!r}", self.damping_time, minimum=0.0)
 
     @classmethod
     def from_elements(

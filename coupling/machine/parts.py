@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot, pi
+from math import pi
 from typing import Protocol
 
 from gearwhine.coupling.errors import CouplingError
@@ -11,12 +11,24 @@ from gearwhine.coupling.gears.geometry.blank import CoreLength, blank_around
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.beam import shear_modulus
+from gearwhine.coupling.machine.arrangement import SeatPlace, pedestal_finding, seat_findings
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, Output
+from gearwhine.coupling.machine.gear_train import Output
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Numbers,
+    Part,
+    Rule,
+    Text,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 from gearwhine.numerics.names import twin_of
 from gearwhine.rotors import Disc, Rotor, Segment
 from gearwhine.rotors import Unbalance as ShaftUnbalance
@@ -72,10 +84,26 @@ class Shaft:
             "start": Number(unit="m"),
             "damping_ratio": Number(at_least=0.0, below=1.0),
             "frequency_limit": Number(above=0.0, optional=True, unit="rad/s"),
-            "mode_count": Number(at_least=1, optional=True),
+            "mode_count": Number(at_least=1, optional=True, whole=True),
             "bow": Instance(Bow, "a bow, or None", optional=True),
         }
-        refuse(attribute_findings(("shaft", self.name), self, **rules), CouplingError)
+        part = ("shaft", self.name)
+        if not self.name:
+            refuse([Finding(part, "rotor", None, "a rotor with a name")], CouplingError)
+        kinds = kind_findings(part, self, unbalances=ShaftUnbalance)
+        refuse([*attribute_findings(part, self, **rules), *kinds], CouplingError)
+        refuse(self._station_findings(), CouplingError)
+
+    def _station_findings(self) -> Iterator[Finding]:
+        """Yield unbalances and points of a bow beyond the ends of the rotor, and a bow that bends nothing."""
+        part = ("shaft", self.name)
+        for number, unbalance in enumerate(self.unbalances):
+            yield from self.rotor.station_findings(part, f"unbalance.{number}.at", unbalance.at)
+        if self.bow is not None:
+            at = self.bow.at.tolist()
+            for number, place in enumerate(at):
+                yield from self.rotor.station_findings(part, f"bow.{number}.at", place)
+            yield from bow_findings(part, at, self.rotor.length)
 
     @property
     def name(self) -> str:
@@ -86,6 +114,23 @@ class Shaft:
     def mode_limit(self) -> float:
         """Limit of the retained modes [rad/s]: its own, or the default."""
         return 2.0 * pi * LATERAL_LIMIT_HZ if self.frequency_limit is None else self.frequency_limit
+
+
+NEAREST_POINTS = 1e-6
+"""Distance between two points of a bow below which they are one, as a part of the rotor's length."""
+
+
+def bow_findings(part: Part, at: Sequence[float], length: float) -> Iterator[Finding]:
+    """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already [m]."""
+    if len(at) == 1:
+        expected = (
+            "two points or more: the centre line through one is straight and bends no shaft; add the points that stay "
+            "on the axis, such as the bearings', with an amplitude of 0"
+        )
+        yield Finding(part, "bow", None, expected)
+    for place, point in enumerate(at):
+        if any(abs(point - other) <= NEAREST_POINTS * length for other in at[:place]):
+            yield Finding(part, f"bow.{place}.at", point, "a station of its own; another point of the bow is here")
 
 
 @dataclass(frozen=True)
@@ -119,7 +164,11 @@ class ShaftGear:
         """Keep own copies, and check place and inertia."""
         keep_tuples(self, "inertia")
         refuse(attribute_findings(("shaft gear", ""), self, gear=Instance(Gear, "a gear")), CouplingError)
-        rules: dict[str, Rule] = {"shaft": Text(), "at": Number(at_least=0.0, unit="m")}
+        rules: dict[str, Rule] = {
+            "shaft": Text(),
+            "at": Number(at_least=0.0, unit="m"),
+            "stiffens_shaft": Instance(bool, "true or false"),
+        }
         if self.inertia is not None:
             rules["inertia"] = Numbers(3, Number(at_least=0.0))
         findings = [*attribute_findings(("gear", self.name), self, **rules)]
@@ -301,84 +350,80 @@ def inertia_with_discs(gear: ShaftGear, rotor: Rotor, gears: Sequence[ShaftGear]
     return inertia if inertia > 0.0 else gear.gear.polar_inertia
 
 
-def require_names(machine: MachineParts) -> None:
-    """Refuse names given twice, unknown names, and gears that are a pair twice or with themselves."""
+def name_findings(machine: MachineParts) -> Iterator[Finding]:
+    """Yield names given twice, unknown names, and gears that are a pair twice or on one shaft."""
     kinds: Mapping[str, Sequence[str]] = {
         "shaft": [shaft.name for shaft in machine.shafts],
         "gear": [gear.name for gear in machine.gears],
         "bearing": [mounted.bearing.name for mounted in machine.bearings],
     }
+    whole: Part = ("machine", "")
     for kind, names in kinds.items():
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise CouplingError(f"{kind} {twice[0]!r} is given {names.count(twice[0])} times; expected each name once")
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield Finding((kind, name), "name", name, f"each name once; it is given {names.count(name)} times")
         for name in names:
             twin = twin_of(name, names)
             if twin is not None:
-                expected = "names that look different: their characters are others, such as Cyrillic letters"
-                raise CouplingError(f"{kind} {name!r} looks like {kind} {twin!r}; expected {expected}")
+                expected = f"a name that does not look like {twin!r}: both are written with other characters"
+                yield Finding((kind, name), "name", name, expected)
     if not machine.shafts:
-        raise CouplingError("a machine without shafts; expected at least one")
-    needed = [(f"bearing {bearing.bearing.name!r}", "shaft", bearing.rotor) for bearing in machine.bearings]
-    needed += [(f"gear {gear.name!r}", "shaft", gear.shaft) for gear in machine.gears]
-    needed += [(pair.label, "gear", name) for pair in machine.gear_pairs for name in (pair.driver, pair.driven)]
-    needed += [("an output", "shaft", output.shaft) for output in machine.outputs]
-    needed += [("a force", "shaft", force.rotor) for force in machine.forces]
-    for where, kind, name in needed:
-        if name not in kinds[kind]:
-            named = ", ".join(map(repr, kinds[kind])) or "none"
-            raise CouplingError(f"{where}: no {kind} {name!r}; expected one of {named}")
-    gear_shafts = {gear.name: gear.shaft for gear in machine.gears}
-    for number, pair in enumerate(machine.gear_pairs):
-        if any(
-            {pair.driver, pair.driven} == {earlier.driver, earlier.driven} for earlier in machine.gear_pairs[:number]
-        ):
-            raise CouplingError(f"{pair.label} is given twice; expected gears that are not yet a pair")
-        if gear_shafts[pair.driver] == gear_shafts[pair.driven]:
-            raise CouplingError(
-                f"{pair.label}: both gears are on shaft {gear_shafts[pair.driver]!r}; expected the driven one on "
-                "another"
-            )
-
-
-def require_stations(machine: MachineParts) -> None:
-    """Refuse gears, bearings, torques and forces beyond the ends of their shafts."""
-    shafts = {shaft.name: shaft for shaft in machine.shafts}
-    stations = [(f"gear {gear.name!r}", gear.shaft, gear.at) for gear in machine.gears]
-    stations += [
-        (f"bearing {bearing.bearing.name!r}", bearing.rotor, bearing.bearing.at) for bearing in machine.bearings
+        yield Finding(whole, "shafts", (), "at least one shaft")
+    pairs: list[tuple[Part, GearPair]] = [
+        (("gear pair", f"{pair.driver} -> {pair.driven}"), pair) for pair in machine.gear_pairs
     ]
-    stations += [("an output", output.shaft, output.at) for output in machine.outputs if output.at is not None]
-    stations += [("a force", force.rotor, force.at) for force in machine.forces]
+    needed: list[tuple[Part, str, str, str]] = [
+        (("bearing", mounted.bearing.name), "rotor", "shaft", mounted.rotor) for mounted in machine.bearings
+    ]
+    needed += [(("gear", gear.name), "shaft", "shaft", gear.shaft) for gear in machine.gears]
+    needed += [(part, "driver", "gear", pair.driver) for part, pair in pairs]
+    needed += [(part, "driven", "gear", pair.driven) for part, pair in pairs]
+    needed += [(whole, f"outputs.{n}.shaft", "shaft", output.shaft) for n, output in enumerate(machine.outputs)]
+    needed += [(whole, f"forces.{n}.rotor", "shaft", force.rotor) for n, force in enumerate(machine.forces)]
+    for part, attribute, kind, name in needed:
+        if name not in kinds[kind]:
+            named = ", ".join(map(repr, kinds[kind])) or "there is none"
+            yield Finding(part, attribute, name, f"the name of a {kind} of this machine ({named})")
+    shafts = {gear.name: gear.shaft for gear in machine.gears}
+    for number, (part, pair) in enumerate(pairs):
+        if any({pair.driver, pair.driven} == {other.driver, other.driven} for _, other in pairs[:number]):
+            yield Finding(part, "", None, "gears that are not yet a pair; it is given twice")
+        if shafts.get(pair.driver, pair.driver) == shafts.get(pair.driven, pair.driven):
+            yield Finding(part, "driven", pair.driven, f'a gear on another rotor than "{shafts.get(pair.driver)}"')
+
+
+def station_findings(machine: MachineParts) -> Iterator[Finding]:
+    """Yield gears, bearings, torques and forces beyond the ends of their shafts."""
+    rotors = {shaft.name: shaft.rotor for shaft in machine.shafts}
+    stations: list[tuple[Part, str, str, float]] = []
+    for gear in machine.gears:
+        stations.append((("gear", gear.name), "at", gear.shaft, gear.at))
+    for mounted in machine.bearings:
+        stations.append((("bearing", mounted.bearing.name), "at", mounted.rotor, mounted.bearing.at))
+    for place, output in enumerate(machine.outputs):
+        if output.at is not None:
+            stations.append((("machine", ""), f"outputs.{place}.at", output.shaft, output.at))
+    for place, force in enumerate(machine.forces):
+        stations.append((("machine", ""), f"forces.{place}.at", force.rotor, force.at))
     if machine.gear_pairs:
         first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
-        stations.append(("the input torque", first, machine.torque_at))
-    for part, shaft, at in stations:
-        shafts[shaft].rotor.require_on_shaft(part, at)
+        stations.append((("machine", ""), "torque_at", first, machine.torque_at))
+    for part, attribute, shaft, at in stations:
+        yield from rotors[shaft].station_findings(part, attribute, at)
 
 
-def require_seats(machine: MachineParts, housing: HousingComponent | None) -> None:
-    """Refuse bearings in seats that the housing does not have or that are off their shaft, and pedestals in seats."""
+def bearing_findings(machine: MachineParts, housing: HousingComponent | None) -> Iterator[Finding]:
+    """Yield bearings in seats that the housing does not have or that they miss, and pedestals in seats."""
     seats = () if housing is None else tuple(housing.seats)
-    axes = {shaft.name: shaft.axis for shaft in machine.shafts}
+    shafts = {shaft.name: shaft for shaft in machine.shafts}
     for mounted in machine.bearings:
-        if mounted.seat is not None and mounted.bearing.pedestal is not None:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: expected no pedestal under a bearing in seat {mounted.seat!r}, "
-                "which moves with the housing"
-            )
-        if mounted.seat is not None and mounted.seat not in seats:
-            names = ", ".join(map(repr, seats)) or "none"
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: no seat {mounted.seat!r} in the housing; expected one of {names}, "
-                "or None for the ground"
-            )
-        if mounted.seat is None or housing is None or mounted.seat not in housing.seat_axes:
+        part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
+        if seat is None:
             continue
-        centre, axis = housing.seat_axes[mounted.seat], axes[mounted.rotor]
-        offset = hypot(axis[0] - centre[0], axis[1] - centre[1])
-        if offset > LARGEST_OFFSET:
-            raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: seat {mounted.seat!r} is {1e3 * offset:.6g} mm off the axis of "
-                f"shaft {mounted.rotor!r}; expected a seat on it"
-            )
+        if mounted.bearing.pedestal is not None:
+            yield pedestal_finding(part, seat, None)
+        if housing is None or seat not in seats:
+            names = ", ".join(map(repr, seats)) or "none"
+            yield Finding(part, "seat", seat, f"a seat of the housing, one of {names}, or None for the ground")
+        elif seat in housing.seat_axes:
+            place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
+            yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)

@@ -27,7 +27,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError, TransientError
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Number, attribute_findings, refuse, table_findings
+from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse, table_findings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -132,7 +132,8 @@ class SpeedRun:
         speeds = Number(at_least=0.0, unit="rad/s")
         refuse(table_findings(("run", ""), self, "times", "speeds", least=2, values_are=speeds), CouplingError)
         if self.times[0] != 0.0 or not any(self.speeds):
-            raise CouplingError(f"a run from {self.times[0]:g} s on; expected times from 0 s on, and speeds above 0")
+            expected = "times from 0 s on, and speeds above 0"
+            refuse([Finding(("run", ""), "times", self.times, expected)], CouplingError)
 
     @property
     def duration(self) -> float:
@@ -179,7 +180,11 @@ class TorqueLine:
     def __post_init__(self) -> None:
         """Keep own copies; require a torque for each speed, and speeds that ascend."""
         keep_tuples(self, "speeds", "torques")
-        refuse(table_findings(("torque over speed", ""), self, "speeds", "torques", least=2), CouplingError)
+        part = ("torque over speed", "")
+        findings = [*table_findings(part, self, "speeds", "torques", least=2)]
+        if not findings and self.speeds[0] < 0.0:
+            findings.append(Finding(part, "speeds", self.speeds, "speeds of at least 0 rad/s, without their sense"))
+        refuse(findings, CouplingError)
 
     def at(self, speed: float) -> float:
         """Torque at a speed [N m]."""

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
+from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 Method = Literal["newmark", "exact", "auto"]
@@ -46,14 +47,16 @@ class TransientSettings:
 
     def __post_init__(self) -> None:
         """Require a recorded part of the duration, positive step sizes and tolerance, and a known method."""
-        if not 0.0 <= self.record_from < self.duration < np.inf:
-            raise CouplingError(f"recording from {self.record_from} s of {self.duration} s; expected a part of it")
-        for attribute in ("sample_interval", "largest_step", "tolerance", "beta"):
-            value = getattr(self, attribute)
-            if not 0.0 < value < np.inf:
-                raise CouplingError(f"{attribute} of {value}; expected a positive number")
+        part = ("time integration", "")
+        rules = dict.fromkeys(
+            ("duration", "sample_interval", "largest_step", "tolerance", "beta", "gamma"), Number(above=0.0)
+        )
+        findings = [*attribute_findings(part, self, **rules, record_from=Number(at_least=0.0, unit="s"))]
+        if not findings and self.record_from >= self.duration:
+            findings.append(Finding(part, "record_from", self.record_from, f"a part of the {self.duration:g} s"))
         if self.method not in get_args(Method):
-            raise CouplingError(f"a method {self.method!r}; expected one of {', '.join(get_args(Method))}")
+            findings.append(Finding(part, "method", self.method, f"one of {', '.join(get_args(Method))}"))
+        refuse(findings, CouplingError)
 
     @property
     def samples(self) -> int:

@@ -20,7 +20,7 @@ from gearwhine.housing.fem.nearest_point import SurfacePoint, surface_point
 from gearwhine.housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
-from gearwhine.numerics.findings import Finding, refuse
+from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -142,8 +142,15 @@ class LumpedMass:
     def __post_init__(self) -> None:
         """Check mass, place and inertia; a tensor that no real body has is refused."""
         keep_tuples(self, "position", "inertia", "offset")
-        if not 0.0 < self.mass < np.inf:
-            raise HousingError(f"mass {self.name!r} of {self.mass} kg: expected a positive one")
+        rules: dict[str, Rule] = {
+            "name": Text(),
+            "mass": Number(above=0.0, unit="kg"),
+            "patch": Instance(Patch, "a patch, or None", optional=True),
+            "offset": Numbers(3),
+        }
+        if self.position is not None:
+            rules["position"] = Numbers(3)
+        refuse(attribute_findings(("mass", str(self.name)), self, **rules), HousingError)
         if not np.linalg.norm(self.offset) <= _FARTHEST_OFFSET:
             finding = Finding(
                 ("mass", self.name), "offset", self.offset, f"an offset of at most {_FARTHEST_OFFSET:g} m"

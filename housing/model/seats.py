@@ -5,6 +5,7 @@ as the point it is glued to (:mod:`gearwhine.housing.model.patches`). Both are l
 ``motion = P u``, and a load on the port acts on the nodes by the transpose, so the work done is the same on both sides.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from gearwhine.housing.fem.nearest_point import surface_point
 from gearwhine.housing.model.patches import patch_matrix, point_matrix
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
+from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,15 +34,30 @@ class Seat:
         The point whose translations x, y, z come first, followed by the rotations about x, y, z [m].
     diameter : float, optional
         Diameter of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
+    depth : float
+        Length of the bore with its boss [m], where it is known: a bearing may be off the centre by as much.
     """
 
     name: str
     center: tuple[float, float, float]
     diameter: float | None = None
+    depth: float = 0.0
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies; check name, centre and sizes."""
         keep_tuples(self, "center")
+        rules: dict[str, Rule] = {
+            "name": Text(),
+            "center": Numbers(3),
+            "diameter": Number(above=0.0, optional=True, unit="m"),
+            "depth": Number(at_least=0.0, unit="m"),
+        }
+        refuse(attribute_findings(("seat", str(self.name)), self, **rules), HousingError)
+
+    @property
+    def reach(self) -> float | None:
+        """Distance along z from the centre within which a bearing sits in it [m]; None without a diameter."""
+        return None if self.diameter is None else 0.5 * self.diameter + self.depth
 
 
 @dataclass(frozen=True)
@@ -61,8 +78,16 @@ class Sensor:
     direction: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        """Keep own copies."""
+        """Keep own copies; check name, place and direction."""
         keep_tuples(self, "position", "direction")
+        part = ("sensor", str(self.name))
+        rules: dict[str, Rule] = {"name": Text(), "position": Numbers(3)}
+        if self.direction is not None:
+            rules["direction"] = Numbers(3)
+        findings = list(attribute_findings(part, self, **rules))
+        if not findings and self.direction is not None and not any(self.direction):
+            findings.append(Finding(part, "direction", self.direction, "a vector that has a length"))
+        refuse(findings, HousingError)
 
 
 @dataclass(frozen=True)
@@ -104,21 +129,30 @@ def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
     return patch_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), name=f"seat {seat.name!r}")
 
 
-def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:
-    """Put a sensor on the surface of the mesh.
+_FARTHEST = 0.1
+"""Distance of a sensor from the surface, as a part of the mesh's diagonal, beyond which it is on no housing."""
 
-    Raises
-    ------
-    HousingError
-        Where its direction has no length.
-    """
+
+def sensor_findings(mesh: Mesh, sensor: Sensor) -> Iterator[Finding]:
+    """Yield a place that is far from the surface of a mesh."""
+    place = np.array(sensor.position, dtype=np.float64)
+    low, high = mesh.bounds
+    limit = _FARTHEST * float(np.linalg.norm(high - low))
+    # The nearest node is quickly found, and no nearer than the surface.
+    if np.linalg.norm(mesh.points - place, axis=1).min() <= limit:
+        return
+    distance = float(np.linalg.norm(surface_point(mesh, mesh.boundary, place).position - place))
+    if distance > limit:
+        expected = f"a point on the surface of the housing; this one is {1e3 * distance:.6g} mm from it"
+        yield Finding(("sensor", sensor.name), "position", sensor.position, expected)
+
+
+def sensor_port(mesh: Mesh, sensor: Sensor) -> SensorPort:
+    """Put a sensor on the surface of the mesh."""
     place = np.array(sensor.position)
     point = surface_point(mesh, mesh.boundary, place)
     direction = point.normal if sensor.direction is None else np.array(sensor.direction, dtype=np.float64)
-    length = float(np.linalg.norm(direction))
-    if length == 0.0:
-        raise HousingError(f"sensor {sensor.name!r}: its direction has no length")
-    direction = direction / length
+    direction = direction / np.linalg.norm(direction)
     return SensorPort(
         name=sensor.name,
         matrix=sparse.csr_array(sparse.csr_array(direction[None, :]) @ point_matrix(mesh, point)),

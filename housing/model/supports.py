@@ -17,7 +17,7 @@ from gearwhine.housing.model.patches import Patch, rigid_motions, spread
 from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_nodes
-from gearwhine.numerics.findings import Flags, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.findings import Flags, Number, Numbers, Rule, Text, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -53,16 +53,14 @@ class Support:
 
     def __post_init__(self) -> None:
         """Check that the support is given in exactly one way and holds something, and its amounts."""
-        rules: dict[str, Rule] = {"name": Text(), "fixed": Flags(3), "stiffness": Numbers(3), "damping": Numbers(3)}
+        amounts = Numbers(3, Number(at_least=0.0))
+        rules: dict[str, Rule] = {"name": Text(), "fixed": Flags(3), "stiffness": amounts, "damping": amounts}
         refuse(attribute_findings(("support", str(self.name)), self, **rules), HousingError)
         keep_tuples(self, "box", "fixed", "stiffness", "damping", "plane")
         if sum(place is not None for place in (self.surface, self.box, self.plane)) != 1:
             raise HousingError(f"support {self.name!r} needs a surface, a box or a plane, one of the three")
         if not (any(self.fixed) or any(self.stiffness) or any(self.damping)):
             raise HousingError(f"support {self.name!r} holds nothing: fix a component or give it stiffness or damping")
-        for label, unit, amounts in (("stiffness", "N/m", self.stiffness), ("damping", "N s/m", self.damping)):
-            if not all(0.0 <= amount < np.inf for amount in amounts):
-                raise HousingError(f"support {self.name!r}: {label} {amounts} {unit} must be finite and not negative")
 
     def facets(self, mesh: Mesh) -> Facets:
         """Return the facets of the patch."""

@@ -124,6 +124,10 @@ class BoxGeometry:
             )
         return wall
 
+    def bore_depth(self, bore: Bore) -> float:
+        """Return the length of a bore through its wall and its boss [m]."""
+        return self.wall.of(self.end_wall(bore)) + (bore.boss.length if bore.boss is not None else 0.0)
+
     def bore_span(self, bore: Bore) -> tuple[float, float]:
         """Return the ends of the bore's surface along z, boss included [m]."""
         half = self.size[2] / 2

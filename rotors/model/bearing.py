@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from gearwhine.numerics.findings import Finding, Instance, Number, Part, Text, attribute_findings, refuse
 from gearwhine.rotors.errors import RotorError, require, require_finite
 
 FloatArray = npt.NDArray[np.float64]
@@ -81,13 +82,16 @@ class Pedestal:
 
     def __post_init__(self) -> None:
         """Check the mass, and that 2×2 stiffness holds the pedestal in x and y; freeze the matrices."""
-        require_finite("pedestal mass", self.mass, minimum=0.0)
+        refuse(attribute_findings(("pedestal", ""), self, mass=Number(at_least=0.0, unit="kg")), RotorError)
         for attribute in ("stiffness", "damping"):
-            matrix = _frozen(f"pedestal {attribute}", getattr(self, attribute))
+            matrix = _frozen(("pedestal", ""), attribute, getattr(self, attribute))
             require(
                 matrix.shape == (2, 2), f"pedestal {attribute} shape", matrix.shape, "(2, 2), rows and columns x, y"
             )
             object.__setattr__(self, attribute, matrix)
+        if self.stiffness.diagonal().min() <= 0.0:
+            expected = "a matrix whose direct stiffnesses along x and y are above 0 N/m"
+            refuse([Finding(("pedestal", ""), "stiffness", self.stiffness.tolist(), expected)], RotorError)
         is_held = bool(np.linalg.det(self.stiffness) != 0.0)
         require(is_held, "pedestal stiffness", self.stiffness.tolist(), "a matrix that holds it in x and y")
 
@@ -128,20 +132,25 @@ class Bearing:
 
     def __post_init__(self) -> None:
         """Check position, speeds and shapes of the tables; freeze the arrays."""
-        label = f"bearing {self.name!r}"
-        require_finite(f"{label} position", self.at, minimum=0.0)
+        part, label = ("bearing", str(self.name)), f"bearing {self.name!r}"
+        pedestal = Instance(Pedestal, "a pedestal, or None", optional=True)
+        at = Number(at_least=0.0, unit="m")
+        refuse(attribute_findings(part, self, name=Text(), at=at, pedestal=pedestal), RotorError)
         if self.speeds is not None:
-            speeds = _frozen(f"{label} speeds", self.speeds)
+            speeds = _frozen(part, "speeds", self.speeds)
             fits = speeds.ndim == 1 and speeds.size >= 2 and bool((np.diff(speeds) > 0.0).all())
             require(fits, f"{label} speeds", speeds.tolist(), "two or more speeds in rad/s, ascending")
             object.__setattr__(self, "speeds", speeds)
         for attribute in ("stiffness", "damping"):
-            matrix = _frozen(f"{label} {attribute}", getattr(self, attribute))
+            matrix = _frozen(part, attribute, getattr(self, attribute))
             shapes: list[tuple[int, ...]] = [(2, 2), (5, 5)]
             if self.speeds is not None:
                 shapes += [(self.speeds.size, 2, 2), (self.speeds.size, 5, 5)]
             require(matrix.shape in shapes, f"{label} {attribute} shape", matrix.shape, f"one of {shapes}")
             object.__setattr__(self, attribute, matrix)
+        if (self.damping[..., (0, 1), (0, 1)] < 0.0).any():
+            expected = "a damping of at least 0 N s/m along x and along y: a negative one feeds energy in"
+            refuse([Finding(part, "damping", self.damping.tolist(), expected)], RotorError)
         tabled = self.stiffness.ndim == 3 or self.damping.ndim == 3
         require(
             tabled or self.speeds is None, f"{label} speeds", self.speeds, "a table of stiffness or damping with them"
@@ -274,10 +283,14 @@ def undamped(bearing: Bearing) -> Bearing:
     return replace(bearing, damping=np.zeros_like(bearing.damping), pedestal=pedestal)
 
 
-def _frozen(label: str, value: npt.ArrayLike) -> FloatArray:
+def _frozen(part: Part, attribute: str, value: npt.ArrayLike) -> FloatArray:
     """Return a read-only copy of an array, after a check that it is finite."""
-    array = np.array(value, dtype=np.float64)
-    require(bool(np.isfinite(array).all()), label, array.tolist(), "finite numbers")
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.array(np.nan)
+    if not np.isfinite(array).all():
+        refuse([Finding(part, attribute, value, "finite numbers")], RotorError)
     array.setflags(write=False)
     return array
 

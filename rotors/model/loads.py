@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.errors import require, require_finite
+from gearwhine.numerics.findings import Number, attribute_findings, refuse
+from gearwhine.rotors.errors import RotorError, require, require_finite
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,9 +31,9 @@ class Unbalance:
 
     def __post_init__(self) -> None:
         """Check that position, moment and phase are finite."""
-        require_finite("unbalance position", self.at, minimum=0.0)
-        require_finite("unbalance moment", self.moment)
-        require_finite("unbalance phase", self.phase)
+        at, moment = Number(at_least=0.0, unit="m"), Number(unit="kg·m")
+        rules = {"at": at, "moment": moment, "phase": Number(unit="rad")}
+        refuse(attribute_findings(("unbalance", ""), self, **rules), RotorError)
 
     @property
     def vector(self) -> complex:

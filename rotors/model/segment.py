@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.errors import require, require_finite
+from gearwhine.numerics.findings import Finding, Number, Rule, attribute_findings, refuse
+from gearwhine.rotors.errors import RotorError
 from gearwhine.rotors.model.material import ElasticMaterial, Section, ShearFormula
 
 FloatArray = npt.NDArray[np.float64]
@@ -74,11 +75,12 @@ class Coupling:
 
     def __post_init__(self) -> None:
         """Check that length and stiffness are positive, inertia and damping not negative and the force finite."""
-        for attribute in ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"):
-            require_finite(f"coupling {attribute}", getattr(self, attribute), positive=True)
-        for attribute in ("mass", "polar_inertia", "diametral_inertia", *DAMPINGS):
-            require_finite(f"coupling {attribute}", getattr(self, attribute), minimum=0.0)
-        require_finite("coupling axial_force", self.axial_force)
+        positive, not_negative = Number(above=0.0), Number(at_least=0.0)
+        rules: dict[str, Rule] = dict.fromkeys(
+            ("length", "lateral_stiffness", "tilt_stiffness", "torsional_stiffness", "axial_stiffness"), positive
+        )
+        rules |= dict.fromkeys(("mass", "polar_inertia", "diametral_inertia", *DAMPINGS), not_negative)
+        refuse(attribute_findings(("coupling", ""), self, **rules, axial_force=Number()), RotorError)
 
     @property
     def clamped_buckling_load(self) -> float:
@@ -140,17 +142,31 @@ class Segment:
 
     def __post_init__(self) -> None:
         """Check the length, the axial force, the diameters at both ends and the shear coefficient."""
-        require_finite("segment length", self.length, positive=True)
-        require_finite("segment axial_force", self.axial_force)
-        for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True):
-            require_finite(f"segment {side}outer_diameter", outer, positive=True)
-            require_finite(f"segment {side}inner_diameter", inner, minimum=0.0)
-            expected = f"less than the outer diameter {outer:g} m"
-            require(inner < outer, f"segment {side}inner_diameter", inner, expected)
+        part = ("segment", "")
+        rules: dict[str, Rule] = {
+            "length": Number(above=0.0, unit="m"),
+            "outer_diameter": Number(above=0.0, unit="m"),
+            "inner_diameter": Number(at_least=0.0, unit="m"),
+            "right_outer_diameter": Number(above=0.0, optional=True, unit="m"),
+            "right_inner_diameter": Number(at_least=0.0, optional=True, unit="m"),
+            "axial_force": Number(unit="N"),
+        }
+        if not isinstance(self.shear_coefficient, str):
+            rules["shear_coefficient"] = Number(above=0.0)
+        findings = list(attribute_findings(part, self, **rules))
+        if not hasattr(self.material, "shear_modulus"):
+            findings.append(Finding(part, "material", self.material, "a material"))
+        refuse(findings, RotorError)
+        refuse(
+            (
+                Finding(part, f"{side}inner_diameter", inner, f"less than the outer diameter {outer:g} m")
+                for side, (outer, inner) in zip(("", "right_"), self.end_diameters, strict=True)
+                if inner >= outer
+            ),
+            RotorError,
+        )
         if isinstance(self.shear_coefficient, str):
             _ = self.section(0.0).shear_factor  # raises where the material does not suit the formula
-        else:
-            require_finite("shear coefficient", self.shear_coefficient, positive=True)
 
     @property
     def end_diameters(self) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -9,7 +9,16 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.numerics.findings import Finding, Severity, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Part,
+    Severity,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.model.material import ShaftMaterial
 from gearwhine.rotors.model.profile import (
@@ -58,10 +67,8 @@ class Disc:
 
     def __post_init__(self) -> None:
         """Check that position, mass and inertias are finite and not negative, and that a body can have them."""
-        require_finite("disc position", self.at, minimum=0.0)
-        require_finite("disc mass", self.mass, minimum=0.0)
-        require_finite("disc polar_inertia", self.polar_inertia, minimum=0.0)
-        require_finite("disc diametral_inertia", self.diametral_inertia, minimum=0.0)
+        rules = dict.fromkeys(("at", "mass", "polar_inertia", "diametral_inertia"), Number(at_least=0.0))
+        refuse(attribute_findings(("disc", ""), self, **rules), RotorError)
         refuse(self.findings, RotorError)
 
     @property
@@ -79,6 +86,13 @@ class Disc:
         """Disc of a round ring of the given width and diameters [m] and density [kg/m³]."""
         ring = Segment(width, outer_diameter, inner_diameter, ShaftMaterial(1.0, 0.5, density))
         return cls(at, ring.mass, ring.polar_inertia, ring.diametral_inertia, (width, outer_diameter, inner_diameter))
+
+
+def station_findings(part: Part, attribute: str, at: float, rotor: str, length: float) -> Iterator[Finding]:
+    """Yield a finding where a place is not on a rotor of some length [m]."""
+    slack = STATION_TOLERANCE * length
+    if not -slack <= at <= length + slack:
+        yield Finding(part, attribute, at, f'a station on rotor "{rotor}", which is {1e3 * length:.6g} mm long')
 
 
 _PRINTED = 1.02  # rounding of printed inertias
@@ -135,17 +149,27 @@ class Rotor:
         object.__setattr__(self, "segments", tuple(self.segments))
         object.__setattr__(self, "discs", tuple(self.discs))
         object.__setattr__(self, "stiffness_diameters", tuple(self.stiffness_diameters))
-        where = f"rotor {self.name!r}"
-        if not self.segments:
-            raise RotorError(f"{where} has no segments; expected at least one")
-        is_known = self.mass_model in ("distributed", "lumped")
-        require(is_known, f"{where} mass_model", self.mass_model, "'distributed' or 'lumped'")
-        for disc in self.discs:
-            self.require_on_shaft(f"{where} disc", disc.at)
+        part = ("rotor", str(self.name))
+        refuse([*attribute_findings(part, self, name=Instance(str, "a name")), *self._kind_findings(part)], RotorError)
+        places = {f"discs.{number}.at": disc.at for number, disc in enumerate(self.discs)}
+        refuse((finding for key, at in places.items() for finding in self.station_findings(part, key, at)), RotorError)
         for stiffness in self.stiffness_diameters:
             for end in (stiffness.left, stiffness.right):
-                self.require_on_shaft(f"{where} stiffness diameter", end)
-        require(self.mass > 0.0, f"{where} mass", self.mass, "a positive mass, of segments or of discs")
+                self.require_on_shaft(f"rotor {self.name!r} stiffness diameter", end)
+        if self.mass <= 0.0:
+            refuse([Finding(part, "mass", self.mass, "a positive mass, of segments or of discs")], RotorError)
+
+    def _kind_findings(self, part: Part) -> Iterator[Finding]:
+        """Yield segments and discs of another kind, and an unknown mass model."""
+        if not self.segments:
+            yield Finding(part, "segments", (), "at least one segment")
+        yield from kind_findings(part, self, segments=(Segment, Coupling), discs=Disc)
+        if self.mass_model not in ("distributed", "lumped"):
+            yield Finding(part, "mass_model", self.mass_model, "'distributed' or 'lumped'")
+
+    def station_findings(self, part: Part, attribute: str, at: float) -> Iterator[Finding]:
+        """Yield a finding of a part whose place on this shaft [m] is beyond its ends."""
+        yield from station_findings(part, attribute, at, self.name, self.length)
 
     def require_on_shaft(self, label: str, at: float) -> None:
         """Raise `RotorError` unless ``at`` (m from the left end) is a finite place on the shaft."""

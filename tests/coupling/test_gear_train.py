@@ -66,7 +66,7 @@ def built(shaft: tuple[ModalRotor, list[Bearing]], **changes: Any) -> CoupledMac
         ({"speeds": (0.0, -500.0)}, "turns at -500 rad/s; expected"),
         ({"axis": (0.2, 0.0)}, "are 200 mm apart; expected the gears' centre distance, 88.9 mm"),
         ({"axis": (0.0889, 0.001)}, "apart; expected the gears' centre distance, 88.9 mm"),
-        ({"start": 0.004}, "the gears are 4 mm apart along z; expected them in one plane, within half a face width"),
+        ({"start": 0.004}, "in one plane, within half a face width, 3.175 mm; they are 4 mm apart along z"),
         ({"rotor": "first"}, "both gears are on rotor 'first'"),
     ],
 )

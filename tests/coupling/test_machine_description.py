@@ -118,8 +118,16 @@ PAIRS = [GearPair("a", "b", ConstantStiffness(2e8)), GearPair("c", "d", Constant
 CHANGES: list[tuple[str, dict[str, Any], str]] = [
     ("axes", {"shafts": [shaft("fast", 0.0), shaft("middle", 0.2), shaft("slow", 0.2825)]}, "lose contact|too far|200"),
     ("idle shaft", {"gear_pairs": [GearPair("a", "b")]}, "no gear pair leads from shaft 'fast'.*'slow'"),
-    ("one shaft", {"gear_pairs": [GearPair("a", "b"), GearPair("b", "c")]}, "both gears are on shaft 'middle'"),
-    ("unknown gear", {"gear_pairs": [GearPair("a", "x")]}, "no gear 'x'; expected one of 'a', 'b', 'c', 'd'"),
+    (
+        "one shaft",
+        {"gear_pairs": [GearPair("a", "b"), GearPair("b", "c")]},
+        'expected a gear on another rotor than "middle"',
+    ),
+    (
+        "unknown gear",
+        {"gear_pairs": [GearPair("a", "x")]},
+        "driven is 'x'; expected the name of a gear of this machine .'a', 'b', 'c', 'd'",
+    ),
     ("output", {"outputs": [Output("slow", 10.0)]}, "expected outputs that balance the input torque of 40 N m"),
     (
         "no input",
@@ -127,29 +135,37 @@ CHANGES: list[tuple[str, dict[str, Any], str]] = [
         "an input torque of 0; expected the torque that drives them",
     ),
     ("some torques", {"outputs": [Output("slow", 96.0), Output("middle")]}, "expected all or none"),
-    ("nowhere", {"outputs": [Output("x", 96.0)]}, "an output: no shaft 'x'"),
-    ("no shafts", {"shafts": []}, "a machine without shafts"),
+    ("nowhere", {"outputs": [Output("x", 96.0)]}, "outputs.0.shaft is 'x'; expected the name of a shaft"),
+    ("no shafts", {"shafts": []}, "expected at least one shaft"),
     (
         "pair twice",
         {"gear_pairs": [*PAIRS, GearPair("d", "c")]},
-        "is given twice; expected gears that are not yet",
+        "expected gears that are not yet a pair; it is given twice",
     ),
-    ("output at input", {"outputs": [Output("fast", 40.0)]}, "a shaft other than 'fast', where the torque comes in"),
+    ("output at input", {"outputs": [Output("fast", 40.0)]}, 'a rotor other than "fast", where the torque comes in'),
     (
         "names swapped",
         {"gear_pairs": [PAIRS[0], GearPair("d", "c")], "outputs": [Output("slow", 96.0)]},
         "expected power to flow from driver to driven; swap the two names",
     ),
-    ("brake", {"torque": -40.0}, "'a' -> 'b': expected a backlash: the torque is negative"),
+    ("brake", {"torque": -40.0}, "'a -> b': backlash is 'None'; expected a backlash: the torque is negative"),
     ("nothing takes it", {"gears": [], "gear_pairs": []}, "a torque of 40 N m that nothing takes"),
     (
         "no path",
         {"gears": [], "gear_pairs": [], "outputs": [Output("fast", 30.0), Output("slow", 10.0)]},
         "'fast' takes in 40 N m and gives out 30 N m; expected torques that balance on shaft 'fast'",
     ),
-    ("gear off the end", {"gears": [ShaftGear(gear("a", 20), "fast", 0.3)], "gear_pairs": []}, "gear 'a' position"),
-    ("output off the end", {"outputs": [Output("slow", 96.0, 0.3)]}, "an output position"),
-    ("input off the end", {"torque_at": -0.01}, "the input torque position"),
+    (
+        "gear off the end",
+        {"gears": [ShaftGear(gear("a", 20), "fast", 0.3)], "gear_pairs": []},
+        "gear 'a': at is 0.3; expected a station on rotor",
+    ),
+    (
+        "output off the end",
+        {"outputs": [Output("slow", 96.0, 0.3)]},
+        "outputs.0.at is 0.3; expected a station on rotor",
+    ),
+    ("input off the end", {"torque_at": -0.01}, "torque_at is -0.01; expected a station on rotor"),
 ]
 
 
@@ -183,7 +199,10 @@ def test_senses_and_ratios_cannot_be_given_wrong() -> None:
 def test_a_bearing_needs_a_seat_on_its_shaft_and_no_pedestal_in_it() -> None:
     modes, seat = np.zeros((0, 6)), {"front": np.zeros((0, 6))}
     none = np.zeros((0, 0))
-    for centre, words in (((0.0, 0.0), None), ((0.001, 0.0), "seat 'front' is 1 mm off the axis of shaft 'fast'")):
+    for centre, words in (
+        ((0.0, 0.0), None),
+        ((0.001, 0.0), 'a seat on the axis of rotor "fast"; the seat\'s centre is 1 mm off it'),
+    ):
         housing = HousingComponent(
             "housing", (), none, none, none, seats=seat, seat_z={"front": 0.0}, sensors={}, participation=modes,
             seat_axes={"front": centre},
@@ -194,7 +213,7 @@ def test_a_bearing_needs_a_seat_on_its_shaft_and_no_pedestal_in_it() -> None:
             two_stages(bearings=seated, housing=housing)
             foot = Pedestal(1e8 * np.eye(2), np.zeros((2, 2)), 2.0)
             standing = replace(seated[0], bearing=replace(seated[0].bearing, pedestal=foot))
-            with pytest.raises(CouplingError, match="expected no pedestal under a bearing in seat 'front'"):
+            with pytest.raises(CouplingError, match='expected no pedestal under a bearing in seat "front"'):
                 two_stages(bearings=[standing, *seated[1:]], housing=housing)
             continue
         with pytest.raises(CouplingError, match=words):
@@ -206,14 +225,14 @@ def test_gears_that_do_not_fit_each_other_are_refused() -> None:
     other = replace(machine.gears[1].gear, module=3.5e-3)
     with pytest.raises(GearError, match="module"):
         two_stages(gears=[machine.gears[0], replace(machine.gears[1], gear=other), *machine.gears[2:]])
-    with pytest.raises(CouplingError, match="60 mm apart along z; expected them in one plane"):
+    with pytest.raises(CouplingError, match=r"expected gears in one plane, .* they are 60 mm apart along z"):
         two_stages(gears=[machine.gears[0], replace(machine.gears[1], at=0.16), *machine.gears[2:]])
 
 
 def test_a_seat_without_a_housing_is_refused() -> None:
     machine = two_stages()
     seated = replace(machine.bearings[0], seat="front")
-    with pytest.raises(CouplingError, match="no seat 'front' in the housing; expected one of none, or None"):
+    with pytest.raises(CouplingError, match="seat is 'front'; expected a seat of the housing, one of none, or None"):
         two_stages(bearings=[seated, *machine.bearings[1:]])
 
 

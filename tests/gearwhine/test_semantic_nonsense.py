@@ -126,7 +126,7 @@ IN_PYTHON: dict[str, tuple[Callable[[], object], str]] = {
     "stiffness in place of a bearing": (lambda: MountedBearing(1e8, "in", None), "bearing is"),  # type: ignore[arg-type]
     "stiffness that is none": (
         lambda: Bearing("b", 0.0, np.full((2, 2), math.nan), np.zeros((2, 2))),
-        "bearing 'b' stiffness",
+        "bearing 'b': stiffness",
     ),
     "output of NaN": (lambda: Output("out", math.nan), "output 'out': torque is nan"),
     "force as a number": (lambda: ShaftForce("in", 0.1, 5.0), "force 'in': force is 5"),  # type: ignore[arg-type]

@@ -56,11 +56,14 @@ def test_modes_carry_what_a_machine_takes_of_them(box: Housing) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"seats": [Seat("a", (0, 0, 0)), Seat("a", (0, 0, 0))]}, "seat 'a' is given 2 times"),
-        ({"fixtures": [FOOT, FOOT]}, "fixture 'floor' is given 2 times"),
-        ({"sensors": [Sensor("s", (0, 0, 0))] * 3}, "sensor 's' is given 3 times"),
-        ({"materials": {"rib": STEEL}}, "no volume 'rib' in the mesh; expected one of 'housing'"),
-        ({"damping_ratio": 1.5}, "a damping ratio of 1.5"),
+        (
+            {"seats": [Seat("a", (0, 0, 0)), Seat("a", (0, 0, 0))]},
+            "seat 'a': .*expected each name once; it is given 2 times",
+        ),
+        ({"fixtures": [FOOT, FOOT]}, "fixture 'floor': .*it is given 2 times"),
+        ({"sensors": [Sensor("s", (0, 0, 0))] * 3}, "sensor 's': .*it is given 3 times"),
+        ({"materials": {"rib": STEEL}}, "materials is 'rib'; expected a volume of the mesh, one of 'housing'"),
+        ({"damping_ratio": 1.5}, "damping_ratio is 1.5"),
     ],
 )
 def test_what_is_no_housing_is_refused(box: Housing, changes: dict[str, Sequence[object]], words: str) -> None:

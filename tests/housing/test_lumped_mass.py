@@ -114,7 +114,7 @@ def test_bending_of_a_cantilever_with_a_body_at_its_tip(block: Callable[..., Mes
 
 def test_masses_that_make_no_sense_are_refused(box: Mesh) -> None:
     lid = Patch(surface="foot-1")
-    with pytest.raises(HousingError, match="expected a positive one"):
+    with pytest.raises(HousingError, match="mass is 0; expected a finite number above 0 kg"):
         LumpedMass("m", 0.0, lid)
     with pytest.raises(HousingError, match="a patch or a position, one of the two"):
         LumpedMass("m", 1.0)

@@ -89,7 +89,7 @@ def test_supports_that_hold_nothing_are_refused(box: Mesh) -> None:
         Support("a", fixed=(True, True, True))
     with pytest.raises(HousingError, match="one of the three"):
         Support("a", surface="s", box=((0, 0, 0), (1, 1, 1)), fixed=(True, True, True))
-    with pytest.raises(HousingError, match="finite and not negative"):
+    with pytest.raises(HousingError, match="each a finite number of at least 0"):
         Support("a", surface="s", stiffness=(1.0, -1.0, 0.0))
     with pytest.raises(GeometryError, match=r"no facet of the surface lies in the box.*the housing spans"):
         Support("a", box=((1, 1, 1), (2, 2, 2)), fixed=(True, True, True)).facets(box)

@@ -264,5 +264,5 @@ def test_a_shaft_whose_coupling_buckles_is_refused() -> None:
             solve_lateral_modes(of_three(pushed, force), ends, count=2)
     with pytest.raises(RotorError, match=r"coupling axial_force is .* expected a compression below \d+ N"):
         _ = of_three(Coupling(0.3, 7e7, coupling.tilt_stiffness, 1e4, 1e6, axial_force=-4.1 * euler), 0.0).profile
-    with pytest.raises(RotorError, match="coupling axial_force is nan"):
+    with pytest.raises(RotorError, match="coupling: axial_force is nan"):
         Coupling(0.3, 7e7, 1e4, 1e4, 1e6, axial_force=math.nan)

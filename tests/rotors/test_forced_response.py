@@ -313,7 +313,7 @@ def test_torsional_resonance_is_at_the_natural_frequency() -> None:
     ("request_it", "message"),
     [
         (lambda: unbalance_response(SHAFT, CROSSED, [Unbalance(1.5, 1e-4)], [10.0]), "load position is 1.5"),
-        (lambda: Unbalance(0.1, math.nan), "unbalance moment is nan"),
+        (lambda: Unbalance(0.1, math.nan), "unbalance: moment is nan"),
         (lambda: Bow([0.1, 0.1], [1.0, 2.0]), "bow positions"),
         (lambda: Bow([0.1, 0.2], [1.0]), "bow shapes"),
         (lambda: static_deflection(SHAFT, CROSSED[:1]), "free to move"),

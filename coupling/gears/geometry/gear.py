@@ -41,7 +41,7 @@ from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, Prof
 from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
 from gearwhine.housing.material import STEEL
 from gearwhine.housing.own_copies import keep_tuples
-from gearwhine.numerics.findings import Finding, refuse
+from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
 
 FloatArray = npt.NDArray[np.float64]
@@ -445,6 +445,7 @@ def require_tip_thickness(gear: Gear, least: float = 0.2) -> None:
 def _check_numbers(gear: Gear) -> None:
     """Raise `GearError` for a single number outside its range."""
     label = f"gear {gear.name!r}: "
+    refuse(attribute_findings(("gear", str(gear.name)), gear, name=Text()), GearError)
     if type(gear.teeth) is not int or gear.teeth < 5:
         raise GearError(f"{label}teeth must be a whole number of at least 5, got {gear.teeth!r}")
     for quantity in ("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"):

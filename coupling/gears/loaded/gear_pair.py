@@ -138,7 +138,13 @@ class GearPair:
             "misalignment": Number(at_least=-0.1, at_most=0.1, optional=True, unit="rad"),
             "face_gap": Numbers(),
         }
-        refuse(attribute_findings(("gear pair", f"{self.driver} -> {self.driven}"), self, **rules), GearError)
+        part = ("gear pair", f"{self.driver} -> {self.driven}")
+        findings = list(attribute_findings(part, self, **rules))
+        if not isinstance(self.stiffness, str) and not hasattr(self.stiffness, "pair_stiffness"):
+            findings.append(Finding(part, "stiffness", self.stiffness, "a stiffness model, or the name of one"))
+        if self.driven == self.driver:
+            findings.append(Finding(part, "driven", self.driven, "another gear than the driver"))
+        refuse(findings, GearError)
         if isinstance(self.stiffness, str):
             require_known_model(self.stiffness)
 

@@ -6,7 +6,6 @@ sensors and masses are checked against it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -153,11 +152,12 @@ def check_box(draft: Draft) -> Iterator[Finding]:
     for location, patch in _patches(draft):
         yield from _check_patch(box, location, patch, boss)
     for index, sensor in draft.sensors:
-        findings = list(_check_on_surface(box, ("housing", "sensor", index, "position"), sensor.position, boss))
-        yield from findings or _check_in_bore(draft, box, ("housing", "sensor", index, "position"), sensor.position)
+        location = ("housing", "sensor", index, "position")
+        yield from _check_on_surface(draft, box, location, sensor.position, in_bores=True)
     for index, mass in draft.masses:
         if mass.position is not None:
-            yield from _check_on_surface(box, ("housing", "mass", index, "position"), mass.position, boss)
+            location = ("housing", "mass", index, "position")
+            yield from _check_on_surface(draft, box, location, mass.position, in_bores=False)
 
 
 def _patches(draft: Draft) -> Iterator[tuple[Location, Patch]]:
@@ -214,44 +214,21 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
         yield Finding(location, "a box that meets the housing's walls; this one is all in its cavity")
 
 
-def _check_in_bore(
-    draft: Draft, box: Box, location: Location, position: tuple[float, float, float]
-) -> Iterator[Finding]:
-    """Yield a point in the air of a bore, further from its rim than the wall is thick."""
-    half = 0.5 * box.size[2]
-    for _, seat in draft.seats:
-        apart = math.hypot(position[0] - seat.center[0], position[1] - seat.center[1])
-        deep = 0.5 * seat.diameter - apart
-        for low, high in ((-half, -half + box.walls.back), (half - box.walls.front, half)):
-            through = all(low - _SLACK <= z <= high + _SLACK for z in (seat.center[2], position[2]))
-            if through and deep > high - low:
-                expected = f'a point on the surface of the box; this one is in the bore of seat "{seat.name}", '
-                yield Finding(location, expected + f"{millimetres(deep)} from its rim")
-                return
-
-
 def _check_on_surface(
-    box: Box, location: Location, position: tuple[float, float, float], boss: float
+    draft: Draft, box: Box, location: Location, position: tuple[float, float, float], *, in_bores: bool
 ) -> Iterator[Finding]:
-    """Yield a point that is further from the box's surface than its walls are thick."""
-    walls = box.walls
-    names = ("left", "bottom", "back", "right", "top", "front")  # the order of the depths below
-    depths = [
-        *(p - low for p, low in zip(position, box.lower, strict=True)),
-        *(high - p for p, high in zip(position, box.upper, strict=True)),
-    ]
-    outside = math.hypot(*(min(a, b, 0.0) for a, b in zip(depths[:3], depths[3:], strict=True)))
-    thickness = [getattr(walls, name) for name in names]
+    """Yield a point that is further from the box's surface than its walls are thick, or in the air of a bore."""
+    from gearwhine.meshes.box.surface_points import point_off_surface
+
+    boss = max((seat.boss.length for _, seat in draft.seats if seat.boss is not None), default=0.0)
     foot = box.feet.size[1] if box.feet is not None else 0.0
-    if outside > max(*thickness, boss, foot, box.stands_out) + _SLACK:
-        expected = f"a point on the surface of the box; this one is {millimetres(outside)} outside"
-        yield Finding(location, expected)
-    elif box.furnished or outside > 0.0:
-        return
-    elif all(depth > wall + _SLACK for depth, wall in zip(depths, thickness, strict=True)):
-        nearest = min(range(6), key=lambda face: depths[face])
-        expected = (
-            f"a point on the surface of the box; this one is in its cavity, {millimetres(depths[nearest])} from "
-            f"the {names[nearest]} face"
-        )
+    expected = point_off_surface(
+        position,
+        box.size,
+        {face: getattr(box.walls, face) for face in FACES},
+        stands_out=max(boss, foot, box.stands_out),
+        furnished=box.furnished,
+        bores=[(seat.name, seat.center, seat.diameter) for _, seat in draft.seats] if in_bores else (),
+    )
+    if expected:
         yield Finding(location, expected)

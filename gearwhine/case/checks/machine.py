@@ -10,9 +10,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from math import pi
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
@@ -28,9 +27,7 @@ from gearwhine.case.speeds_and_torques import pair_torques
 if TYPE_CHECKING:
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.machine.gear_train import GearTrain
-
-NEAREST_POINTS = 1e-6
-"""Distance between two points of a bow below which they are one, as a part of the rotor's length."""
+    from gearwhine.numerics.findings import Finding as PartFinding
 
 
 def millimetres(length: float) -> str:
@@ -91,8 +88,17 @@ def _analysed(
 
 def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Finding]:
     """Yield a finding where a station lies beyond the right end of its rotor."""
-    if at > rotor.length * (1.0 + 1e-9):
-        yield Finding(location, f'a station on rotor "{rotor.name}", which is {millimetres(rotor.length)} long')
+    from gearwhine.rotors.model.shaft import station_findings
+
+    yield from _at(location[:-1], station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length))
+
+
+def _at(entry: Location, findings: Iterable[PartFinding]) -> Iterator[Finding]:
+    """Put findings of a part at its entry of the case; one without a value is of the entry's relation to others."""
+    for finding in findings:
+        steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
+        location = (*entry, *steps)
+        yield Finding(location, finding.expected, *([UNSAID] if finding.value is None else []))
 
 
 def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
@@ -109,51 +115,26 @@ def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Loc
 
 def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
     """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already."""
-    if len(rotor.bow) == 1:
-        expected = (
-            "two points or more: the centre line through one is straight and bends no shaft; add the points that stay "
-            "on the axis, such as the bearings', with an amplitude of 0"
-        )
-        yield Finding(("rotor", index, "bow"), expected, UNSAID)
-    for place, point in enumerate(rotor.bow):
-        if any(abs(point.at - other.at) <= NEAREST_POINTS * rotor.length for other in rotor.bow[:place]):
-            yield Finding(
-                ("rotor", index, "bow", place, "at"), "a station of its own; another point of the bow is here"
-            )
+    if rotor.bow:
+        from gearwhine.coupling.machine.parts import bow_findings
 
-
-_BORE_ERROR = 1e-3  # offset of a seat below which it is one of manufacture [m]
+        places = [point.at for point in rotor.bow]
+        yield from _at(("rotor", index), bow_findings(("shaft", rotor.name), places, rotor.length))
 
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
-    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
+    from gearwhine.coupling.machine.arrangement import SeatPlace, seat_findings
 
-    offset = math.hypot(rotor.axis[0] - seat.center[0], rotor.axis[1] - seat.center[1])
-    if offset > LARGEST_OFFSET:
-        expected = (
-            f'a seat on the axis of rotor "{rotor.name}"; the seat\'s centre is {millimetres(offset)} off it '
-            f"(axis at {millimetres(rotor.axis[0])}, {millimetres(rotor.axis[1])}; "
-            f"centre at {millimetres(seat.center[0])}, {millimetres(seat.center[1])})"
-        )
-        if offset < _BORE_ERROR:
-            expected += "; what a bore out of place does to the flanks is errors.helix.slope of a gear"
-        yield Finding(("bearing", index, "seat"), expected)
     wall = 0.0
     if draft.box is not None:
         wall = draft.box.walls.front if seat.center[2] > 0.0 else draft.box.walls.back
-    reach = seat.diameter / 2.0 + wall + (seat.boss.length if seat.boss is not None else 0.0)
-    gap = rotor.start + bearing.at - seat.center[2]
-    if abs(gap) > reach and bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
-        expected = (
-            f'a station within {millimetres(reach)} of seat "{seat.name}" along z (this one is at '
-            f"z = {millimetres(rotor.start + bearing.at)}, the seat at {millimetres(seat.center[2])})"
-        )
-        yield Finding(("bearing", index, "at"), expected)
-
-
-_ROUNDING = 1e-9  # relative rounding of printed speeds
-_RPM = 30.0 / pi
+    boss = seat.boss.length if seat.boss is not None else 0.0
+    place = SeatPlace(seat.name, seat.center, 0.5 * seat.diameter + wall + boss)
+    part = ("bearing", bearing.name)
+    for finding in seat_findings(part, rotor.name, rotor.axis, rotor.start, bearing.at, place):
+        if finding.attribute != "at" or bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
+            yield from _at(("bearing", index), [finding])
 
 
 def check_bearings(draft: Draft) -> Iterator[Finding]:
@@ -163,8 +144,10 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:
-            expected = f'no pedestal under a bearing in seat "{bearing.seat}", which moves with the housing'
-            yield Finding(("bearing", index, "pedestal"), expected)
+            from gearwhine.coupling.machine.arrangement import pedestal_finding
+
+            part = ("bearing", bearing.name)
+            yield from _at(("bearing", index), [pedestal_finding(part, bearing.seat, bearing.pedestal)])
         if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
@@ -211,13 +194,11 @@ def _check_reach(
     draft: Draft, index: int, bearing: Bearing, table: tuple[float, ...], ratio: float
 ) -> Iterator[Finding]:
     """Yield a table that does not hold every speed that the case names."""
+    from gearwhine.coupling.machine.arrangement import table_findings_of_speeds
+
     needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
-    if needed and (min(needed) < table[0] * (1.0 - _ROUNDING) or max(needed) > table[-1] * (1.0 + _ROUNDING)):
-        expected = (
-            f'a table that holds the speeds of rotor "{bearing.rotor}" in this case, {min(needed) * _RPM:.6g} to '
-            f"{max(needed) * _RPM:.6g} rpm (it goes from {table[0] * _RPM:.6g} to {table[-1] * _RPM:.6g} rpm)"
-        )
-        yield Finding(("bearing", index, "speeds"), expected)
+    part = ("bearing", bearing.name)
+    yield from _at(("bearing", index), table_findings_of_speeds(part, bearing.rotor, table, needed))
 
 
 def _named_speeds(draft: Draft) -> list[float]:
@@ -286,7 +267,7 @@ def _check_pair(
     from gearwhine.coupling.gears import GearError, GearPairGeometry
     from gearwhine.coupling.gears.errors import StiffnessModelError
     from gearwhine.coupling.gears.stiffness.models import require_model_fit
-    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes
+    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes, plane_findings
 
     try:
         require_model_fit(pair.stiffness.model, GearPairGeometry(*gears))
@@ -307,14 +288,9 @@ def _check_pair(
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {millimetres(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
-        shift = rotors[0].start + (tables[0].at or 0.0) - rotors[1].start - (tables[1].at or 0.0)
-        reach = 0.5 * min(gear.face_width for gear in gears)
-        if abs(shift) > reach + LARGEST_OFFSET:
-            expected = (
-                f"gears in one plane, within half a face width, {millimetres(reach)}; they are "
-                f"{millimetres(abs(shift))} apart along z"
-            )
-            yield Finding(("gear_pair", index, "driven"), expected)
+        places = [rotor.start + (table.at or 0.0) for rotor, table in zip(rotors, tables, strict=True) if rotor]
+        for finding in plane_findings(("gear pair", ""), places, gears):
+            yield Finding(("gear_pair", index, finding.attribute), finding.expected)
     try:
         if rotors[0] is not None and rotors[1] is not None:
             geometry_on_axes(*gears, (rotors[0].name, rotors[1].name), (rotors[0].axis, rotors[1].axis))
@@ -463,11 +439,12 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     rotor = draft.rotor(first) if draft.gear_pairs else None
     if rotor is not None and operation.at is not None:
         yield from check_station(rotor, operation.at, ("operation", "at"))
-    if draft.gear_pairs:
+    if draft.gear_pairs and first is not None:
+        from gearwhine.coupling.machine.arrangement import output_elsewhere
+
         for place, output in enumerate(operation.output):
             if output.rotor == first:
-                expected = f'a rotor other than "{first}", where the torque comes in'
-                yield Finding(("operation", "output", place, "rotor"), expected)
+                yield Finding(("operation", "output", place, "rotor"), output_elsewhere(first))
     if any(output.rotor not in ratios for output in operation.output):
         return
     if _lacks_input(operation):
@@ -523,6 +500,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
+    from gearwhine.coupling.machine.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
     from gearwhine.coupling.machine.gear_train import carrying_flanks
 
     names = draft.names("gear")
@@ -537,14 +515,9 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     flanks = carrying_flanks(pair_torques(case), operation.torque)
     for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
         if flank == "reversed":
-            expected = "power to flow from driver to driven; swap the two names"
-            yield Finding(("gear_pair", index), expected, UNSAID)
+            yield Finding(("gear_pair", index), POWER_FROM_THE_DRIVER, UNSAID)
         elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):
-            expected = (
-                "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet "
-                "without one"
-            )
-            yield Finding(("gear_pair", index, "backlash"), expected, NOTHING)
+            yield Finding(("gear_pair", index, "backlash"), BACKLASH_OF_A_BRAKE, NOTHING)
 
 
 def _has_designed_backlash(case: Case, pair: GearPair) -> bool:

@@ -1,0 +1,93 @@
+"""Arrangement of a machine's parts: bearings in their seats and over their speeds, pedestals.
+
+The case reader calls the same rules before there is a machine.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
+from gearwhine.numerics.findings import Finding, Part
+
+_BORE_ERROR = 1e-3
+"""Offset of a seat below which it is one of manufacture [m]."""
+_ROUNDING = 1e-9
+"""Relative rounding of printed speeds."""
+_RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True)
+class SeatPlace:
+    """Name, centre x, y, z [m] of a seat, and the distance along z within which a bearing sits in it, where known."""
+
+    name: str
+    center: tuple[float, float, float]
+    reach: float | None = None
+
+
+def seat_findings(
+    part: Part, rotor: str, axis: Sequence[float], start: float, at: float, seat: SeatPlace
+) -> Iterator[Finding]:
+    """Yield findings where a rotor's axis or a bearing's place along it misses the seat.
+
+    Parameters
+    ----------
+    part : Part
+        The bearing.
+    rotor : str
+    axis : sequence of float
+        x and y of the rotor's axis [m].
+    start, at : float
+        z of the rotor's left end, and the bearing's distance from there [m].
+    seat : SeatPlace
+    """
+    offset = math.hypot(axis[0] - seat.center[0], axis[1] - seat.center[1])
+    if offset > LARGEST_OFFSET:
+        expected = (
+            f'a seat on the axis of rotor "{rotor}"; the seat\'s centre is {_mm(offset)} off it '
+            f"(axis at {_mm(axis[0])}, {_mm(axis[1])}; centre at {_mm(seat.center[0])}, {_mm(seat.center[1])})"
+        )
+        if offset < _BORE_ERROR:
+            expected += "; what a bore out of place does to the flanks is errors.helix.slope of a gear"
+        yield Finding(part, "seat", seat.name, expected)
+    z = start + at
+    if seat.reach is not None and abs(z - seat.center[2]) > seat.reach:
+        expected = (
+            f'a station within {_mm(seat.reach)} of seat "{seat.name}" along z (this one is at z = {_mm(z)}, '
+            f"the seat at {_mm(seat.center[2])})"
+        )
+        yield Finding(part, "at", at, expected)
+
+
+def pedestal_finding(part: Part, seat: str, pedestal: object) -> Finding:
+    """Return the finding of a pedestal under a bearing in a seat."""
+    expected = f'no pedestal under a bearing in seat "{seat}", which moves with the housing'
+    return Finding(part, "pedestal", pedestal, expected)
+
+
+def table_findings_of_speeds(
+    part: Part, rotor: str, speeds: Sequence[float], needed: Sequence[float]
+) -> Iterator[Finding]:
+    """Yield a bearing's table over speeds that does not hold all speeds at which its rotor turns [rad/s]."""
+    if needed and (min(needed) < speeds[0] * (1.0 - _ROUNDING) or max(needed) > speeds[-1] * (1.0 + _ROUNDING)):
+        expected = (
+            f'a table that holds the speeds of rotor "{rotor}", {min(needed) * _RPM:.6g} to '
+            f"{max(needed) * _RPM:.6g} rpm (it goes from {speeds[0] * _RPM:.6g} to {speeds[-1] * _RPM:.6g} rpm)"
+        )
+        yield Finding(part, "speeds", speeds, expected)
+
+
+POWER_FROM_THE_DRIVER = "power to flow from driver to driven; swap the two names"
+BACKLASH_OF_A_BRAKE = (
+    "a backlash: the torque is negative, so the driven gear drives by the back flanks, which never meet without one"
+)
+
+
+def output_elsewhere(first: str) -> str:
+    """Return what is expected of an output on the rotor of the first driver."""
+    return f'a rotor other than "{first}", where the torque comes in'
+
+
+def _mm(length: float) -> str:
+    return f"{length * 1e3:.6g} mm"
