@@ -1,5 +1,6 @@
 """Sound of a sweep's points, held against levels, weights and frequencies that this test computes on its own."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from sounding_gearbox import QUICK, sounding_gearbox, sounding_housing, swept_po
 from gearwhine.case.swept_keys import swept_keys
 from gearwhine.solve.sound.solution import build_radiation
 from gearwhine.sweep.solution import PointResult
-from gearwhine.sweep.sound import add_sound
+from gearwhine.sweep.sound import _interpolated, add_sound
 
 SPEEDS = (60.0, 90.0)  # of the first driver at the two points [Hz]
 # Of each point: order of the line, its name by the order, housing mode that moves, and its rate.
@@ -104,3 +105,43 @@ def test_a_rate_twice_as_large_is_six_decibels_louder(sounds: list[dict[str, Any
         efficiencies = one["radiation_efficiency"] / other["radiation_efficiency"]
         found = one["sound_power_db"] - other["sound_power_db"]
         assert found == pytest.approx(20.0 * np.log10(ratio) + 10.0 * np.log10(efficiencies), abs=1e-6)
+
+
+def test_an_interpolated_line_has_the_figures_of_its_table() -> None:
+    """Powers of the far field and of the surface 2 % apart; pressures and proofs of their own at each place."""
+    rates = np.array([3e-3 + 0.0j, 4e-3j])
+    table: Any = SimpleNamespace(
+        holds=lambda hertz: hertz == 1000.0,
+        power=lambda hertz, _: (2e-6, 2.04e-6, 1e-3),
+        pressure_error=1e-3,
+        interior_residual=np.array([0.0125]),
+        source_error=np.array([0.025]),
+        source_rms=np.array([0.0075]),
+        point_source_error=np.array([0.001]),
+        around=lambda hertz, values: float(values[0]),
+        pressure_at=lambda hertz: np.array([[[2.0, 0.0], [0.0, 50.0]]]),
+        by_mode=lambda hertz, _: np.array([1.5e-6, 0.5e-6]),
+    )
+    radiation: Any = SimpleNamespace(method="boundary-elements", equivalent_power=lambda _: np.array([8e-6]))
+    places = {"near": np.zeros(3), "far": np.ones(3)}
+    line = _interpolated(table, radiation, 1000.0, rates, places, 1)
+    assert line is not None
+    entry = line.entry
+    assert entry["sound_power_db"] == pytest.approx(10.0 * np.log10(2e-6 / 1e-12), abs=1e-9)
+    # A-weighting is nothing at 1 kHz, by its definition.
+    assert entry["sound_power_db_a"] == pytest.approx(entry["sound_power_db"], abs=0.01)
+    assert entry["power_balance_db"] == pytest.approx(10.0 * np.log10(1.02), abs=1e-9)
+    assert entry["radiation_efficiency"] == pytest.approx(0.25)
+    assert (entry["interior_pressure"], entry["known_source_error"], entry["known_source_rms"]) == (
+        0.0125,
+        0.025,
+        0.0075,
+    )
+    # Peak amplitudes of 6 mPa and 200 mPa, re 20 µPa rms.
+    heard = {"near": 20.0 * np.log10(6e-3 / np.sqrt(2.0) / 20e-6), "far": 20.0 * np.log10(0.2 / np.sqrt(2.0) / 20e-6)}
+    assert entry["microphones_db"] == pytest.approx(heard, abs=1e-9)
+    assert entry["contributions"]["housing_modes"] == [
+        {"name": "housing mode 1", "share": pytest.approx(0.75)},
+        {"name": "local compliance", "share": pytest.approx(0.25)},
+    ]
+    assert _interpolated(table, radiation, 1001.0, rates, places, 1) is None

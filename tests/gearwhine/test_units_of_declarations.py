@@ -77,13 +77,15 @@ _WITHIN = {"harmonics"}
 
 
 class Declared(NamedTuple):
-    """A call that declares a column or a quantity: where, its key, heading, unit of the file, and factor."""
+    """A call that declares a column or a quantity: where, key, name in the file, heading, unit there, and factor."""
 
     where: str
     key: str
+    name: str
     heading: str
     unit: str | None
     scale: float
+    converted: bool  # from the file's unit to the key's
 
 
 def text_of(node: ast.expr | None) -> str | None:
@@ -114,10 +116,10 @@ def declared(module: ModuleType) -> Iterator[Declared]:
         key = text_of(given.get("of" if node.func.id == "Column" else "key"))
         scale = number_of(given["scale"], module) if "scale" in given else 1.0
         through = "shown" in given and text_of(given["shown"]) is None
-        if key and scale is not None:
-            unit = None if "document" in given else text_of(given.get("unit"))
+        if key is not None and scale is not None:
             heading = "" if through else text_of(given.get("heading")) or ""
-            yield Declared(f"{Path(module.__file__).name}:{node.lineno}", key, heading, unit, scale)
+            where, name = f"{Path(module.__file__).name}:{node.lineno}", text_of(given.get("name")) or ""
+            yield Declared(where, key, name, heading, text_of(given.get("unit")), scale, "document" in given)
 
 
 def dimension_of(key: str) -> str | None:
@@ -150,9 +152,40 @@ def test_a_factor_takes_the_key_s_unit_to_that_of_the_heading() -> None:
     assert held > 100
 
 
+NAMES = {
+    "frequency": {"Hz"},
+    "speed": {"rpm", "rad s-1"},
+    "force": {"N"},
+    "thrust": {"N"},
+    "preload": {"N"},
+    "torque": {"N m"},
+    "stiffness": {"N/m", ""},  # of all motions together in mixed units
+    "displacement": {"m", "m kg0.5"},
+    "deflection": {"m", "kg-0.5"},  # of a mode
+    "misalignment": {"rad"},
+    "tilt": {"rad"},
+    "rotation": {"rad"},
+    "pressure": {"Pa"},
+    "power": {"W"},
+    "period": {"s"},
+    "time": {"s"},
+    "level": {"dB"},
+    "ratio": {"1"},
+    "spectrum": {"m/s2", "N", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
+}
+"""Last word of a name in the file: units that it may have."""
+
+
+def test_the_unit_in_the_file_is_one_of_what_its_name_says() -> None:
+    named = [(one, one.name.rpartition("_")[2]) for one in DECLARED if one.unit is not None and one.name]
+    held = [(one, word) for one, word in named if word in NAMES]
+    assert [(one.where, one.name, one.unit) for one, word in held if one.unit not in NAMES[word]] == []
+    assert len(held) > 30
+
+
 def test_the_unit_in_the_file_is_that_of_the_key() -> None:
     own = {"m/s2", "m/s", "N/m", "N m", "kg", "rad", "Hz", "rpm", "Pa", "N", "m", "m2", "s", "h", "W", "dB"}
-    compared = [(one, dimension_of(one.key)) for one in DECLARED if one.unit]
+    compared = [(one, dimension_of(one.key)) for one in DECLARED if one.unit and one.key and not one.converted]
     wrong = [(one.where, one.key, one.unit) for one, key in compared if key is not None and one.unit != key]
     assert wrong == []
     # A unit of the file without one in the key is the document's loss.
