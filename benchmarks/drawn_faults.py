@@ -8,7 +8,7 @@ with the reason in ``equivalent_faults.toml``; a fault in a kernel's source woul
     python benchmarks/drawn_faults.py --map                            # which test runs which lines, half an hour
     python benchmarks/drawn_faults.py --map tests/gearwhine/test_x.py  # of these tests anew
     python benchmarks/drawn_faults.py --number 60 --seed 1 --under gearwhine/results --under coupling
-    python benchmarks/drawn_faults.py --number 60 --seed 1 --survivors # only those that survived before
+    python benchmarks/drawn_faults.py --survivors                      # again what survived before, of any seed
 """
 
 import argparse
@@ -69,6 +69,7 @@ class DrawnFault(Fault):
 
     begin: int = 0
     spans: tuple[tuple[int, int], ...] = ()
+    source: str = ""  # the line of the file where it begins
 
     def changed(self, text: str) -> str:
         """The text of the file with the fault in it."""
@@ -92,7 +93,11 @@ class Module:
         self.rows = self.text.splitlines()
         self.words: dict[tuple[str, ...], set[str]] = defaultdict(set)  # strings of like places
         self.attributes: dict[str, set[str]] = defaultdict(set)  # attributes taken from one object
-        self.nodes = list(self.walk(ast.parse(self.text), (), ("",)))
+        tree = ast.parse(self.text)
+        imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+        # Another function of a module, such as of numpy, is no slip of the pen.
+        self.modules = {name.asname or name.name for node in imports for name in node.names}
+        self.nodes = list(self.walk(tree, (), ("",)))
         for node, _, place in self.nodes:
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 self.words[place].add(self.piece(node))
@@ -106,7 +111,8 @@ class Module:
         if isinstance(node, ast.Raise | ast.Import | ast.ImportFrom | ast.Assert | ast.JoinedStr | ast.ClassDef):
             if isinstance(node, ast.ClassDef):
                 for child in node.body:
-                    if not isinstance(child, ast.AnnAssign):
+                    docstring = isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant)
+                    if not isinstance(child, ast.AnnAssign) and not docstring:
                         yield from self.walk(child, spans, ("",))
             elif isinstance(node, ast.JoinedStr):
                 yield node, spans, place
@@ -158,7 +164,8 @@ class Module:
                 before = self.text[begin:end]
                 first = self.text.count("\n", 0, begin) + 1
                 lines = (first, first + before.count("\n"))
-                fault = DrawnFault(0, kind, self.name, before, after, begin, (lines, *spans))
+                source = self.rows[first - 1].strip()
+                fault = DrawnFault(0, kind, self.name, before, after, begin, (lines, *spans), source)
                 if before != after:
                     found[begin, before, after] = fault
         return list(found.values())
@@ -201,6 +208,8 @@ class Module:
                 yield from self.units(node)
             case ast.Attribute(value=value, attr=attr, ctx=ast.Load()):
                 begin, end = self.ends(node)
+                if isinstance(value, ast.Name) and value.id in self.modules:
+                    return
                 for other in sorted(self.attributes[ast.unparse(value)] - {attr}):
                     yield "name", end - len(attr), end, other
             case ast.Subscript(slice=ast.Slice(lower=lower, upper=upper) as cut, ctx=ast.Load()):
@@ -284,6 +293,13 @@ def draw(number: int, seed: int, under: list[str]) -> list[DrawnFault]:
     return drawn
 
 
+def kept(keys: list[str]) -> list[DrawnFault]:
+    """Faults of earlier draws by their keys, where the code has them still."""
+    names = sorted({key.partition(":")[0] for key in keys})
+    faults = {fault.key: fault for name in names if (ROOT / name).exists() for fault in Module(name).faults()}
+    return [faults[key] for key in keys if key in faults]
+
+
 def tests_of(fault: DrawnFault, lines: dict[str, dict[str, list[int]]], seconds: dict[str, float]) -> list[str]:
     """Test files that run the line of a fault, else its statement, else the file: the quickest of each first."""
     ordered: dict[str, None] = {}
@@ -303,7 +319,7 @@ def trace(tests: list[str]) -> None:
     kept = [json.loads(line) for line in LINES.read_text(encoding="utf-8").splitlines()] if LINES.exists() else []
     kept = [entry for entry in kept if not entry["test"].startswith(tuple(tests))]
     LINES.write_text("".join(json.dumps(entry) + "\n" for entry in kept), encoding="utf-8")
-    surroundings = environment(ROOT) | {
+    surroundings = os.environ | {
         "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'benchmarks'}",
         "TRACED_LINES": str(LINES),
     }
@@ -318,7 +334,7 @@ def main() -> None:
     parser.add_argument("--number", type=int, default=60)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--under", action="append", help="only files of paths that begin so; may be repeated")
-    parser.add_argument("--survivors", action="store_true", help="try again what survived before")
+    parser.add_argument("--survivors", action="store_true", help="try again all that survived before")
     parser.add_argument("--list", action="store_true", help="only print the drawn faults and their tests")
     given = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
@@ -330,10 +346,11 @@ def main() -> None:
     seconds = {entry["test"]: entry["seconds"] for entry in traced}
     verdicts = json.loads(VERDICTS.read_text(encoding="utf-8")) if VERDICTS.exists() else {}
     reasons = {
-        f"{entry['file']} {entry['before']!r} -> {entry['after']!r}": entry["reason"]
+        tuple(entry[key] for key in ("file", "line", "before", "after")): entry["reason"]
         for entry in tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))["fault"]
     }
-    drawn = draw(given.number, given.seed, given.under or [""])
+    survived = [key for key, verdict in verdicts.items() if verdict.startswith("SURVIVED")]
+    drawn = kept(survived) if given.survivors else draw(given.number, given.seed, given.under or [""])
     if not given.list:
         copy_tree(TREE)
         if not (TREE / ".kernels").exists():
@@ -341,7 +358,7 @@ def main() -> None:
     table: dict[str, Counter[str]] = defaultdict(Counter)
     for number, fault in enumerate(drawn, start=1):
         tests = tests_of(fault, lines, seconds)
-        reason = reasons.get(f"{fault.file} {fault.before!r} -> {fault.after!r}")
+        reason = reasons.get((fault.file, fault.source, fault.before, fault.after))
         verdict = verdicts.get(fault.key, "")
         if reason:
             verdict = "equivalent"
@@ -349,7 +366,7 @@ def main() -> None:
             verdict = verdict or f"{len(tests)} tests"
         elif not tests:
             verdict = "SURVIVED untested"
-        elif not verdict or (given.survivors and verdict.startswith("SURVIVED")):
+        elif not verdict or given.survivors:
             found, text = caught(TREE, fault, [tests], "-m", "not slow", timeout=_TIMEOUT)
             by = re.search(r"^(?:FAILED|ERROR) (\S+)", text, re.MULTILINE)
             verdict = f"caught by {by[1] if by else text[-60:].strip()}" if found else "SURVIVED"
