@@ -82,6 +82,9 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
         for line in leaders
     }
     assert len(named) == len(row.texts)
+    # Names begin with their frequency, to the hertz.
+    said = sorted(float(text.get_text().split(" Hz ")[0]) for text in row.texts)
+    assert said == pytest.approx(sorted(named), abs=0.51)
     for axes, (name, spectrum) in zip(shown, drawn.solved.sensor_spectra.items(), strict=True):
         assert axes.get_title(loc="left") == name
         frequencies, amplitude = heights(axes)
