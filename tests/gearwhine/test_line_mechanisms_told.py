@@ -6,9 +6,6 @@ from typing import Any
 import pytest
 from sounding_gearbox import sounding_gearbox
 
-from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
-from gearwhine.results.line_columns import MECHANISMS as WORDS
-
 LINEAR = {
     "gear_pair.0.stiffness": {"model": "constant", "value": "3e8 N/m"},
     "gear_pair.0.misalignment": 0.0,
@@ -67,10 +64,3 @@ def test_a_line_that_nothing_excites_has_no_parts() -> None:
     for (_, order), line in lines_of(*ALL).items():
         if order not in ORDERS.values():
             assert "parts" not in line
-
-
-def test_every_mechanism_has_words_of_its_own() -> None:
-    assert set(WORDS) == set(MECHANISMS)
-    assert len(set(WORDS.values())) == len(WORDS)
-    for mechanism, words in WORDS.items():
-        assert mechanism.split("_")[0] in words

@@ -14,6 +14,8 @@ from typing import NamedTuple
 import pytest
 
 import gearwhine.results as results
+from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
+from gearwhine.results.line_columns import MECHANISMS as WORDS
 
 _PI = 3.141592653589793
 # Unit as it is shown: its dimension, and how many of SI's units it is.
@@ -204,3 +206,10 @@ def test_a_level_is_said_to_be_a_weighted_where_it_is() -> None:
     for one in levels:
         weighted = any(word in one.heading for word in ("L_WA", "L_pA", "A-weighted", "dB(A)"))
         assert weighted == one.key.endswith("_db_a"), one
+
+
+def test_every_mechanism_has_words_of_its_own() -> None:
+    assert set(WORDS) == set(MECHANISMS)
+    assert len(set(WORDS.values())) == len(WORDS)
+    for mechanism, words in WORDS.items():
+        assert mechanism.split("_")[0] in words
