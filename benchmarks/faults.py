@@ -136,9 +136,10 @@ def copy_tree(target: Path) -> None:
     )
     for name in filter(None, listed.stdout.decode().split("\0")):
         source = ROOT / name
-        if source.is_file():
+        if source.is_symlink() or source.is_file():  # the package's rooms are links to folders
             (target / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source, target / name)
+            (target / name).unlink(missing_ok=True)
+            shutil.copy2(source, target / name, follow_symlinks=False)
 
 
 def environment(root: Path) -> dict[str, str]:
@@ -152,23 +153,35 @@ def environment(root: Path) -> dict[str, str]:
     }
 
 
-def run_tests(root: Path, tests: list[str]) -> tuple[int, str]:
-    """Run tests on a copy until the first fails: the exit code and the end of what they print."""
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=line", *tests]
-    outcome = subprocess.run(command, cwd=root, env=environment(root), capture_output=True, text=True, check=False)
+def run_tests(root: Path, tests: list[str], *options: str, timeout: float | None = None) -> tuple[int, str]:
+    """Run tests on a copy until the first fails: the exit code and the end of what they print.
+
+    Tests that do not end within the timeout [s] fail.
+    """
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=line"]
+    command += [*options, *tests]
+    surroundings = environment(root)
+    try:
+        outcome = subprocess.run(
+            command, cwd=root, env=surroundings, capture_output=True, text=True, check=False, timeout=timeout
+        )
+    except subprocess.TimeoutExpired:
+        return 1, f"no end within {timeout:.0f} s"
     return outcome.returncode, outcome.stdout[-1500:]
 
 
-def caught(root: Path, fault: Fault, tests: list[str]) -> tuple[bool, str]:
+def caught(
+    root: Path, fault: Fault, tests: list[list[str]], *options: str, timeout: float | None = None
+) -> tuple[bool, str]:
     """Whether tests fail with a fault in the copy, and the end of what they print.
 
-    The files run in the order of the list, quick ones first, until one fails.
+    Each list of files is one run of pytest; quick ones come first, and the first that fails ends it.
     """
     code, text = 0, ""
     before = fault.put_into(root)
     try:
-        for name in tests:
-            code, text = run_tests(root, [name])
+        for names in tests:
+            code, text = run_tests(root, names, *options, timeout=timeout)
             if code != 0:
                 break
     finally:
@@ -215,7 +228,7 @@ def main() -> None:
             while not failures:
                 fault = waiting.get_nowait()
                 begin = time.perf_counter()
-                done[fault.number], text = caught(root, fault, tests[fault.area])
+                done[fault.number], text = caught(root, fault, [[name] for name in tests[fault.area]])
                 verdict = "caught" if done[fault.number] else "MISSED"
                 sys.stdout.write(
                     f"{fault.number:4d} {verdict} {time.perf_counter() - begin:6.1f} s  {fault.area}: {fault.file}: "

@@ -14,7 +14,7 @@ from gearwhine.coupling import CoupledMachine, Machine, MountedBearing, Shaft, S
 from gearwhine.coupling.gears import Gear, SquareStiffness, loaded_transmission_error
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift_compliance, shift_shares
-from gearwhine.coupling.machine.components import rotor_component
+from gearwhine.coupling.machine.components import _kinds, rotor_component
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial
 
@@ -518,3 +518,9 @@ def test_paths_that_join_at_a_wheel_share_the_load_at_rest_as_in_motion(bore: fl
     assert np.array([pair.force for pair in rigid.operating_point().pairs]) == pytest.approx(still, rel=2e-3)
     for pair, loaded in zip(point.pairs, machine.loaded_pairs(), strict=True):
         assert pair.mean_stiffness == pytest.approx(loaded.static.mean_mesh_stiffness, rel=0.05)
+
+
+def test_a_mode_as_high_as_the_shaft_s_highest_is_its_own_whatever_rounding_does() -> None:
+    highest = 1234.5
+    frequencies = np.array([10.0, highest * (1.0 - 1e-12), highest, highest * (1.0 + 1e-12), highest * (1.0 + 1e-6)])
+    assert _kinds("torsion", frequencies, highest) == ("torsion",) * 4 + ("residual",)

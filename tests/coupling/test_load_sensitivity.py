@@ -9,6 +9,7 @@ import pytest
 from own_statics import one_stage
 
 from gearwhine.coupling import Machine, MountedBearing, machine_description
+from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, pair_adjoints, tilt_adjoint
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, StaticBearing, static_bearing
@@ -42,6 +43,30 @@ MACHINES = {
     "pedestals": on_pedestals(),
     "preloaded angular-contact ball bearings": on_balls(),
 }
+
+
+def in_housing() -> Machine:
+    """The bearings in seats of an elastic body, whose seats turn in its modes, each bearing beside its seat."""
+    machine = one_stage()
+    motions = np.random.default_rng(3).normal(size=(len(machine.bearings), 8, 6)) * np.repeat([0.05, 0.6], 3)
+    names = [one.bearing.name for one in machine.bearings]
+    starts = [machine.shaft(one.rotor).start for one in machine.bearings]
+    seat_z = [start + one.bearing.at + 4e-3 for start, one in zip(starts, machine.bearings, strict=True)]
+    stiffness = np.diag((2.0 * np.pi * np.linspace(300.0, 1500.0, 8)) ** 2)
+    box = HousingComponent(
+        "box",
+        ("housing",) * 8,
+        stiffness,
+        np.zeros((8, 8)),
+        np.zeros((8, 8)),
+        seats=dict(zip(names, motions, strict=True)),
+        seat_z=dict(zip(names, seat_z, strict=True)),
+        sensors={},
+        participation=np.zeros((8, 3)),
+    )
+    return one_stage(
+        bearings=[replace(one, seat=name) for one, name in zip(machine.bearings, names, strict=True)], housing=box
+    )
 
 
 def outcomes(point: OperatingPoint, bearing: str) -> FloatArray:
@@ -91,6 +116,18 @@ def difference(machine: Machine, number: int, change: Callable[..., OperatingPoi
     found = [outcomes(change(machine, number, size), first) for size in (step, -step, 2.0 * step, -2.0 * step)]
     near, far = found[0] - found[1], found[2] - found[3]
     return np.asarray((8.0 * near - far) / (12.0 * step))
+
+
+def test_position_of_a_bearing_in_a_housing_whose_seats_tilt() -> None:
+    """The bearing goes along its seat, which is out of line with its shaft by more than the shaft's own slope."""
+    machine = in_housing()
+    point = replace(machine, gravity=GRAVITY).operating_point()
+    (pair,) = pair_adjoints(point)
+    for number in (0, len(machine.bearings) - 1):
+        name = machine.bearings[number].bearing.name
+        either = [outcomes(moved(machine, number, size), name)[:2] for size in (5e-5, -5e-5)]
+        own = [pair[outcome].by_bearing_position(name) for outcome in OUTCOMES[:2]]
+        np.testing.assert_allclose(own, (either[0] - either[1]) / 1e-4, rtol=2e-4)
 
 
 @pytest.mark.slow

@@ -83,6 +83,9 @@ def test_each_sensor_s_spectrum_stands_in_its_own_panel(drawn: Drawn) -> None:
         for line in leaders
     }
     assert len(named) == len(row.texts)
+    # Names begin with their frequency, to the hertz.
+    said = sorted(float(text.get_text().split(" Hz ")[0]) for text in row.texts)
+    assert said == pytest.approx(sorted(named), abs=0.51)
     for axes, (name, spectrum) in zip(shown, drawn.solved.sensor_spectra.items(), strict=True):
         assert axes.get_title(loc="left") == name
         frequencies, amplitude = heights(axes)
@@ -239,6 +242,10 @@ def test_bars_with_and_without_load_have_the_curves_colours() -> None:
     for container, colour, values in zip(bars.containers, (GREY, BLUE), ([1.0, 2.0], [3.0, 4.0]), strict=True):
         assert [bar.get_height() for bar in container] == pytest.approx(values)
         assert {tuple(bar.get_facecolor()) for bar in container} == {to_rgba(colour)}
+    # The two bars of a harmonic stand on either side of its number.
+    middles = np.array([[bar.get_x() + 0.5 * bar.get_width() for bar in container] for container in bars.containers])
+    np.testing.assert_allclose(middles.mean(axis=0), [1.0, 2.0])
+    assert (middles[0] < middles[1]).all()
     # Bars of nothing take no room beside the others.
     harmonics["unloaded"] = np.array([1e-18, 0.0])
     _, bars = draw_transmission_error("t", phases, 0.0 * phases, harmonics, loaded=loaded).axes

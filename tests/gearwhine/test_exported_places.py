@@ -12,6 +12,7 @@ from sounding_gearbox import small_gearbox
 
 from gearwhine.analyses.case import export_results
 from gearwhine.cli import run_command
+from gearwhine.output.export import _microphone_places
 from gearwhine.output.manifest import MANIFEST
 
 
@@ -109,3 +110,15 @@ def test_a_case_is_not_changed_by_its_export(folder: Path, tmp_path: Path, capsy
     command = ["export", "small-gearbox", "-q", "--uff", "-o", str(folder), "--set", "housing.sensor.top.direction=x"]
     assert run_command(command) == 2
     assert "results are exported as they are" in capsys.readouterr().err
+
+
+def test_microphones_are_points_after_those_of_the_sensors() -> None:
+    """A point of a universal file has one number: two microphones after three sensors are the fourth and the fifth."""
+    rows = np.array([[0.1, 1.2, 0.3], [-0.4, 0.5, 0.6]])
+    data = xr.Dataset(
+        {"microphone_position": (("microphone", "axis"), rows)}, {"microphone": ["ear", "window"], "axis": list("xyz")}
+    )
+    places, positions = _microphone_places(data, 3)
+    assert places == {("microphone", "ear"): (4, 0), ("microphone", "window"): (5, 0)}
+    np.testing.assert_array_equal(positions, rows)
+    assert _microphone_places(xr.Dataset(), 3) == ({}, [])

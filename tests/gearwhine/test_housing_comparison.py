@@ -11,7 +11,7 @@ from gearwhine.housing.correlation.comparison import Pairing
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
 from gearwhine.output import finite, json_text
 from gearwhine.output.terminal import shown_by
-from gearwhine.results.comparison import comparison_document, sections
+from gearwhine.results.comparison import _survey, comparison_document, sections
 from gearwhine.solve.comparison import compare_housing, pair_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 
@@ -106,3 +106,28 @@ def test_pairs_of_frequencies_have_the_mac_of_measured_shapes(
         assert document["pairs"][0]["mac"] == pytest.approx(1.0)
         assert document["pairs"][3]["mac"] == pytest.approx(1.0)
         assert document["pairs"][2]["mac"] < 0.9
+
+
+def test_distances_of_a_survey_are_told_in_millimetres_each_its_own() -> None:
+    survey = {
+        "points": 7,
+        "degrees_of_freedom": 19,
+        "rms_distance_m": 0.0012,
+        "worst_distance_m": 0.0034,
+        "worst_point": "5",
+        "tolerance_m": 0.0021,
+        "far_points": ["5", "6"],
+        "alignment": {
+            "by": "corners",
+            "turned_degrees": 12.0,
+            "rms_m": 0.0056,
+            "largest_m": 0.0078,
+            "remarks": ["turned"],
+        },
+    }
+    assert list(_survey(survey)) == [
+        "Survey: 7 points, 19 measured directions; 1.2 mm from the surface in the mean, 3.4 mm at worst (point 5).",
+        "Farther than 2.1 mm: 5, 6.",
+        "Aligned by corners, turned by 12.0°; 5.6 mm left in the mean, 7.8 mm at most.",
+        "Note: turned.",
+    ]

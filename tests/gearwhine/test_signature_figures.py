@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from gearwhine.figures.machine.run_up import draw_order_slices, draw_run_up_map
 from gearwhine.figures.machine.transient import (
     between_samples,
     draw_contributions,
+    draw_friction,
     draw_modal_coordinates,
     draw_orbits,
     outlined,
@@ -40,8 +43,16 @@ def test_run_up(tmp_path: Path) -> None:
     spectra = spectrogram(signal, interval, 1000, 2000, to_the_ends=True).up_to(1200.0)
     speeds = 60.0 * 20.0 * turning.at(spectra.times)[1]
     level_map = draw_run_up_map(
-        "Run-up", spectra, speeds, unit="m/s²", mesh_orders=[28.0], housing_frequencies=np.array([600.0])
+        "Run-up",
+        spectra,
+        speeds,
+        unit="m/s²",
+        note="cover",
+        mesh_orders=[28.0],
+        housing_frequencies=np.array([600.0]),
     )
+    assert [text.get_text() for text in level_map.texts[:2]] == ["Run-up", "cover"]
+    assert [axes.get_ylabel() for axes in level_map.axes if "dB" in axes.get_ylabel()] == ["level [dB re 1 µm/s²]"]
     save(level_map, tmp_path / "map.png")
     # Of 28 × 10 to 30 Hz the first two harmonics leave the panel at its top or right end, numbered there.
     labels = {text.get_text(): text for text in level_map.axes[0].texts}
@@ -193,3 +204,26 @@ def test_modal_coordinates_are_told_with_their_fixed_part(tmp_path: Path) -> Non
     assert legend is not None
     assert legend.get_texts()[0].get_text() == "mode 1: d.c. 3.00e+00, a.c. 1.0e+00 rms"
     save(figure, tmp_path / "modal.png")
+
+
+def test_friction_of_each_pair_has_its_force_and_its_power() -> None:
+    """Two pairs of other mesh frequencies, whose records are lines through time: six of their periods are drawn."""
+    times = 2.0 + 1e-5 * np.arange(20_000)
+    records = {
+        name: np.column_stack([force * (times - 2.0), np.full(times.size, power)])
+        for name, force, power in (("a -> b", 3.0, 40.0), ("c -> d", -5.0, 90.0))
+    }
+    histories: Any = SimpleNamespace(times=times, mesh_friction=records)
+    figure = draw_friction("Friction", histories, {"c -> d": 100.0, "a -> b": 250.0}, note="Machine, 3000 rpm")
+    assert [text.get_text() for text in figure.texts[:2]] == ["Friction", "Machine, 3000 rpm"]
+    shown = {axes.get_title(loc="left"): axes for axes in figure.axes}
+    for name, period, slope, power in (("a → b", 4.0, 3.0, 40.0), ("c → d", 10.0, -5.0, 90.0)):
+        force = shown[f"{name}: across the line of action"]
+        below = figure.axes[figure.axes.index(force) + 1]
+        assert below.get_title(loc="left") == f"{power:g} W in the mean"
+        assert (force.get_ylabel(), below.get_ylabel()) == ("friction force [N]", "power that friction takes [W]")
+        assert force.get_xlabel() == below.get_xlabel() == "time [ms]"
+        assert force.get_xlim() == below.get_xlim() == pytest.approx((0.0, 6.0 * period))
+        at, values = force.lines[0].get_data()
+        np.testing.assert_allclose(values, slope * 1e-3 * np.asarray(at), atol=1e-9)
+        np.testing.assert_allclose(below.lines[0].get_ydata(), power)

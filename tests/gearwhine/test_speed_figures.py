@@ -81,6 +81,14 @@ def test_campbell_marks_critical_speeds_on_the_line_of_once_per_turn() -> None:
     marks = drawn(figure.axes[0], "critical")
     assert np.array(marks)[:, :, 0] == pytest.approx(np.array([[s * RPM, s / (2 * math.pi)] for s in (180.0, 222.0)]))
     assert {f"{180.0 * RPM:.4g}", f"{222.0 * RPM:.4g}"} <= texts(figure)  # and none beyond the axis
+    low = draw_campbell(
+        "t",
+        diagram(SPEEDS, *branches()),
+        critical_speeds=[180.0, 222.0],
+        critical_directions=[-1.0, 1.0],
+        frequency_limit=200.0,
+    )
+    assert [mark[0][0] for mark in drawn(low.axes[0], "critical")] == [pytest.approx(180.0 * RPM)]
 
 
 def test_campbell_shows_the_decrement_and_where_stability_ends() -> None:
@@ -155,6 +163,14 @@ def test_critical_map_with_the_bearings_own_stiffness() -> None:
     )
     ((_, operation),) = drawn(axes, "operation")
     assert operation[0] == pytest.approx(500.0 * RPM)
+
+
+def test_two_stiffnesses_are_a_critical_map_and_one_is_none() -> None:
+    (axes,) = draw_critical_map("t", [1e6, 4e6], [[100.0], [200.0]]).axes
+    ((x, y),) = drawn(axes, "critical speed")
+    assert (x, y) == (pytest.approx([1e6, 4e6]), pytest.approx([100.0 * RPM, 200.0 * RPM]))
+    with pytest.raises(ValueError, match="two or more"):
+        draw_critical_map("t", [1e6], [[100.0]])
 
 
 def test_meetings_with_a_stiffness_that_grows_with_speed() -> None:

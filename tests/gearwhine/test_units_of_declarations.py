@@ -1,0 +1,215 @@
+"""Units of declared quantities and columns: the key's unit, that of the file and that of the heading are one.
+
+A key says its unit, ``force_n``; the file's unit is said beside it, and a heading has a unit with the factor to it. The
+table of units here is this test's own. What is declared in functions is read too: the calls are taken from the source.
+"""
+
+import ast
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+import pytest
+
+import gearwhine.results as results
+from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
+from gearwhine.results.line_columns import MECHANISMS as WORDS
+
+_PI = 3.141592653589793
+# Unit as it is shown: its dimension, and how many of SI's units it is.
+SHOWN = {
+    "m": ("m", 1.0),
+    "mm": ("m", 1e-3),
+    "µm": ("m", 1e-6),
+    "nm": ("m", 1e-9),
+    "mm²": ("m2", 1e-6),
+    "m²": ("m2", 1.0),
+    "N": ("N", 1.0),
+    "kN": ("N", 1e3),
+    "N m": ("N m", 1.0),
+    "N·m": ("N m", 1.0),
+    "N/mm": ("N/m", 1e3),
+    "N/µm": ("N/m", 1e6),
+    "N/m": ("N/m", 1.0),
+    "µrad": ("rad", 1e-6),
+    "mrad": ("rad", 1e-3),
+    "rad": ("rad", 1.0),
+    "°": ("rad", _PI / 180.0),
+    "Hz": ("Hz", 1.0),
+    "rpm": ("rpm", 1.0),
+    "krpm": ("rpm", 1e3),
+    "Pa": ("Pa", 1.0),
+    "MPa": ("Pa", 1e6),
+    "GPa": ("Pa", 1e9),
+    "kg": ("kg", 1.0),
+    "s": ("s", 1.0),
+    "ms": ("s", 1e-3),
+    "h": ("h", 1.0),
+    "W": ("W", 1.0),
+    "m/s²": ("m/s2", 1.0),
+    "m/s": ("m/s", 1.0),
+    "dB": ("dB", 1.0),
+    "%": ("%", 1.0),
+}
+# End of a key: the dimension of its value, which is in SI's unit, or in turns a minute, hours, decibels.
+ENDS = {
+    "_m_per_s2": "m/s2",
+    "_m_per_s": "m/s",
+    "_n_per_m": "N/m",
+    "_n_m": "N m",
+    "_kg": "kg",
+    "_rad": "rad",
+    "_hz": "Hz",
+    "_rpm": "rpm",
+    "_pa": "Pa",
+    "_n": "N",
+    "_m": "m",
+    "_m2": "m2",
+    "_s": "s",
+    "_h": "h",
+    "_w": "W",
+    "_db": "dB",
+    "_db_a": "dB",
+    "_percent": "percent",
+}
+_WITHIN = {"harmonics"}
+"""Keys within another that says their unit: harmonics of ``transmission_error_m``."""
+
+
+class Declared(NamedTuple):
+    """A call that declares a column or a quantity: where, key, name in the file, heading, unit there, and factor."""
+
+    where: str
+    key: str
+    name: str
+    heading: str
+    unit: str | None
+    scale: float
+    converted: bool  # from the file's unit to the key's
+
+
+def text_of(node: ast.expr | None) -> str | None:
+    """Text of a literal, with {} for what an f-string puts in; None for another expression."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        return "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
+    return None
+
+
+def number_of(node: ast.expr | None, module: ModuleType) -> float | None:
+    """Number of a literal or of a constant of the module; None for another expression."""
+    if isinstance(node, ast.Constant):
+        return float(node.value)
+    return float(getattr(module, node.id)) if isinstance(node, ast.Name) and hasattr(module, node.id) else None
+
+
+def declared(module: ModuleType) -> Iterator[Declared]:
+    """Columns and quantities of a module that are shown or filed as they are, not through a function."""
+    assert module.__file__ is not None
+    places = {"Column": ("heading", "of", "form", "scale"), "Quantity": ("key", "of", "name", "dimensions", "unit")}
+    for node in ast.walk(ast.parse(Path(module.__file__).read_text(encoding="utf-8"))):
+        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in places):
+            continue
+        given = dict(zip(places[node.func.id], node.args, strict=False))
+        given |= {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
+        key = text_of(given.get("of" if node.func.id == "Column" else "key"))
+        scale = number_of(given["scale"], module) if "scale" in given else 1.0
+        through = "shown" in given and text_of(given["shown"]) is None
+        if key is not None and scale is not None:
+            heading = "" if through else text_of(given.get("heading")) or ""
+            where, name = f"{Path(module.__file__).name}:{node.lineno}", text_of(given.get("name")) or ""
+            yield Declared(where, key, name, heading, text_of(given.get("unit")), scale, "document" in given)
+
+
+def dimension_of(key: str) -> str | None:
+    """Dimension that the end of a key says, the last of its steps that says one."""
+    for step in reversed(key.split(".")):
+        for end in sorted(ENDS, key=len, reverse=True):
+            if step.endswith(end):
+                return ENDS[end]
+    return None
+
+
+MODULES = sorted(path.stem for path in Path(results.__path__[0]).glob("[a-z]*.py"))
+DECLARED = [one for name in MODULES for one in declared(importlib.import_module(f"gearwhine.results.{name}"))]
+
+
+def test_a_factor_takes_the_key_s_unit_to_that_of_the_heading() -> None:
+    wrong, held = [], 0
+    for one in DECLARED:
+        shown = one.heading.rpartition("[")[2].partition("]")[0].split(",")[0].removesuffix(" rms").split(" re ")[0]
+        dimension = "%" if "percent" in one.key else dimension_of(one.key)
+        unit, size = SHOWN.get(shown, (None, 1.0))
+        if "[" not in one.heading or (dimension is None and unit != "%"):
+            continue
+        if dimension is None:  # a part of 1
+            dimension, size = "%", 1e-2
+        held += 1
+        if unit != dimension or one.scale * size != pytest.approx(1.0, rel=1e-12):
+            wrong.append((one.where, one.key, one.heading, one.scale))
+    assert wrong == []
+    assert held > 100
+
+
+NAMES = {
+    "frequency": {"Hz"},
+    "speed": {"rpm", "rad s-1"},
+    "force": {"N"},
+    "thrust": {"N"},
+    "preload": {"N"},
+    "torque": {"N m"},
+    "stiffness": {"N/m", ""},  # of all motions together in mixed units
+    "displacement": {"m", "m kg0.5"},
+    "deflection": {"m", "kg-0.5"},  # of a mode
+    "misalignment": {"rad"},
+    "tilt": {"rad"},
+    "rotation": {"rad"},
+    "pressure": {"Pa"},
+    "power": {"W"},
+    "period": {"s"},
+    "time": {"s"},
+    "level": {"dB"},
+    "ratio": {"1"},
+    "spectrum": {"m/s2", "N", "m kg0.5", "m kg0.5 s-2"},  # of modal coordinates too
+}
+"""Last word of a name in the file: units that it may have."""
+
+
+def test_the_unit_in_the_file_is_one_of_what_its_name_says() -> None:
+    named = [(one, one.name.rpartition("_")[2]) for one in DECLARED if one.unit is not None and one.name]
+    held = [(one, word) for one, word in named if word in NAMES]
+    assert [(one.where, one.name, one.unit) for one, word in held if one.unit not in NAMES[word]] == []
+    assert len(held) > 30
+
+
+def test_the_unit_in_the_file_is_that_of_the_key() -> None:
+    own = {"m/s2", "m/s", "N/m", "N m", "kg", "rad", "Hz", "rpm", "Pa", "N", "m", "m2", "s", "h", "W", "dB"}
+    compared = [(one, dimension_of(one.key)) for one in DECLARED if one.unit and one.key and not one.converted]
+    wrong = [(one.where, one.key, one.unit) for one, key in compared if key is not None and one.unit != key]
+    assert wrong == []
+    # A unit of the file without one in the key is the document's loss.
+    unsaid = [
+        (one.where, one.key, one.unit)
+        for one, key in compared
+        if key is None and one.unit in own and one.key not in _WITHIN
+    ]
+    assert unsaid == []
+    assert len(compared) > 50
+
+
+def test_a_level_is_said_to_be_a_weighted_where_it_is() -> None:
+    levels = [one for one in DECLARED if dimension_of(one.key) == "dB" and one.heading]
+    assert len(levels) > 8
+    for one in levels:
+        weighted = any(word in one.heading for word in ("L_WA", "L_pA", "A-weighted", "dB(A)"))
+        assert weighted == one.key.endswith("_db_a"), one
+
+
+def test_every_mechanism_has_words_of_its_own() -> None:
+    assert set(WORDS) == set(MECHANISMS)
+    assert len(set(WORDS.values())) == len(WORDS)
+    for mechanism, words in WORDS.items():
+        assert mechanism.split("_")[0] in words
