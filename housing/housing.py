@@ -210,10 +210,11 @@ class Housing:
         HousingError
             As :class:`Housing`.
         """
+        placed: Sequence[object] = sensors  # of any kind until the housing is made
         refuse(
             (
                 Finding(("sensor", sensor.name), "position", sensor.position, expected)
-                for sensor in sensors
+                for sensor in placed
                 if isinstance(sensor, Sensor)
                 if (expected := point_off_box(sensor.position, box))
             ),

@@ -306,7 +306,7 @@ class RotorComponent(Component):
 def _component_findings(component: HousingComponent) -> Iterator[Finding]:
     """Yield what no housing is: K and C without negative eigenvalues, G skew, motions by each coordinate."""
     part, n = ("housing", component.name), component.size
-    shapes: dict[str, tuple[object, tuple[int, ...]]] = {
+    shapes: dict[str, tuple[FloatArray, tuple[int, ...]]] = {
         name: (getattr(component, name), (n, n)) for name in ("stiffness", "damping", "gyroscopic")
     }
     shapes |= {f"seats.{name}": (motion, (n, 6)) for name, motion in component.seats.items()}

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
 from gearwhine.case.checks.keys_of_attributes import key_in_gear
-from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
+from gearwhine.case.errors import LOOK_UP, NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Case, Draft, loaded_rotors
@@ -98,7 +98,7 @@ def _at(entry: Location, findings: Iterable[PartFinding]) -> Iterator[Finding]:
     for finding in findings:
         steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
         location = (*entry, *steps)
-        yield Finding(location, finding.expected, *([UNSAID] if finding.value is None else []))
+        yield Finding(location, finding.expected, UNSAID if finding.value is None else LOOK_UP)
 
 
 def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
