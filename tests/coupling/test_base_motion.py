@@ -175,5 +175,5 @@ def test_absolute_acceleration_of_a_place() -> None:
 
 
 def test_tables_of_another_shape() -> None:
-    with pytest.raises(CouplingError, match="expected six for each"):
+    with pytest.raises(CouplingError, match="expected six finite accelerations for each"):
         BaseHistory(np.array([0.0, 1.0]), np.zeros((2, 3)))

@@ -25,6 +25,7 @@ from gearwhine.meshes import Mesh
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, Unbalance
 
 ROTOR = Rotor("r", [Segment(0.2, 0.03, 0.0, ShaftMaterial(207e9, 80e9, 7850.0))])
+SHAKEN = BaseHarmonic(100.0, np.ones(6, dtype=np.complex128))
 GEAR = Gear("pinion", 25, 3e-3, 0.35, 0.02)
 UNIT = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 PATCH = Patch("floor")
@@ -42,7 +43,7 @@ LISTS: dict[str, tuple[Callable[[Any], Any], str, Any, Any]] = {
     "force": (lambda given: ShaftForce("r", 0.1, given), "force", np.arange(3.0), (0.0, 1.0, 2.0)),
     "torques": (lambda given: Driving(given), "torques", [Torque("r", 0.1, 5.0)], (Torque("r", 0.1, 5.0),)),
     "gravity": (lambda given: Driving(gravity=given), "gravity", np.arange(3.0), (0.0, 1.0, 2.0)),
-    "parts": (lambda given: BaseMotion(given), "parts", [None, None], (None, None)),
+    "parts": (lambda given: BaseMotion(given), "parts", [SHAKEN, SHAKEN], (SHAKEN, SHAKEN)),
     "pitch": (
         lambda given: replace(GEAR, pitch_deviations=given),
         "pitch_deviations",
@@ -183,6 +184,7 @@ def test_every_list_of_a_housing_is_its_own(block_of: Callable[..., Mesh]) -> No
     fixtures = [Support("floor", box=((-9.0, -9.0, -9.0), (9.0, 9.0, 9.0)), stiffness=(1e8, 1e8, 1e8))]
     seats, sensors = [Seat("bore", (0.0, 0.0, 0.0))], [Sensor("top", (0.0, 0.0, 0.0))]
     materials = {"all": STEEL}
+    mesh = replace(mesh, surfaces={"bore": mesh.boundary})
     housing = Housing(mesh, STEEL, materials, fixtures, seats, sensors)
     for parts in (fixtures, seats, sensors):
         parts.clear()
