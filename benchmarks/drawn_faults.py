@@ -66,7 +66,8 @@ _SWAPPED: dict[type, tuple[str, str]] = {
 class DrawnFault(Fault):
     """A piece of a file from ``begin`` on; ``area`` is the kind of the fault.
 
-    ``spans`` are the first and last lines of the piece and of the statements around it, the innermost first.
+    ``spans`` are the first and last lines of the piece, of the statements around it, the innermost first, and of those
+    that use a constant of the module.
     """
 
     begin: int = 0
@@ -99,6 +100,18 @@ class Module:
         imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
         # Another function of a module, such as of numpy, is no slip of the pen.
         self.modules = {name.asname or name.name for node in imports for name in node.names}
+        # No test runs the line of a constant of the module: it is the lines that use it that run.
+        self.constants = {
+            node.lineno: target.id
+            for node in tree.body
+            if isinstance(node, ast.Assign | ast.AnnAssign)
+            for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+            if isinstance(target, ast.Name)
+        }
+        self.uses: dict[str, list[tuple[int, int]]] = defaultdict(list)
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+                self.uses[node.id].append((node.lineno, node.lineno))
         self.nodes = list(self.walk(tree, (), ("",)))
         for node, _, place in self.nodes:
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -167,7 +180,8 @@ class Module:
                 first = self.text.count("\n", 0, begin) + 1
                 lines = (first, first + before.count("\n"))
                 source = self.rows[first - 1].strip()
-                fault = DrawnFault(0, kind, self.name, before, after, begin, (lines, *spans), source)
+                used = self.uses.get(self.constants.get(spans[-1][0], ""), [])
+                fault = DrawnFault(0, kind, self.name, before, after, begin, (lines, *spans, *used), source)
                 if before != after:
                     found[begin, before, after] = fault
         return list(found.values())
