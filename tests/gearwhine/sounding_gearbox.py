@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
@@ -13,7 +14,6 @@ from gearwhine.analyses.run import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.solve.housing_modes import SolvedHousing
-from coupled_cases import about_operating_point
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
