@@ -115,7 +115,7 @@ class MachineStudy:
     A shaft of 0.5 m on two stiff bearings:
 
     >>> import gearwhine as gw
-    >>> shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.5, 0.03, 0.0, gw.ShaftMaterial(207e9, 0.3, 7850.0))]))
+    >>> shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.5, 0.03, 0.0, gw.STEEL)]))
     >>> bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"at {at}", at, 1e8), "shaft", None) for at in (0.02, 0.48)]
     >>> study = gw.MachineStudy(gw.Machine([shaft], bearings, speed=100.0))
     >>> modes = study.system()

@@ -62,7 +62,7 @@ def in_housing() -> Machine:
         seats=dict(zip(names, motions, strict=True)),
         seat_z=dict(zip(names, seat_z, strict=True)),
         sensors={},
-        participation=np.zeros((8, 3)),
+        participation=np.zeros((8, 6)),
     )
     return one_stage(
         bearings=[replace(one, seat=name) for one, name in zip(machine.bearings, names, strict=True)], housing=box
