@@ -237,7 +237,8 @@ class Result(Generic[Solved]):
         else:
             with staging(Path(folder)) as place:
                 write(place)
-                (place / SUMMARY).write_text(f"{self.json()}\n", encoding="utf-8")
+                if self.case is None:
+                    (place / SUMMARY).write_text(f"{self.json()}\n", encoding="utf-8")
                 files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
             self.document.update(folder=str(folder), files=files)
         return list(self.document["files"])
