@@ -255,9 +255,8 @@ def _loaded_case(
     part = None if housing is None else reduce_housing(case, housing, progress)
     machine = described_machine(case, part)
     load, warnings = find_load(case, machine, progress)
-    taken = case if varies else case.model_copy(update={"transient": None})
-    loaded = load_machine(machine, None if load is None else load.point, run_of(taken), progress)
-    return MachineUnderLoad(case.title, loaded, load, warnings, taken, housing)
+    loaded = load_machine(machine, None if load is None else load.point, run_of(case) if varies else None, progress)
+    return MachineUnderLoad(case.title, loaded, load, warnings, case, housing)
 
 
 def system(
@@ -358,7 +357,7 @@ def steady(
     def with_assumed_damping(solved: SolvedSteady) -> SolvedSteady:
         return solved if solved.curve is None else replace(solved, assumed_damping=assumed_mesh_damping(case))
 
-    result = of_machine.steady(
+    return of_machine.steady(
         loaded,
         over_speed=branch_speeds(case, downwards=down) if curve or down else None,
         points=points,
@@ -366,7 +365,6 @@ def steady(
         change=with_assumed_damping,
         progress=progress,
     )
-    return replace(result, case=case)
 
 
 def sound(

@@ -11,6 +11,7 @@ import xarray as xr
 
 import gearwhine as gw
 from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
+from gearwhine.solve.housing_modes import bearing_places, describe_housing
 from gearwhine.solve.machine import plan_of
 
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
@@ -110,3 +111,40 @@ def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.MachineS
         TorqueOverTime((1.0, 0.0), (1.0, 2.0))
     with pytest.raises(CouplingError, match="expected one of the two"):
         machine.simulate()
+
+
+@pytest.mark.slow
+def test_a_machine_in_its_housing_has_the_lines_of_the_case() -> None:
+    """Sensors, mechanisms of their lines, bands by damping and the error of the modal basis, at rest and in motion."""
+    coarse = {"housing.box.mesh_size": "45 mm", "transient.revolutions": 4, "transient.discard": 2}
+    study = gw.load("small-gearbox", coarse)
+    machine = gw.MachineStudy(study.machine, study.case.title)
+    moved, expected = machine.simulate(plan_of(study.case)), study.simulate()
+    for name in ("sensor_acceleration", "sensor_spectrum", "mesh_force", "bearing_force"):
+        np.testing.assert_array_equal(moved.dataset[name], expected.dataset[name])
+    for found, of_case in zip(moved.document["sensors"], expected.document["sensors"], strict=True):
+        assert found == of_case
+        assert {"parts", "band_db", "uncertainty"} <= found["peaks"][0].keys()
+    loaded, by_case = machine.operating_point(), study.operating_point()
+    assert loaded.document["bearings"] == by_case.document["bearings"]
+    assert loaded.document["gear_pairs"] == by_case.document["gear_pairs"]
+    alike(machine.steady().document, study.steady().document)
+
+
+@pytest.mark.slow
+def test_a_machine_on_the_modes_of_a_housing_of_python_is_that_of_the_case() -> None:
+    """The housing is meshed and solved by `gw.Housing`, with the parts of the case; its modes carry the machine."""
+    coarse = {"housing.box.mesh_size": "45 mm", "transient": ""}
+    study = gw.load("small-gearbox", coarse)
+    case, solved = study.case, study.housing
+    assert solved is not None
+    assert case.housing is not None
+    described = describe_housing(case, solved.mesh)
+    places = bearing_places(case)
+    modes = described.modes(below_hz=case.housing.frequency_limit, bearings=places)
+    found = gw.MachineStudy(replace(study.machine, housing=modes)).steady()
+    expected = study.steady()
+    motions = (result.document["motions"][0]["sensors"] for result in (found, expected))
+    for one, other in zip(*motions, strict=True):
+        assert one["name"] == other["name"]
+        assert one["rms_m_per_s2"] == pytest.approx(other["rms_m_per_s2"], rel=1e-6)
