@@ -61,6 +61,11 @@ def _shown(value: object) -> str:
     return text if len(text) <= 80 else f"{text[:77]}..."
 
 
+def in_mm(length: float) -> str:
+    """Return a length [m] as text in mm, for a message."""
+    return f"{length * 1e3:.6g} mm"
+
+
 class RefusedPartError(ValueError):
     """A part that cannot be.
 
@@ -138,6 +143,22 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Choice:
+    """Rule of one of some words."""
+
+    words: tuple[str, ...]
+
+    @property
+    def expected(self) -> str:
+        """Expected value, in words."""
+        return f"one of {', '.join(self.words)}"
+
+    def accepts(self, value: object) -> bool:
+        """Whether a value is one of the words."""
+        return isinstance(value, str) and value in self.words
+
+
+@dataclass(frozen=True)
 class Instance:
     """Rule of an object of a type, such as a part where a part is expected."""
 
@@ -188,7 +209,7 @@ class Flags:
         return [flag in (True, False) for flag in value] == [True] * self.count
 
 
-Rule = Number | Text | Instance | Numbers | Flags
+Rule = Number | Text | Choice | Instance | Numbers | Flags
 
 
 def kind_findings(part: Part, owner: object, **kinds: type | tuple[type, ...]) -> Iterator[Finding]:

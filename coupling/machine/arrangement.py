@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
-from gearwhine.numerics.findings import Finding, Part
+from gearwhine.numerics.findings import Finding, Part, in_mm
 
 _BORE_ERROR = 1e-3
 """Offset of a seat below which it is one of manufacture [m]."""
@@ -45,8 +45,8 @@ def seat_findings(
     offset = math.hypot(axis[0] - seat.center[0], axis[1] - seat.center[1])
     if offset > LARGEST_OFFSET:
         expected = (
-            f'a seat on the axis of rotor "{rotor}"; the seat\'s centre is {_mm(offset)} off it '
-            f"(axis at {_mm(axis[0])}, {_mm(axis[1])}; centre at {_mm(seat.center[0])}, {_mm(seat.center[1])})"
+            f'a seat on the axis of rotor "{rotor}"; the seat\'s centre is {in_mm(offset)} off it '
+            f"(axis at {in_mm(axis[0])}, {in_mm(axis[1])}; centre at {in_mm(seat.center[0])}, {in_mm(seat.center[1])})"
         )
         if offset < _BORE_ERROR:
             expected += "; what a bore out of place does to the flanks is errors.helix.slope of a gear"
@@ -54,8 +54,8 @@ def seat_findings(
     z = start + at
     if seat.reach is not None and abs(z - seat.center[2]) > seat.reach:
         expected = (
-            f'a station within {_mm(seat.reach)} of seat "{seat.name}" along z (this one is at z = {_mm(z)}, '
-            f"the seat at {_mm(seat.center[2])})"
+            f'a station within {in_mm(seat.reach)} of seat "{seat.name}" along z (this one is at z = {in_mm(z)}, '
+            f"the seat at {in_mm(seat.center[2])})"
         )
         yield Finding(part, "at", at, expected)
 
@@ -87,7 +87,3 @@ BACKLASH_OF_A_BRAKE = (
 def output_elsewhere(first: str) -> str:
     """Return what is expected of an output on the rotor of the first driver."""
     return f'a rotor other than "{first}", where the torque comes in'
-
-
-def _mm(length: float) -> str:
-    return f"{length * 1e3:.6g} mm"

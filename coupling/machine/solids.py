@@ -15,7 +15,7 @@ from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.parts import Shaft, ShaftGear
-from gearwhine.numerics.findings import Finding, Part
+from gearwhine.numerics.findings import Finding, Part, in_mm
 from gearwhine.rotors import Rotor, Segment
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow
 
@@ -207,13 +207,13 @@ def _overlapping(first: PlacedSolid, second: PlacedSolid, length: float) -> Find
     name = f"the disc{on}" if on else other.label
     low, high = max(at.left, other.left), min(at.right, other.right)
     middles = (
-        f"they overlap over {_mm(length)} from z = {_mm(low)} to {_mm(high)}"
+        f"they overlap over {in_mm(length)} from z = {in_mm(low)} to {in_mm(high)}"
         if length > 1.5 * _SHORT
-        else f"both are at z = {_mm(0.5 * (low + high))}"
+        else f"both are at z = {in_mm(0.5 * (low + high))}"
     )
     apart = math.hypot(at.axis[0] - other.axis[0], at.axis[1] - other.axis[1])
     radii = (
-        f", with radii of {_mm(at.outer)} and {_mm(other.outer)} and axes {_mm(apart)} apart"
+        f", with radii of {in_mm(at.outer)} and {in_mm(other.outer)} and axes {in_mm(apart)} apart"
         if apart > _SAME_AXIS
         else ""
     )
@@ -231,18 +231,18 @@ def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
         over = min(right, at + half) - max(left, at - half)
         if over > max(_SLACK, 1e-3 * gear.face_width) and outer >= gear.root_circle_radius:
             expected = (
-                f"a gear whose teeth stand on its shaft; that has a diameter of {_mm(2.0 * outer)} there, the root "
-                f"circle {_mm(2.0 * gear.root_circle_radius)}"
+                f"a gear whose teeth stand on its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the root "
+                f"circle {in_mm(2.0 * gear.root_circle_radius)}"
             )
             yield Finding(part, "at", None, expected)
             break
     if gear.face_width > rotor.length:
-        expected = f"a face narrower than the shaft that carries it is long, {_mm(rotor.length)}"
+        expected = f"a face narrower than the shaft that carries it is long, {in_mm(rotor.length)}"
         yield Finding(part, "face_width", gear.face_width, expected)
         return
     beyond = max(half - at, at + half - rotor.length)
     if beyond > _HANGS_OFF * gear.face_width:
-        expected = f"a place at which the shaft carries the face; {_mm(beyond)} of it hang off the end"
+        expected = f"a place at which the shaft carries the face; {in_mm(beyond)} of it hang off the end"
         yield Finding(part, "at", float(at), expected, "warning")
 
 
@@ -257,7 +257,9 @@ def bearing_findings(
             (2.0 * outer for a, b, _, outer in _shaft_lengths(rotor) if a < at + right and b > at + left), default=0.0
         )
         if thinnest >= 2.0 * inner - _SLACK:
-            expected = f"rolling elements around the shaft, {_mm(thinnest)} thick there; they leave {_mm(2.0 * inner)}"
+            expected = (
+                f"rolling elements around the shaft, {in_mm(thinnest)} thick there; they leave {in_mm(2.0 * inner)}"
+            )
             within = thinnest >= min(row.pitch_diameter for row in rolling.rows) - _SLACK
             yield Finding(part, "rolling", None, expected, "error" if within else "warning")
     if seat_diameter is not None:
@@ -266,7 +268,7 @@ def bearing_findings(
             default=0.0,
         )
         if thick >= seat_diameter - _SLACK:
-            expected = f"a seat with room for the shaft, {_mm(thick)} thick there; its bore is {_mm(seat_diameter)}"
+            expected = f"a seat with room for the shaft, {in_mm(thick)} thick there; its bore is {in_mm(seat_diameter)}"
             yield Finding(part, "seat", None, expected)
 
 
@@ -299,10 +301,10 @@ def wall_findings(solids: Iterable[PlacedSolid], walls: Sequence[Wall]) -> Itera
                 continue
             found.add((solid.part, wall.name))
             low, high = max(solid.left, wall.low[2]), min(solid.right, wall.high[2])
-            where = f"a radius of {_mm(solid.outer)} about x = {_mm(solid.axis[0])}, y = {_mm(solid.axis[1])}"
+            where = f"a radius of {in_mm(solid.outer)} about x = {in_mm(solid.axis[0])}, y = {in_mm(solid.axis[1])}"
             expected = (
                 f"a place clear of the {wall.name} wall of the housing; with {where} it stands in it from "
-                f"z = {_mm(low)} to {_mm(high)}"
+                f"z = {in_mm(low)} to {in_mm(high)}"
             )
             through = solid.part[0] == "shaft" and solid.attribute == "segments" and wall.name in ("back", "front")
             aside = not any(_about(solid, bore) for bore in wall.bores)
@@ -409,7 +411,7 @@ def shaft_findings(shaft: Shaft) -> Iterator[Finding]:
     part, rotor = ("shaft", shaft.name), shaft.rotor
     for number, disc in enumerate(rotor.discs):
         if disc.size is not None and disc.size[0] > rotor.length:
-            expected = f"a disc narrower than its shaft is long, {_mm(rotor.length)}"
+            expected = f"a disc narrower than its shaft is long, {in_mm(rotor.length)}"
             yield Finding(part, f"discs.{number}.width", disc.size[0], expected)
         for finding in disc.findings:
             yield replace(finding, part=part, attribute=f"discs.{number}.{finding.attribute}")
@@ -451,11 +453,7 @@ def unbalance_findings(shaft: Shaft, rotor: Rotor, tip_radius: float) -> Iterato
         if off <= _LARGEST_ECCENTRICITY * radius:
             continue
         expected = (
-            f"a moment whose eccentricity is within the rotor; it moves {mass:.4g} kg by {_mm(off)}, of a radius of "
-            f"{_mm(radius)}"
+            f"a moment whose eccentricity is within the rotor; it moves {mass:.4g} kg by {in_mm(off)}, of a radius of "
+            f"{in_mm(radius)}"
         )
         yield Finding(("shaft", shaft.name), f"unbalance.{number}.moment", unbalance.moment, expected, "warning")
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.5g} mm"

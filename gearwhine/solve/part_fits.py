@@ -14,6 +14,7 @@ from gearwhine.case.housing import Seat
 from gearwhine.from_case.mesh_health import surface_point_warnings
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
+from gearwhine.numerics.findings import in_mm
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor, Segment
 
@@ -55,7 +56,7 @@ def _of_bearing(
     if outside is not None and abs(outside - seat.diameter) > _FIT:
         yield warning(
             "bearing seat",
-            f"{label}: its outside diameter of {_mm(outside)} is not the {_mm(seat.diameter)} of the bore of seat "
+            f"{label}: its outside diameter of {in_mm(outside)} is not the {in_mm(seat.diameter)} of the bore of seat "
             f'"{seat.name}"',
             bearing=bearing.name,
             outside_diameter_m=outside,
@@ -64,16 +65,19 @@ def _of_bearing(
     z = case.rotor_named(bearing.rotor).start + bearing.at
     span = _span(case, seat, bores)
     if span is not None:
-        off, where = max(span[0] - z, z - span[1]), f"the bore, z = {_mm(span[0])} to {_mm(span[1])}"
+        off, where = max(span[0] - z, z - span[1]), f"the bore, z = {in_mm(span[0])} to {in_mm(span[1])}"
     else:
         half = 0.5 * (width or 0.0)
-        off, where = abs(z - seat.center[2]) - half, f"the seat's centre, z = {_mm(seat.center[2])}, by half its width"
+        off, where = (
+            abs(z - seat.center[2]) - half,
+            f"the seat's centre, z = {in_mm(seat.center[2])}, by half its width",
+        )
         if not half:
             return
     if off > _FIT:
         yield warning(
             "bearing place",
-            f'{label}: its middle at z = {_mm(z)} lies {_mm(off)} beyond {where}, of seat "{seat.name}"; the seat '
+            f'{label}: its middle at z = {in_mm(z)} lies {in_mm(off)} beyond {where}, of seat "{seat.name}"; the seat '
             "moves there as a rigid extension of its bore",
             bearing=bearing.name,
             beyond_m=off,
@@ -129,11 +133,11 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
             common = min(end for _, end in ends) - max(start for start, _ in ends)
             whole = min(end - start for start, end in ends)
             if whole - common > _FIT:
-                ranges = " and ".join(f"{_mm(start)} to {_mm(end)}" for start, end in ends)
+                ranges = " and ".join(f"{in_mm(start)} to {in_mm(end)}" for start, end in ends)
                 yield warning(
                     "gear faces",
-                    f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {ranges}, have {_mm(common)} in '
-                    f"common, which carries; the narrower one is {_mm(whole)} wide",
+                    f'gear pair "{pair.driver}" to "{pair.driven}": the faces, z = {ranges}, have {in_mm(common)} in '
+                    f"common, which carries; the narrower one is {in_mm(whole)} wide",
                     common_m=common,
                     narrower_m=whole,
                 )
@@ -150,14 +154,10 @@ def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) ->
     if not segment_ends or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in segment_ends):
         return
     diameters = list(dict.fromkeys(diameter for ends in segment_ends for diameter in ends))
-    listed = " and ".join(_mm(diameter) for diameter in diameters)
+    listed = " and ".join(in_mm(diameter) for diameter in diameters)
     yield warning(
         "part on shaft",
-        f'{label}: its bore of {_mm(bore)} is not the diameter of rotor "{rotor.name}" at {_mm(at)}, {listed}',
+        f'{label}: its bore of {in_mm(bore)} is not the diameter of rotor "{rotor.name}" at {in_mm(at)}, {listed}',
         bore_m=bore,
         shaft_diameters_m=diameters,
     )
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.6g} mm"

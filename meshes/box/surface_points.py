@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from gearwhine.meshes.box.geometry import BoxGeometry
 from gearwhine.meshes.box.parts import FACES
+from gearwhine.numerics.findings import in_mm
 
 _SLACK = 1e-9
 """Room for rounding where two lengths may just touch [m]."""
@@ -54,11 +55,11 @@ def point_off_surface(
     thickness = [walls[face] for face in faces]
     outside = math.hypot(*(min(a, b, 0.0) for a, b in zip(depths[:3], depths[3:], strict=True)))
     if outside > max(*thickness, stands_out) + _SLACK:
-        return f"a point on the surface of the box; this one is {_mm(outside)} outside"
+        return f"a point on the surface of the box; this one is {in_mm(outside)} outside"
     if not furnished and outside == 0.0 and all(d > t + _SLACK for d, t in zip(depths, thickness, strict=True)):
         nearest = min(range(6), key=lambda face: depths[face])
         return (
-            f"a point on the surface of the box; this one is in its cavity, {_mm(depths[nearest])} from "
+            f"a point on the surface of the box; this one is in its cavity, {in_mm(depths[nearest])} from "
             f"the {faces[nearest]} face"
         )
     for name, center, diameter in bores:
@@ -68,7 +69,7 @@ def point_off_surface(
             if through and deep > end - begin:
                 return (
                     f'a point on the surface of the box; this one is in the bore of seat "{name}", '
-                    f"{_mm(deep)} from its rim"
+                    f"{in_mm(deep)} from its rim"
                 )
     return ""
 
@@ -89,7 +90,3 @@ def point_off_box(position: Point, box: BoxGeometry) -> str:
         furnished=inside or (flange is not None and flange.side == "inside"),
         bores=[(bore.name, bore.center, bore.diameter) for bore in box.bores],
     )
-
-
-def _mm(length: float) -> str:
-    return f"{length * 1e3:.6g} mm"

@@ -10,11 +10,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from gearwhine.case.box import FACES, Box
-from gearwhine.case.checks.machine import millimetres
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, one_of
 from gearwhine.case.fields import Patch
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
+from gearwhine.numerics.findings import in_mm
 
 if TYPE_CHECKING:
     from gearwhine.meshes import BoxGeometry
@@ -194,7 +194,7 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
     if patch.plane is not None:
         normal, at = "xyz".index(patch.plane.axis), patch.plane.at
         if not bottom[normal] - _SLACK <= at <= top[normal] + _SLACK:
-            spans = f"{patch.plane.axis} = {millimetres(bottom[normal])} to {millimetres(top[normal])}"
+            spans = f"{patch.plane.axis} = {in_mm(bottom[normal])} to {in_mm(top[normal])}"
             yield Finding((*place, "plane", "at"), f"a plane that meets the housing, which spans {spans}")
     if patch.corners is None:
         return
@@ -205,7 +205,7 @@ def _check_patch(box: Box, place: Location, patch: Patch, boss: float) -> Iterat
     location = (*place, "box")
     for axis, least, most, begin, end in zip("xyz", low, high, bottom, top, strict=True):
         if least > end + _SLACK or most < begin - _SLACK:
-            expected = f"a box that meets the housing, which spans {axis} = {millimetres(begin)} to {millimetres(end)}"
+            expected = f"a box that meets the housing, which spans {axis} = {in_mm(begin)} to {in_mm(end)}"
             yield Finding(location, expected)
             return
     if not box.furnished and all(

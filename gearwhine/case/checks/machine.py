@@ -23,16 +23,12 @@ from gearwhine.case.model import Case, Draft, loaded_rotors
 from gearwhine.case.operation import Operation, listed
 from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, TorsionProbe, TorsionSpring
 from gearwhine.case.speeds_and_torques import pair_torques
+from gearwhine.numerics.findings import in_mm
 
 if TYPE_CHECKING:
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.machine.gear_train import GearTrain
     from gearwhine.numerics.findings import Finding as PartFinding
-
-
-def millimetres(length: float) -> str:
-    """Write a length [m] in mm, for a message."""
-    return f"{length * 1e3:.6g} mm"
 
 
 def check_shafts(draft: Draft) -> Iterator[Finding]:
@@ -108,7 +104,7 @@ def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Loc
     if rotor.material_of(None, at, {}) is None:
         expected = (
             f'the name of a material, here or as material of rotor "{rotor.name}": its file has not one that a solid '
-            f"can have at {millimetres(at)}"
+            f"can have at {in_mm(at)}"
         )
         yield Finding(location, expected, NOTHING)
 
@@ -286,7 +282,7 @@ def _check_pair(
     if rotors[0] is not None and rotors[1] is not None:
         apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
-            expected = f"the distance of the rotors' axes, {millimetres(apart)}"
+            expected = f"the distance of the rotors' axes, {in_mm(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
         places = [rotor.start + (table.at or 0.0) for rotor, table in zip(rotors, tables, strict=True) if rotor]
         for finding in plane_findings(("gear pair", ""), places, gears):
@@ -316,7 +312,7 @@ def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
     elif "pressure_angle" in unequal:
         size, values = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
     elif "module" in unequal:
-        size, values = "one module", [millimetres(module) for module in modules]
+        size, values = "one module", [in_mm(module) for module in modules]
     else:
         return
     expected = f'gears of {size}; "{driver.name}" has {values[0]}, "{driven.name}" {values[1]}'

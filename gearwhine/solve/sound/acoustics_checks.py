@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.checks.machine import millimetres
 from gearwhine.case.errors import one_of
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.boundary_elements import BoundaryElements
@@ -26,6 +25,7 @@ from gearwhine.housing.errors import TriangleSizeError
 from gearwhine.housing.fem.surface import FlatFace, flat_faces
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import pick_facets
+from gearwhine.numerics.findings import in_mm
 from gearwhine.numerics.result_warnings import warning
 
 FloatArray = npt.NDArray[np.float64]
@@ -134,11 +134,11 @@ def microphone_problems(
         except HousingError as error:
             if number < in_case:
                 key = f'acoustics.microphone[{number}].position (microphone "{name}")'
-                value = ", ".join(map(millimetres, place.tolist()))
+                value = ", ".join(map(in_mm, place.tolist()))
                 yield Problem(key, value, f"a point in the air; {error}")
             else:
                 expected = f"a distance at which microphone {name!r} is in the air; {error}"
-                yield Problem("acoustics.microphone_box", millimetres(case.acoustics.microphone_box or 0.0), expected)
+                yield Problem("acoustics.microphone_box", in_mm(case.acoustics.microphone_box or 0.0), expected)
 
 
 def require_acoustics(case: Case, mesh: Mesh) -> None:
@@ -184,7 +184,7 @@ def acoustics_warnings(case: Case, bounds: FloatArray, limit_hz: float | None) -
         return []
     warnings = []
     size = float(np.ptp(bounds, axis=0).max())
-    large = f"the size of the housing, {millimetres(size)}"
+    large = f"the size of the housing, {in_mm(size)}"
     if acoustics.floor is not None and (depth := float(bounds[0, 1]) - acoustics.floor) > _DEEP * size:
         message = (
             f"acoustics.floor lies {depth:.3g} m below the housing, {depth / size:.0f} times {large}: there it hardly "
@@ -256,7 +256,7 @@ def _surface_problems(case: Case, acoustics: Acoustics, mesh: Mesh) -> Iterator[
     written = f"{1e3 * edge:.4g} mm"
     longest = coarsest_edge(mesh)
     if acoustics.mesh_size is not None and edge > longest:
-        expected = f"an edge of at most {millimetres(longest)}, three along the shortest side of the housing"
+        expected = f"an edge of at most {in_mm(longest)}, three along the shortest side of the housing"
         yield Problem("acoustics.mesh_size", written, expected)
         return
     try:
@@ -270,10 +270,8 @@ def _surface_problems(case: Case, acoustics: Acoustics, mesh: Mesh) -> Iterator[
     elements = _elements_on(surface, acoustics, edge, floor)
     positions, _ = microphones_of(case, mesh)
     if elements is None:
-        lowest = millimetres(float(mesh.bounds[0, 1]))
-        yield Problem(
-            "acoustics.floor", millimetres(acoustics.floor or 0.0), f"a height at or below the soles, y = {lowest}"
-        )
+        lowest = in_mm(float(mesh.bounds[0, 1]))
+        yield Problem("acoustics.floor", in_mm(acoustics.floor or 0.0), f"a height at or below the soles, y = {lowest}")
         elements = BoundaryElements(surface, _medium(acoustics))
         # The box stands on the floor, so that its microphones cannot be checked.
         positions = {microphone.name: positions[microphone.name] for microphone in acoustics.microphone}
