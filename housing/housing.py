@@ -34,6 +34,10 @@ from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribu
 
 FloatArray = npt.NDArray[np.float64]
 
+DAMPING_RATIO = 0.01
+"""Modal damping ratio of a housing without one of its own: between that of welded or bolted steel (EN 1991-1-4,
+table F.2) and of metal structures as cast (Adams and Askenazi 1998)."""
+
 RESPONSE_ORDERS = 3
 """Responses of the discarded modes at each motion of a bearing: at rest, at the limit, and its derivative there."""
 
@@ -58,7 +62,7 @@ class Housing:
     seats : sequence of Seat
     sensors : sequence of Sensor
     damping_ratio : float
-        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures.
+        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures; 0.01 by default.
 
     Raises
     ------
@@ -73,7 +77,7 @@ class Housing:
     fixtures: Sequence[Fixture] = ()
     seats: Sequence[Seat] = ()
     sensors: Sequence[Sensor] = ()
-    damping_ratio: float = 0.0
+    damping_ratio: float = DAMPING_RATIO
 
     def __post_init__(self) -> None:
         """Keep own copies; check unique names, volumes of the materials, and the damping ratio."""
@@ -126,7 +130,7 @@ class Housing:
         seats: Sequence[Seat] = (),
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = 0.0,
+        damping_ratio: float = DAMPING_RATIO,
         order: int = 2,
     ) -> "Housing":
         """Mesh a solid from a STEP, IGES or BREP file.
@@ -166,7 +170,7 @@ class Housing:
         seats: Sequence[Seat] = (),
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = 0.0,
+        damping_ratio: float = DAMPING_RATIO,
     ) -> "Housing":
         """Read a mesh of solid elements in any format that meshio, Abaqus, Nastran or gmsh writes.
 
@@ -198,7 +202,7 @@ class Housing:
         *,
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = 0.0,
+        damping_ratio: float = DAMPING_RATIO,
         order: int = 2,
     ) -> "Housing":
         """Mesh a box-shaped housing, with a seat in each of its bores and a joint at each bolt of its cover.

@@ -19,7 +19,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -46,17 +46,21 @@ from gearwhine.coupling.signals.spectrum import (
 )
 from gearwhine.coupling.time.histories import Histories, ModalRecord
 from gearwhine.coupling.time.integration import SAMPLES_PER_BLOCK, Checkpoint
-from gearwhine.coupling.time.settings import TransientSettings
-from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse
+from gearwhine.coupling.time.settings import Method, TransientSettings
+from gearwhine.numerics.findings import Choice, Finding, Number, Rule, attribute_findings, refuse
 
 Arrays = Mapping[str, npt.NDArray[Any]]
 FloatArray = npt.NDArray[np.float64]
+Start = Literal["equilibrium", "unloaded"]
 
 _TWO_PI = 2.0 * math.pi
 _OVERSAMPLING = 100.0  # sampling of the integration over the highest frequency of interest
 _FEWEST_SAMPLES = 16  # least number of samples of an integration
 _MOST_SAMPLES = 2_000_000_000  # largest number that an excitation may ask for: days of computing
 _STORED_SAMPLING = 4.0  # sampling of stored long records over that frequency: aliases are a wide transition away
+SHORTEST_RECORD = 0.01
+"""Shortest record at constant speed, in revolutions of the first driver's shaft."""
+
 RECORD_BYTES = 128 << 20
 """The longest record that is stored as it was sampled, all signals together."""
 _STRETCH_BYTES = 64 << 20
@@ -126,8 +130,8 @@ class TransientPlan:
         Number of revolutions of the first driver's shaft at constant speed; either this or a run.
     run : SpeedRun, FreeRun or None
         Speed over time.
-    discard : float
-        Revolutions before the record begins.
+    discard : float, optional
+        Revolutions before the record begins; by default half of the revolutions, or none of a run.
     points_per_revolution : int
         Least number of recorded samples of each revolution; no step is longer than the interval of so many.
     tolerance : float
@@ -141,25 +145,43 @@ class TransientPlan:
 
     revolutions: float | None = None
     run: Run | None = None
-    discard: float = 0.0
+    discard: float | None = None
     points_per_revolution: int = 200
     tolerance: float = 5e-4
-    start: Literal["equilibrium", "unloaded"] = "equilibrium"
-    method: Literal["newmark", "exact", "auto"] = "newmark"
+    start: Start = "equilibrium"
+    method: Method = "newmark"
     modal_coordinates: int = 0
 
     def __post_init__(self) -> None:
-        """Require a number of revolutions or a run, and numbers that can be."""
+        """Require a number of revolutions or a run, a stretch to record, and numbers that can be."""
         if (self.revolutions is None) == (self.run is None):
             raise CouplingError(
                 f"a transient of {self.revolutions} revolutions and the run {self.run}; expected one of the two"
             )
-        positive = Number(above=0.0)
-        rules = {"discard": Number(at_least=0.0), "tolerance": positive, "points_per_revolution": positive}
-        refuse(
-            attribute_findings(_PART, self, **rules, revolutions=Number(above=0.0, optional=True)),
-            CouplingError,
-        )
+        rules: dict[str, Rule] = {
+            "revolutions": Number(above=0.0, at_most=1e6, optional=True),
+            "discard": Number(at_least=0.0, optional=True),
+            "points_per_revolution": Number(at_least=200, at_most=1_000_000, whole=True),
+            "tolerance": Number(above=0.0, at_most=0.1),
+            "start": Choice(get_args(Start)),
+            "method": Choice(get_args(Method)),
+            "modal_coordinates": Number(at_least=0, at_most=1000, whole=True),
+        }
+        refuse(attribute_findings(_PART, self, **rules), CouplingError)
+        refuse(self._record_findings(), CouplingError)
+
+    def _record_findings(self) -> Iterator[Finding]:
+        """Yield revolutions of which nothing, or next to nothing, is recorded."""
+        if self.revolutions is not None and self.revolutions - self.discarded < SHORTEST_RECORD:
+            expected = f"at least {SHORTEST_RECORD:g} fewer revolutions than the {self.revolutions:g} of the run"
+            yield Finding(_PART, "discard", self.discard, expected)
+
+    @property
+    def discarded(self) -> float:
+        """Revolutions before the record begins."""
+        if self.discard is not None:
+            return self.discard
+        return 0.0 if self.revolutions is None else 0.5 * self.revolutions
 
     def duration(self, period: float) -> float:
         """Duration [s] of a machine whose first driver's shaft turns once in a period [s]."""
@@ -176,9 +198,9 @@ class TransientPlan:
         CouplingError
             Where a run does not turn so far.
         """
-        if profile is None or self.discard == 0.0:
-            return self.discard * period
-        time, duration = float(profile.times_of(np.array([self.discard * period]))[0]), self.duration(period)
+        if profile is None or self.discarded == 0.0:
+            return self.discarded * period
+        time, duration = float(profile.times_of(np.array([self.discarded * period]))[0]), self.duration(period)
         if not time < duration:
             revolutions = float(profile.at(duration)[0][0]) / period
             expected = f"fewer revolutions than the {revolutions:g} that the run turns"

@@ -39,6 +39,9 @@ from gearwhine.rotors.model.shaft import inertia_findings
 LATERAL_LIMIT_HZ = 8000.0
 """Highest natural frequency of the retained bending modes of a shaft without a limit of its own [Hz]."""
 
+SHAFT_DAMPING_RATIO = 0.005
+"""Modal damping ratio of a shaft without one of its own, after Lin, Huston and Coy (1988)."""
+
 _SAME_STATION = 1e-6  # part of the rotor's length
 
 
@@ -55,7 +58,7 @@ class Shaft:
     start : float
         z of the left end [m].
     damping_ratio : float
-        Modal damping ratio of the shaft's own material and fits, on every mode of the free shaft.
+        Modal damping ratio of the shaft's own material and fits, on every mode of the free shaft; 0.005 by default.
     unbalances : sequence of gearwhine.rotors.Unbalance
     bow : gearwhine.rotors.Bow, optional
     frequency_limit : float, optional
@@ -68,7 +71,7 @@ class Shaft:
     rotor: Rotor
     axis: tuple[float, float] = (0.0, 0.0)
     start: float = 0.0
-    damping_ratio: float = 0.0
+    damping_ratio: float = SHAFT_DAMPING_RATIO
     unbalances: Sequence[ShaftUnbalance] = ()
     bow: Bow | None = None
     frequency_limit: float | None = None

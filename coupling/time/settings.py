@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.numerics.findings import Finding, Number, attribute_findings, refuse
+from gearwhine.numerics.findings import Choice, Finding, Number, Rule, attribute_findings, refuse
 
 FloatArray = npt.NDArray[np.float64]
 Method = Literal["newmark", "exact", "auto"]
@@ -48,14 +48,13 @@ class TransientSettings:
     def __post_init__(self) -> None:
         """Require a recorded part of the duration, positive step sizes and tolerance, and a known method."""
         part = ("time integration", "")
-        rules = dict.fromkeys(
+        rules: dict[str, Rule] = dict.fromkeys(
             ("duration", "sample_interval", "largest_step", "tolerance", "beta", "gamma"), Number(above=0.0)
         )
-        findings = [*attribute_findings(part, self, **rules, record_from=Number(at_least=0.0, unit="s"))]
+        rules |= {"record_from": Number(at_least=0.0, unit="s"), "method": Choice(get_args(Method))}
+        findings = [*attribute_findings(part, self, **rules)]
         if not findings and self.record_from >= self.duration:
             findings.append(Finding(part, "record_from", self.record_from, f"a part of the {self.duration:g} s"))
-        if self.method not in get_args(Method):
-            findings.append(Finding(part, "method", self.method, f"one of {', '.join(get_args(Method))}"))
         refuse(findings, CouplingError)
 
     @property

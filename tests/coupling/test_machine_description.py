@@ -417,7 +417,7 @@ def test_a_damped_coupling_damps_the_twist_between_its_hubs() -> None:
     held = [
         MountedBearing(Bearing(str(at), at, 1e8 * np.eye(2), np.zeros((2, 2))), "train", None) for at in (0.0, 0.22)
     ]
-    train = Shaft(Rotor("train", parts, hubs), (0.0, 0.0), mode_count=6)
+    train = Shaft(Rotor("train", parts, hubs), (0.0, 0.0), damping_ratio=0.0, mode_count=6)
     modes = coupled_modes(Machine([train], held, speed=100.0).assemble().system)
     # The shafts between coupling and hubs, 50 mm each, twist too: k of all three in a row, of which the coupling's part
     # is dissipative.

@@ -13,6 +13,7 @@ from odd_but_sound import changed
 
 from gearwhine.case import CaseError, parse_case
 from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, BaseMotion
@@ -144,7 +145,7 @@ TRAPS: dict[str, Trap] = {
         lambda: machine(shafts=[shaft(diameter=0.15), shaft("output", 44.45e-3)]), "gear 'pinion': at",
         (("rotor.0.segments.0.diameter", "150 mm"), ("rotor.0.segments.1.diameter", "150 mm"), ("gear.0.bore", 0)),
         "gear[0].at",
-        "a gear whose teeth stand on its shaft; that has a diameter of 150 mm there, the root circle 80.962 mm",
+        "a gear whose teeth stand on its shaft; that has a diameter of 150 mm there, the root circle 80.9625 mm",
     ),
     "speed of NaN": Trap(lambda: machine(speed=NAN), "machine: speed", (("operation.speed", NAN),), "operation.speed"),
     "torque of infinity": Trap(
@@ -283,6 +284,14 @@ WITHOUT_A_KEY: dict[str, tuple[Callable[[], object], str]] = {
     "motion that is none": (lambda: BaseMotion(("x",)), "base motion: parts.0"),  # type: ignore[arg-type]
     "gamma of NaN": (lambda: settings(gamma=NAN), "time integration: gamma"),
     "duration of a text": (lambda: settings(duration="1 s"), "time integration: duration"),
+    "nothing recorded": (lambda: TransientPlan(4, discard=4), "transient: discard"),
+    "next to nothing recorded": (lambda: TransientPlan(4, discard=3.995), "transient: discard"),
+    "half a point": (lambda: TransientPlan(4, points_per_revolution=512.5), "transient: points_per_revolution"),  # type: ignore[arg-type]
+    "too few points": (lambda: TransientPlan(4, points_per_revolution=20), "transient: points_per_revolution"),
+    "steps of any size": (lambda: TransientPlan(4, tolerance=2.0), "transient: tolerance"),
+    "start that is none": (lambda: TransientPlan(4, start="loaded"), "transient: start"),  # type: ignore[arg-type]
+    "method that is none": (lambda: TransientPlan(4, method="euler"), "transient: method"),  # type: ignore[arg-type]
+    "fewer than no coordinates": (lambda: TransientPlan(4, modal_coordinates=-1), "transient: modal_coordinates"),
 }  # fmt: skip
 
 
