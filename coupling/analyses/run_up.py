@@ -176,14 +176,14 @@ def solve_run_signature(solved: SolvedTransient, tracking: OrderTracking) -> Run
     why.
     """
     cut = _windows(solved, tracking)
-    turning = solved.turning
-    if not isinstance(cut, _Windows) or turning is None:
+    profile = solved.speed_profile
+    if not isinstance(cut, _Windows) or profile is None:
         return None
     span, named = cut.span, cut.named
     times = solved.histories.times[span]
     interval = float(times[1] - times[0])
     turns_per_second, sense = abs(solved.speed) / _TWO_PI, math.copysign(1.0, solved.speed)
-    slowest = turns_per_second * float(turning.at(times)[1].min())
+    slowest = turns_per_second * float(profile.at(times)[1].min())
     per_turn = math.ceil(min(_BEYOND_LIMIT * solved.trusted_limit / slowest, 1.0 / (slowest * interval)))
     per_turn = max(per_turn, math.ceil(_BEYOND_LIMIT * _ABOVE * max(named.values())))
     length = _window_length(solved, times)
@@ -199,7 +199,7 @@ def solve_run_signature(solved: SolvedTransient, tracking: OrderTracking) -> Run
         ).up_to(solved.trusted_limit)
         units[name], spectra[name], overall[name] = unit, along, along.rms
         turned = signature.resample_by_angle(
-            signal[span], times, turning, turns_per_second, per_turn=per_turn, whole_turns=False
+            signal[span], times, profile, turns_per_second, per_turn=per_turn, whole_turns=False
         )
         mapped = signature.order_map(
             turned, turns=cut.turns, step=cut.step, window=tracking.window, follow=sorted(set(named.values()))
@@ -209,15 +209,15 @@ def solve_run_signature(solved: SolvedTransient, tracking: OrderTracking) -> Run
             _complete(mapped, solved.trusted_limit) if name in solved.histories.sensor_acceleration else mapped
         )
     middles = next(iter(spectra.values())).times
-    speeds_rpm = 60.0 * sense * turns_per_second * turning.at(middles)[1]
+    speeds_rpm = 60.0 * sense * turns_per_second * profile.at(middles)[1]
     return RunSignature(units, spectra, speeds_rpm, overall, orders, named, cut.turns, solved.trusted_limit)
 
 
 def _window_length(solved: SolvedTransient, times: FloatArray) -> int:
     """Return the number of samples of a window of the spectra: T = 2 / √(o n') for the highest mesh order o."""
-    assert solved.turning is not None
+    assert solved.speed_profile is not None
     turns_per_second = abs(solved.speed) / _TWO_PI
-    gain = turns_per_second * float(np.abs(solved.turning.at(times)[2]).max())
+    gain = turns_per_second * float(np.abs(solved.speed_profile.at(times)[2]).max())
     contacts = solved.machine.system.contacts
     order = max(abs(contact.mesh_frequency) for contact in contacts) / turns_per_second
     interval, longest = float(times[1] - times[0]), len(times) // _LONGEST
@@ -243,17 +243,17 @@ def run_signature_warnings(solved: SolvedTransient, tracking: OrderTracking) -> 
 
 def _windows(solved: SolvedTransient, tracking: OrderTracking) -> _Windows | str | None:
     """Return the windows of a run; in words why there are none, and None at steady speed or without gears."""
-    turning, times = solved.turning, solved.histories.times
-    if turning is None or not solved.machine.meshes:
+    profile, times = solved.speed_profile, solved.histories.times
+    if profile is None or not solved.machine.meshes:
         return None
-    span = _turning_span(turning.at(times)[1])
+    span = _turning_span(profile.at(times)[1])
     times = times[span]
     if len(times) < _FEWEST_SAMPLES:
         return f"{len(times)} samples in which the machine turns; expected {_FEWEST_SAMPLES} or more"
     turns_per_second = abs(solved.speed) / _TWO_PI
-    first, last = turns_per_second * turning.at(times[[0, -1]])[0]
+    first, last = turns_per_second * profile.at(times[[0, -1]])[0]
     # As `resample_by_angle` counts them: the end of the last sample's interval closes a turn.
-    last += turns_per_second * float(turning.at(times[-1:])[1][0]) * float(times[1] - times[0])
+    last += turns_per_second * float(profile.at(times[-1:])[1][0]) * float(times[1] - times[0])
     total = math.floor(last + 1e-9) - math.ceil(first - 1e-9)
     if total < _FEWEST_TURNS:
         return (
@@ -309,11 +309,11 @@ def _named_orders(solved: SolvedTransient) -> dict[str, float]:
 
 def _complete(table: signature.OrderMap, limit: float) -> signature.OrderMap:
     """Return the orders of a sensor without those whose frequency is beyond a limit [Hz]: NaN there."""
-    turning, most = np.abs(table.speeds), limit * (1.0 + 1e-9)
+    rates, most = np.abs(table.speeds), limit * (1.0 + 1e-9)
     return replace(
         table,
-        amplitude=np.where(np.outer(turning, table.orders) <= most, table.amplitude, np.nan),
-        followed={order: np.where(order * turning <= most, along, np.nan) for order, along in table.followed.items()},
+        amplitude=np.where(np.outer(rates, table.orders) <= most, table.amplitude, np.nan),
+        followed={order: np.where(order * rates <= most, along, np.nan) for order, along in table.followed.items()},
     )
 
 

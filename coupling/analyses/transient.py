@@ -98,7 +98,7 @@ class SolvedTransient:
         return self.machine.speed
 
     @property
-    def turning(self) -> SpeedProfile | None:
+    def speed_profile(self) -> SpeedProfile | None:
         """Speed over time; None where it is the nominal one all along."""
         return self.machine.speed_profile
 
@@ -125,9 +125,9 @@ class SolvedTransient:
     @property
     def revolutions(self) -> float:
         """Turns of the first driver's rotor over a run; zero at steady speed."""
-        if self.turning is None:
+        if self.speed_profile is None:
             return 0.0
-        return float(self.turning.at(self.turning.times[-1])[0][0]) * abs(self.speed) / _TWO_PI
+        return float(self.speed_profile.at(self.speed_profile.times[-1])[0][0]) * abs(self.speed) / _TWO_PI
 
     @property
     def accelerating_torque(self) -> tuple[float, float]:
@@ -135,10 +135,10 @@ class SolvedTransient:
 
         It comes on top of the torque that the load takes, and is below zero where the train slows down.
         """
-        if self.turning is None:
+        if self.speed_profile is None:
             return 0.0, 0.0
-        times = self.turning.times
-        gains = self.turning.at(times[:-1] if times.size > 1 else times)[2] * abs(self.speed)
+        times = self.speed_profile.times
+        gains = self.speed_profile.at(times[:-1] if times.size > 1 else times)[2] * abs(self.speed)
         return self.machine.train_inertia * float(gains.min()), self.machine.train_inertia * float(gains.max())
 
     @property
@@ -258,7 +258,9 @@ def solve_transient(
     progress("preparing the time stepper")
     integration = (machine.system, chosen.settings, outputs)
     start = starting_state(machine, plan)
-    key = integration_key(*integration, turning=profile, initial=start, samples_per_block=chosen.samples_per_block)
+    key = integration_key(
+        *integration, speed_profile=profile, initial=start, samples_per_block=chosen.samples_per_block
+    )
     blocks: Blocks = _InMemory()
     if keep is not None:
         blocks = keep(_with_code(fingerprint(key, machine.loads.base), chosen))
@@ -266,7 +268,7 @@ def solve_transient(
     filter_state = nothing.columns if last is None else last["held"]
     integrated = integrate_blocks(
         *integration,
-        turning=profile,
+        speed_profile=profile,
         initial=start,
         after=None if last is None else Checkpoint.from_arrays(last),
         samples_per_block=chosen.samples_per_block,

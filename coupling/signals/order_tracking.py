@@ -62,7 +62,7 @@ class AngleSignal:
 def resample_by_angle(
     signal: FloatArray,
     times: FloatArray,
-    turning: SpeedProfile,
+    speed_profile: SpeedProfile,
     turns_per_second: float,
     *,
     per_turn: int | None = None,
@@ -75,7 +75,7 @@ def resample_by_angle(
     signal : ndarray, shape (..., s)
     times : ndarray, shape (s,)
         Times [s], evenly spaced, s at least 6.
-    turning : SpeedProfile
+    speed_profile : SpeedProfile
         Speed of the machine over time, relative to the nominal one.
     turns_per_second : float
         Nominal speed of the leading shaft [Hz], positive.
@@ -100,13 +100,12 @@ def resample_by_angle(
             f"a signal of shape {signal.shape} at times of shape {times.shape}; expected as many, 6 or more"
         )
     interval = float(times[-1] - times[0]) / (times.size - 1)
-    rates = turning.at(
-        np.concatenate([times, turning.times[(turning.times > times[0]) & (turning.times < times[-1])]])
-    )[1]
+    given = speed_profile.times
+    rates = speed_profile.at(np.concatenate([times, given[(given > times[0]) & (given < times[-1])]]))[1]
     slowest = turns_per_second * float(rates.min())
     if slowest <= 0.0:
         raise CouplingError("the machine stands still in the record; take a part of it in which the machine turns")
-    begin, end = turns_per_second * turning.at(times[[0, -1]])[0]
+    begin, end = turns_per_second * speed_profile.at(times[[0, -1]])[0]
     # The end of the last sample's interval closes a turn.
     first, last = (
         np.ceil(begin - 1e-9),
@@ -128,10 +127,10 @@ def resample_by_angle(
     else:
         turns = np.arange(np.ceil(begin * fine - 1e-6), np.floor(end * fine + 1e-6) + 1.0) / fine
     # The last ones may lie within the last sample's interval, where the spline goes on.
-    at = turning.times_of(turns / turns_per_second)
+    at = speed_profile.times_of(turns / turns_per_second)
     values = make_interp_spline(times, np.moveaxis(signal, -1, 0), k=_DEGREE)(at)
     values, at, turns = _decimated(np.asarray(values), factor), at[::factor], turns[::factor]
-    speeds = turns_per_second * turning.at(at)[1]
+    speeds = turns_per_second * speed_profile.at(at)[1]
     return AngleSignal(turns, at, speeds, np.moveaxis(values, 0, -1), per_turn)
 
 

@@ -105,7 +105,7 @@ def integrate_blocks(
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: SpeedProfile | None = None,
+    speed_profile: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     after: Checkpoint | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
@@ -122,7 +122,7 @@ def integrate_blocks(
 
     Other parameters and errors are those of :func:`gearwhine.coupling.simulate`.
     """
-    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
+    run, initial = _prepared(system, settings, outputs, speed_profile, initial, samples_per_block)
     state = after or run.start(initial)
     total = settings.samples
     for number in range(state.block, len(run.ends) - 1):
@@ -146,7 +146,7 @@ def integration_key(
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: SpeedProfile | None = None,
+    speed_profile: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     samples_per_block: int = SAMPLES_PER_BLOCK,
 ) -> str:
@@ -154,7 +154,7 @@ def integration_key(
 
     It does not cover the code and the processor: these must be stored with checkpoints as well.
     """
-    run, initial = _prepared(system, settings, outputs, turning, initial, samples_per_block)
+    run, initial = _prepared(system, settings, outputs, speed_profile, initial, samples_per_block)
     start = run.start(initial).as_arrays()
     return fingerprint(settings, run.profile, run.arrays, run.base, run.ends, run.reach, run.bounds(0), start)
 
@@ -272,7 +272,7 @@ def simulate(
     settings: TransientSettings,
     outputs: TransientOutputs,
     *,
-    turning: SpeedProfile | None = None,
+    speed_profile: SpeedProfile | None = None,
     initial: tuple[FloatArray, FloatArray] | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> TransientResult:
@@ -283,7 +283,7 @@ def simulate(
     system : CoupledSystem
     settings : TransientSettings
     outputs : TransientOutputs
-    turning : SpeedProfile, optional
+    speed_profile : SpeedProfile, optional
         Speed over time; by default the nominal one.
     initial : tuple of ndarray, optional
         Coordinates and rates at t = 0, shape (n,) each; by default static equilibrium at rest.
@@ -299,7 +299,9 @@ def simulate(
     --------
     gearwhine.coupling.time.transient.integrate_blocks : The same in blocks, for runs that are long or continued later.
     """
-    integrated = integrate_blocks(system, settings, outputs, turning=turning, initial=initial, progress=progress)
+    integrated = integrate_blocks(
+        system, settings, outputs, speed_profile=speed_profile, initial=initial, progress=progress
+    )
     blocks = list(integrated)
     figures = transient_figures(settings, blocks[-1].after)
     record: dict[str, Any] = {name: np.concatenate([getattr(block, name) for block in blocks]) for name in RECORDED}

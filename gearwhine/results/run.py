@@ -101,7 +101,7 @@ def _unnamed(row: "_Sensor | _Pair", signal: str, peaks: "list[Peak]") -> _AnyPe
             _OrderPeak(Peak(order["frequency_hz"], order["highest_amplitude"]), order)
             for order in row.orders.highest_of(signal)
         ]
-    return [_UnnamedPeak(peak, row.transient.turning is not None) for peak in peaks]
+    return [_UnnamedPeak(peak, row.transient.speed_profile is not None) for peak in peaks]
 
 
 ORDER_PEAK, MEAN_PEAK = "highest of an order along the run", "mean over the run"
@@ -345,9 +345,9 @@ SIGNATURE = (
 )
 
 RUN = (
-    Quantity("from_rpm", lambda solved: solved.speed * solved.turning.speed_ratios[0] * RPM),
-    Quantity("to_rpm", lambda solved: solved.speed * solved.turning.speed_ratios[-1] * RPM),
-    Quantity("seconds", lambda solved: solved.turning.times[-1]),
+    Quantity("from_rpm", lambda solved: solved.speed * solved.speed_profile.speed_ratios[0] * RPM),
+    Quantity("to_rpm", lambda solved: solved.speed * solved.speed_profile.speed_ratios[-1] * RPM),
+    Quantity("seconds", lambda solved: solved.speed_profile.times[-1]),
     Quantity("revolutions", lambda solved: solved.revolutions),
     Quantity("train_inertia_kg_m2", lambda solved: solved.machine.train_inertia),
     Part(
@@ -559,7 +559,7 @@ HOUSING_LINES = (
 
 TRANSIENT: Fields = (
     Quantity("speed_rpm", lambda row: row.transient.speed * RPM),
-    Part("run", lambda row: None if row.transient.turning is None else row.transient, RUN),
+    Part("run", lambda row: None if row.transient.speed_profile is None else row.transient, RUN),
     Quantity("method", lambda row: row.transient.method),
     Quantity("steps", lambda row: row.transient.result.steps),
     Quantity("rejected_steps", lambda row: row.transient.result.rejected),

@@ -269,7 +269,7 @@ def test_where_it_does_not_apply() -> None:
     rows = everything(2)
     slowing = SpeedProfile(np.array([0.0, 60.0]), np.array([1.0, 0.5]))
     with pytest.raises(TransientError, match="the speed varies"):
-        simulate(system, SETTINGS, rows, turning=slowing)
+        simulate(system, SETTINGS, rows, speed_profile=slowing)
     table = TimedLoad(np.array([0.0, 30.0]), np.array([0.0, 0.1]), np.array([1.0, 0.0]))
     loaded = replace(system, timed_loads=(table,))
     with pytest.raises(TransientError, match="table over time; use Newmark's"):

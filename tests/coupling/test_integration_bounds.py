@@ -80,7 +80,7 @@ def test_a_run_up_starts_where_its_acceleration_holds_it() -> None:
     system = oscillator(4.0, acceleration_load=np.full(1, 3.0))
     settings = TransientSettings(duration=1.0, record_from=0.0, sample_interval=0.05, largest_step=0.01)
     rows = np.eye(1)
-    found = simulate(system, settings, TransientOutputs(rows, rows, rows), turning=RUN_UP)
+    found = simulate(system, settings, TransientOutputs(rows, rows, rows), speed_profile=RUN_UP)
     acceleration = (2.0 - 0.5) / 4.0
     assert found.displacement[:, 0] == pytest.approx(acceleration * 3.0 / 4.0, rel=1e-9)
 

@@ -73,7 +73,7 @@ def marched(
     parts: CoupledMachine, turning: SpeedProfile | None, duration: float, record_from: float = 0.0
 ) -> TransientResult:
     settings = TransientSettings(duration, record_from, 1e-5, 2e-5, tolerance=1e-4)
-    return simulate(parts.system, settings, transient_outputs(parts), turning=turning)
+    return simulate(parts.system, settings, transient_outputs(parts), speed_profile=turning)
 
 
 @pytest.mark.parametrize("drive", [Drive("input", 0.0), Drive("output", LENGTH)])

@@ -148,7 +148,7 @@ OUTPUTS = TransientOutputs(np.eye(2), np.eye(2), np.eye(2))
 
 def marched(system: CoupledSystem, step: float, duration: float = 10.0) -> TransientResult:
     settings = TransientSettings(duration, 0.0, 0.5, step, tolerance=1.0)
-    return simulate(system, settings, OUTPUTS, turning=RUN_UP, initial=(np.array([0.2, 0.0]), np.zeros(2)))
+    return simulate(system, settings, OUTPUTS, speed_profile=RUN_UP, initial=(np.array([0.2, 0.0]), np.zeros(2)))
 
 
 def reference(slope, breaks: FloatArray, times: FloatArray) -> FloatArray:  # type: ignore[no-untyped-def]
@@ -208,7 +208,7 @@ def test_steady_turning_is_no_turning() -> None:
     plain = simulate(system, settings, OUTPUTS, initial=start)
     nearly = SpeedProfile(np.array([0.0, 5.0]), np.array([1.0, 1.0 + 1e-14]))
     assert not nearly.is_steady
-    varied = simulate(system, settings, OUTPUTS, turning=nearly, initial=start)
+    varied = simulate(system, settings, OUTPUTS, speed_profile=nearly, initial=start)
     np.testing.assert_allclose(varied.displacement, plain.displacement, rtol=0, atol=1e-5)
 
 
@@ -216,6 +216,6 @@ def test_starts_in_equilibrium_with_the_loads_of_the_start() -> None:
     """The drive's torque and the inertia that it overcomes press the shaft from the first moment on."""
     system = replace(shaft(), harmonic_loads=(), timed_loads=())
     settings = TransientSettings(1.0, 0.0, 0.1, 0.02)
-    result = simulate(system, settings, OUTPUTS, turning=RUN_UP)
+    result = simulate(system, settings, OUTPUTS, speed_profile=RUN_UP)
     pressed = replace(system, load=system.load + (1.1 - 0.9) / 6.0 * system.acceleration_load)
     np.testing.assert_allclose(result.displacement[0], static_equilibrium(pressed), rtol=1e-12)

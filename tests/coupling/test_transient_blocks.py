@@ -51,14 +51,16 @@ def on_file(checkpoint: Checkpoint) -> Checkpoint:
     return Checkpoint.from_arrays(np.load(file))
 
 
-@pytest.mark.parametrize("turning", [None, RUN_UP])
-def test_a_march_goes_on_from_every_checkpoint_to_the_same_bits(turning: SpeedProfile | None) -> None:
-    blocks = list(integrate_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK))
+@pytest.mark.parametrize("speed_profile", [None, RUN_UP])
+def test_a_march_goes_on_from_every_checkpoint_to_the_same_bits(speed_profile: SpeedProfile | None) -> None:
+    blocks = list(integrate_blocks(SYSTEM, SETTINGS, ROWS, speed_profile=speed_profile, samples_per_block=BLOCK))
     assert len(blocks) == blocks[0].count > 5
     assert sum(len(block.force) for block in blocks) == SETTINGS.samples
     for number in range(len(blocks) - 1):
         after = on_file(blocks[number].after)
-        rest = integrate_blocks(SYSTEM, SETTINGS, ROWS, turning=turning, samples_per_block=BLOCK, after=after)
+        rest = integrate_blocks(
+            SYSTEM, SETTINGS, ROWS, speed_profile=speed_profile, samples_per_block=BLOCK, after=after
+        )
         for one, other in zip(blocks[number + 1 :], rest, strict=True):
             assert one.first == other.first
             assert all(getattr(one, name).tobytes() == getattr(other, name).tobytes() for name in RECORD)
@@ -96,8 +98,8 @@ def test_a_cache_that_forgets_changes_nothing(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_key_stands_for_the_very_march() -> None:
-    def key(system=SYSTEM, settings=SETTINGS, rows=ROWS, turning=None, block=BLOCK):  # type: ignore[no-untyped-def]
-        return integration_key(system, settings, rows, turning=turning, samples_per_block=block)
+    def key(system=SYSTEM, settings=SETTINGS, rows=ROWS, speed_profile=None, block=BLOCK):  # type: ignore[no-untyped-def]
+        return integration_key(system, settings, rows, speed_profile=speed_profile, samples_per_block=block)
 
     nudged = SYSTEM.load * (1.0 + np.finfo(float).eps)
     other_contact = replace(SYSTEM.contacts[0], phase=0.1)
@@ -107,7 +109,7 @@ def test_a_key_stands_for_the_very_march() -> None:
         key(settings=replace(SETTINGS, tolerance=2e-4)),
         key(settings=replace(SETTINGS, duration=61.0)),
         key(rows=replace(ROWS, velocity=2.0 * np.eye(2))),
-        key(turning=RUN_UP),
+        key(speed_profile=RUN_UP),
         key(block=2 * BLOCK),
     ]
     assert key() == key(system=machine())

@@ -255,7 +255,10 @@ def test_a_slow_ramp_on_helical_teeth_balances_the_better_the_finer_the_steps(
     turning = SpeedProfile(np.array([0.0, 0.3]), np.array([1.0, end]))
     coarse, fine = (
         simulate(
-            helical_mesh, TransientSettings(0.3, 0.0, 1e-4, 1e-4, tolerance=tolerance), everything(1), turning=turning
+            helical_mesh,
+            TransientSettings(0.3, 0.0, 1e-4, 1e-4, tolerance=tolerance),
+            everything(1),
+            speed_profile=turning,
         )
         for tolerance in (2e-3, 1e-4)
     )

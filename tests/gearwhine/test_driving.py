@@ -202,15 +202,15 @@ def test_free_run_of_a_geared_machine() -> None:
     given = {"run": {"from": "600 rpm", "time": "30 ms"}, "points_per_revolution": 400}
     case = parse_case(spur_pair(given, speed="1500 rpm", motor=LINE, load=load))
     solved = run(case)
-    assert solved.turning is not None
+    assert solved.speed_profile is not None
     # 90 - 90 ω/ω₀ - 10 - 30 ω/ω₀ about its end.
     inertia, top = 2.0 * float(np.sum(solved.machine.rotors[0].turning ** 2)), 3000.0 * RPM
     assert solved.machine.train_inertia == pytest.approx(inertia, rel=1e-9)
     end, constant = top * 80.0 / 120.0, inertia * top / 120.0
-    speed = end + (600.0 * RPM - end) * np.exp(-solved.turning.times / constant)
-    np.testing.assert_allclose(1500.0 * RPM * solved.turning.speed_ratios, speed, rtol=1e-6)
+    speed = end + (600.0 * RPM - end) * np.exp(-solved.speed_profile.times / constant)
+    np.testing.assert_allclose(1500.0 * RPM * solved.speed_profile.speed_ratios, speed, rtol=1e-6)
     # From rest relative to the nominal rotation the mean over the run: impulse over time.
-    gained, mean_speed = speed[-1] - speed[0], np.trapezoid(speed, solved.turning.times) / 0.03
+    gained, mean_speed = speed[-1] - speed[0], np.trapezoid(speed, solved.speed_profile.times) / 0.03
     far = 0.5 * inertia
     expected = (10.0 + 30.0 * mean_speed / top + far * gained / 0.03) / solved.machine.meshes[
         0

@@ -146,9 +146,9 @@ def with_sensor(solved: SolvedTransient) -> SolvedTransient:
     The latter ends at 2500 rpm, short of half the sampling rate.
     """
     run = long_run(solved, {})
-    assert run.turning is not None
+    assert run.speed_profile is not None
     times = run.histories.times
-    turned, ratio, _ = run.turning.at(times)
+    turned, ratio, _ = run.speed_profile.at(times)
     turns = 5500.0 / 60.0 * turned
     third = np.where(5500.0 * ratio < 2500.0, 50.0 * ratio * np.cos(2.0 * np.pi * 81.0 * turns), 0.0)
     signal = 10.0 * ratio * np.cos(2.0 * np.pi * 27.0 * turns) + third

@@ -510,7 +510,7 @@ def draw_transient(
     meshes = tuple(abs(contact.mesh_frequency) for contact in machine.system.contacts[: len(machine.meshes)])
     speed = _speed(solved)
     # Along a run no line stands still.
-    marks = meshes if solved.turning is None else ()
+    marks = meshes if solved.speed_profile is None else ()
     if solved.sensor_spectra:
         marked = _marked_modes(housing, comparison)
         kind = "dominant" if comparison is None or comparison.pairing == "dominance" else "measured"
@@ -563,7 +563,7 @@ def _mesh_force(title: str, solved: SolvedTransient, meshes: tuple[float, ...]) 
     figure, rows = _rows_of_pairs(len(drives), "Gear-mesh force", f"{title}, {_speed(solved)}")
     for (left, right), name, frequency in zip(rows, drives, meshes, strict=True):
         period, span = 1.0 / frequency, "six mesh periods"
-        if solved.turning is not None:
+        if solved.speed_profile is not None:
             span = f"its first {_PERIODS * MILLI * period:.3g} ms"
         at, force = between_samples(times - times[0], solved.histories.mesh_force[name], _PERIODS * period, period)
         left.plot(MILLI * at, force, color=BLUE, lw=1.0)
@@ -571,11 +571,11 @@ def _mesh_force(title: str, solved: SolvedTransient, meshes: tuple[float, ...]) 
         panel_title(left, f"{name}: {span}")
         limit = min(4.2 * frequency, float(solved.force_spectra[name].frequencies[-1]))
         draw_lines(right, solved.force_spectra[name], limit)
-        if solved.turning is None:
+        if solved.speed_profile is None:
             _mark(right, meshes, limit)
         right.set(xlabel="frequency [Hz]", ylabel="mesh force [N, peak]")
         panel_title(right, "spectrum without its mean")
-    if solved.turning is None:
+    if solved.speed_profile is None:
         legend(figure, [Line2D([], [], color=RED, lw=0.8, ls=(0, (4, 3)), label="mesh harmonic")])
     return figure
 
@@ -594,8 +594,8 @@ def _marked_modes(housing: SolvedHousing | None, comparison: Comparison | None) 
 
 def _speed(solved: SolvedTransient) -> str:
     """Speed and torque for a caption; of a run, the speeds that its record goes through."""
-    if solved.turning is not None:
-        rates = solved.turning.at(solved.histories.times[[0, -1]])[1]
+    if solved.speed_profile is not None:
+        rates = solved.speed_profile.at(solved.histories.times[[0, -1]])[1]
         first, last = solved.speed * rates * 60.0 / (2.0 * np.pi)
         return f"{first:.0f} to {last:.0f} rpm, averaged over the run"
     return f"{solved.speed * 60.0 / (2.0 * np.pi):.0f} rpm, {solved.machine.input_torque:.4g} N·m"

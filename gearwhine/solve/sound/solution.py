@@ -509,7 +509,7 @@ def with_histories(
         return solved, housing
     transfer, housing = kept_radiation(case, housing, solved.radiation, places, (AUDIBLE, solved.limit_hz), progress)
     histories = transient.histories
-    repeats = transient.turning is None and transient.record.sampling.window == "uniform"
+    repeats = transient.speed_profile is None and transient.record.sampling.window == "uniform"
     heard = microphone_histories(
         transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
     )
