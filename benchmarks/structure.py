@@ -76,8 +76,8 @@ def case_free_lines() -> tuple[int, int]:
 def counted(counts: Counter[str]) -> Iterator[None]:
     """Count the trains that are derived, and the gears, bearings and machines that are made."""
     from gearwhine import coupling, rotors
+    from gearwhine.coupling.description import gear_train
     from gearwhine.coupling.gears import Gear
-    from gearwhine.coupling.machine import gear_train
 
     made: list[tuple[Any, str]] = [
         (Gear, "gears"),

@@ -35,6 +35,9 @@ numba is imported when a motion or an equilibrium is computed, not before.
 
 from gearwhine.coupling.assembly import CoupledMachine as CoupledMachine
 from gearwhine.coupling.assembly import assemble_machine as assemble_machine
+from gearwhine.coupling.description.gear_train import Output as Output
+from gearwhine.coupling.description.parts import Shaft as Shaft
+from gearwhine.coupling.description.parts import ShaftGear as ShaftGear
 from gearwhine.coupling.errors import CouplingError as CouplingError
 from gearwhine.coupling.errors import ModesError as ModesError
 from gearwhine.coupling.errors import PeriodicError as PeriodicError
@@ -47,7 +50,6 @@ from gearwhine.coupling.machine.base_motion import BaseMotion as BaseMotion
 from gearwhine.coupling.machine.bearing_laws import GapLaw as GapLaw
 from gearwhine.coupling.machine.bearing_laws import RollingLaw as RollingLaw
 from gearwhine.coupling.machine.coupled_system import CoupledSystem as CoupledSystem
-from gearwhine.coupling.machine.gear_train import Output as Output
 from gearwhine.coupling.machine.loads import MachineLoads as MachineLoads
 from gearwhine.coupling.machine.loads import Ripple as Ripple
 from gearwhine.coupling.machine.loads import ShaftForce as ShaftForce
@@ -57,8 +59,6 @@ from gearwhine.coupling.machine.loads import Unbalance as Unbalance
 from gearwhine.coupling.machine.mounted_parts import GearMesh as GearMesh
 from gearwhine.coupling.machine.mounted_parts import MountedBearing as MountedBearing
 from gearwhine.coupling.machine.mounted_parts import MountedGear as MountedGear
-from gearwhine.coupling.machine.parts import Shaft as Shaft
-from gearwhine.coupling.machine.parts import ShaftGear as ShaftGear
 from gearwhine.coupling.machine.speed_profile import FreeRun as FreeRun
 from gearwhine.coupling.machine.speed_profile import SpeedProfile as SpeedProfile
 from gearwhine.coupling.machine.speed_profile import SpeedRun as SpeedRun

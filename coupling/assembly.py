@@ -18,6 +18,15 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.description.gear_train import (
+    GearedShafts,
+    gear_train,
+    mesh_phases,
+    require_balance,
+    require_meshing,
+    turning_senses,
+)
+from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
@@ -42,20 +51,11 @@ from gearwhine.coupling.machine.connectors import (
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
 from gearwhine.coupling.machine.gear_bodies import transport
-from gearwhine.coupling.machine.gear_train import (
-    GearedShafts,
-    gear_train,
-    mesh_phases,
-    require_balance,
-    require_meshing,
-    turning_senses,
-)
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
-from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
 from gearwhine.coupling.statics.mean_mesh import MeanMesh, mean_equilibrium
 from gearwhine.coupling.statics.static_equilibrium import with_loaded_flanks
@@ -240,14 +240,16 @@ def assemble_machine(
     speed_range: tuple[float, float] = (1.0, 1.0),
     mean_faces: "MeanFaces | None" = None,
 ) -> CoupledMachine:
-    """Assemble the coupled system of components that exist already; :class:`coupling.Machine` makes them of its parts.
+    """Assemble the coupled system of components that exist already.
+
+    :class:`gearwhine.coupling.Machine` makes them of its parts.
 
     Parameters
     ----------
     rotors : sequence of RotorComponent
     housing : HousingComponent or None
     speeds : dict of str to float
-        Signed speed of each rotor [rad/s]; at rest see :func:`gearwhine.coupling.machine.gear_train.turning_senses`.
+        Signed speed of each rotor [rad/s]; at rest by :func:`gearwhine.coupling.description.gear_train.turning_senses`.
     bearings : sequence of MountedBearing
     meshes : sequence of GearMesh
     loads : MachineLoads
@@ -419,7 +421,10 @@ def _bearing(
 def _transports(
     coordinates: MachineCoordinates, rotor: RotorComponent, speed: float, speed_range: tuple[float, float]
 ) -> list[LinearConnector]:
-    """Rotation of gear bodies' modes with two nodal diameters or more, see :mod:`coupling.machine.gear_bodies`."""
+    """Rotation of gear bodies' modes with two nodal diameters or more.
+
+    See :mod:`gearwhine.coupling.machine.gear_bodies`.
+    """
     connectors = []
     for gear, mode, own in rotor.plates:
         if speed == 0.0:
@@ -661,9 +666,9 @@ def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothCont
 def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple[FloatArray, FloatArray]:
     """Direction of compression and the harmonics of the runout error on one side of the teeth.
 
-    The runout error e_err is subtracted from the compression δ of :mod:`gearwhine.coupling.machine.mesh_kinematics`. A
-    gear whose centre circles its shaft with eccentricity ε moves by ε (cos, sin)(Ωt + phase) on top of u, so
-    e_err = -e (ε_k - ε_i): the same first-order runout as
+    The runout error e_err is subtracted from the compression δ of
+    :mod:`gearwhine.coupling.machine.mesh_kinematics`. A gear whose centre circles its shaft with eccentricity
+    ε moves by ε (cos, sin)(Ωt + phase) on top of u, so e_err = -e (ε_k - ε_i): the same first-order runout as
     :func:`gearwhine.coupling.gears.geometry.pitch_deviations.runout_error`.
     """
     line = mesh.line_of_action(sense)

@@ -17,6 +17,37 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine, assemble_machine
+from gearwhine.coupling.description.arrangement import (
+    BACKLASH_OF_A_BRAKE,
+    POWER_FROM_THE_DRIVER,
+    output_elsewhere,
+    table_findings_of_speeds,
+)
+from gearwhine.coupling.description.axial_location import AxialLocation, axial_support
+from gearwhine.coupling.description.excitation import Run, machine_driving, unbalanced_torque
+from gearwhine.coupling.description.gear_train import (
+    GearedShafts,
+    GearTrain,
+    Output,
+    carrying_flanks,
+    gear_train,
+    geometry_on_axes,
+    imbalances_of_shafts,
+    require_balanced_outputs,
+)
+from gearwhine.coupling.description.parts import (
+    Shaft,
+    ShaftGear,
+    bearing_findings,
+    carrying_length,
+    gear_inertia_on_shaft,
+    inertia_with_discs,
+    name_findings,
+    rotor_with_gears,
+    station_findings,
+)
+from gearwhine.coupling.description.solids import force_findings, machine_findings, unbalance_findings
+from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry
 from gearwhine.coupling.gears.contact.contact_law import law_between_rims
@@ -29,13 +60,6 @@ from gearwhine.coupling.gears.stiffness.rim_on_hub import rotation_shares, shift
 from gearwhine.coupling.linear.campbell import SystemCampbell, system_campbell
 from gearwhine.coupling.linear.complex_modes import CoupledModes, coupled_modes
 from gearwhine.coupling.linear.frequency_response import FrequencyResponse, mesh_error_response
-from gearwhine.coupling.machine.arrangement import (
-    BACKLASH_OF_A_BRAKE,
-    POWER_FROM_THE_DRIVER,
-    output_elsewhere,
-    table_findings_of_speeds,
-)
-from gearwhine.coupling.machine.axial_location import AxialLocation, axial_support
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.components import (
@@ -45,18 +69,13 @@ from gearwhine.coupling.machine.components import (
     rotor_component,
 )
 from gearwhine.coupling.machine.driving_frequencies import least_sampling_rate
-from gearwhine.coupling.machine.excitation import Run, machine_driving, unbalanced_torque
 from gearwhine.coupling.machine.face_compliance import face_compliance
-from gearwhine.coupling.machine.gear_bodies import BodyOutOfPlane, GearBody, body_out_of_plane, rim_spring, stiffest
-from gearwhine.coupling.machine.gear_train import (
-    GearedShafts,
-    GearTrain,
-    Output,
-    carrying_flanks,
-    gear_train,
-    geometry_on_axes,
-    imbalances_of_shafts,
-    require_balanced_outputs,
+from gearwhine.coupling.machine.gear_bodies import (
+    BodyOutOfPlane,
+    GearBody,
+    body_out_of_plane,
+    rim_spring,
+    stiffest,
 )
 from gearwhine.coupling.machine.loads import (
     BowReactions,
@@ -69,21 +88,8 @@ from gearwhine.coupling.machine.loads import (
     largest_torques,
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
-from gearwhine.coupling.machine.parts import (
-    Shaft,
-    ShaftGear,
-    bearing_findings,
-    carrying_length,
-    gear_inertia_on_shaft,
-    inertia_with_discs,
-    name_findings,
-    rotor_with_gears,
-    station_findings,
-)
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
-from gearwhine.coupling.machine.solids import force_findings, machine_findings, unbalance_findings
 from gearwhine.coupling.machine.speed_profile import TorqueLine
-from gearwhine.coupling.machine.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.periodic.response import PeriodicResponse
 from gearwhine.coupling.periodic.shooting import periodic_response
 from gearwhine.coupling.statics.operating_point import OperatingPoint
@@ -322,7 +328,10 @@ class Machine:
 
     @cached_property
     def gear_bodies(self) -> tuple[GearBody, ...]:
-        """Bodies of the gears whose rims move on their hubs in motion, see :mod:`coupling.machine.gear_bodies`."""
+        """Bodies of the gears whose rims move on their hubs in motion.
+
+        See :mod:`gearwhine.coupling.machine.gear_bodies`.
+        """
         compliances: dict[str, list[tuple[float, float]]] = {}
         states: dict[str, PlaneState] = {}
         for pair, geometry in zip(self.gear_pairs, self.pair_geometries, strict=True):

@@ -251,7 +251,7 @@ def _unfold(gmsh: Any) -> None:
 
 @dataclass(frozen=True)
 class Tetrahedra:
-    """Mesh from gmsh as plain arrays in the mesh's own order of nodes; see :class:`~meshes.Mesh` for their shapes."""
+    """Mesh from gmsh as plain arrays in the mesh's own order of nodes, shaped as in :class:`gearwhine.meshes.Mesh`."""
 
     points: FloatArray
     cells: IntArray

@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
-from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.numerics.progress import Progress, silent

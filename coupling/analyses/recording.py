@@ -3,8 +3,8 @@
 Sampling: stepwise changes of the mesh force have harmonics without end. Samples are therefore taken at a hundred times
 the highest frequency of interest: little folds back then, and the spectra of whole periods need no filter. They are
 closer together where an excitation of a higher frequency asks for it, see
-:mod:`gearwhine.coupling.machine.driving_frequencies`: an inverter's ripple above half the sampling rate would be a
-false line. A record that fits in memory stays like that, and its spectra are those of the whole. A longer one is
+:mod:`gearwhine.coupling.machine.driving_frequencies`: an inverter's ripple above half the sampling rate would be
+a false line. A record that fits in memory stays like that, and its spectra are those of the whole. A longer one is
 filtered as it comes and stored at four times that frequency: its histories and spectra are right up to there, which is
 also as far as the model's modes go. Its spectra are averaged over stretches of whole revolutions, the last ones of the
 record.
@@ -25,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.assembly import CoupledMachine
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.machine.driving_frequencies import (
@@ -33,7 +34,6 @@ from gearwhine.coupling.machine.driving_frequencies import (
     least_sampling_rate,
     varies_within,
 )
-from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.signals.decimation import Decimation
 from gearwhine.coupling.signals.decimation import decimation as coupled_decimation

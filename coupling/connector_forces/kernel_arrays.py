@@ -197,7 +197,10 @@ class Samples(NamedTuple):
 
 
 def bearing_arrays(connectors: Sequence[NonlinearConnector]) -> Bearings:
-    """Arrays of the laws of nonlinear bearings, see :class:`coupling.connector_forces.kernel_arrays.Bearings`."""
+    """Arrays of the laws of nonlinear bearings.
+
+    See :class:`gearwhine.coupling.connector_forces.kernel_arrays.Bearings`.
+    """
     b = len(connectors)
     linear, fixed, preload = np.zeros((b, 5, 5)), np.zeros((b, 5)), np.zeros(b)
     floating = np.zeros(b, dtype=np.bool_)

@@ -242,7 +242,8 @@ class LineMechanisms:
     def _alike(self) -> dict[int, tuple[LoadedMesh, FloatArray | None]]:
         """Mesh of every loaded contact over a period with all teeth alike, and its friction force by position.
 
-        The friction is μ F (A, B) [N], shape (n, 2), see `gearwhine.coupling.machine.tooth_friction.friction_of`.
+        The friction is μ F (A, B) [N], shape (n, 2), see
+        `gearwhine.coupling.machine.tooth_friction.friction_of`.
         """
         force, meshes = self._force, {}
         for number in self.model.loaded:

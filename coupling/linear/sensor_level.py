@@ -7,8 +7,8 @@ About the mean load the motion at the n-th harmonic of a mesh is that of
 
 e_n the transmission error and m_n the moments of load shuttling of its flanks. Other flanks have other e_n, m_n and
 another law L over the mean approach of the face, its slope and the tilt, the rows Y of shape (3, n)
-(:mod:`gearwhine.coupling.machine.mesh_face`), and with L another Z: of one contact, the update of rank three Z + Yᵀ ΔL
-Y, whose inverse is that of Woodbury,
+(:mod:`gearwhine.coupling.machine.mesh_face`), and with L another Z: of one contact, the update of rank three
+Z + Yᵀ ΔL Y, whose inverse is that of Woodbury,
 
     sᵀ q = p·f - (p Yᵀ) ΔL (I + U Yᵀ ΔL)⁻¹ U f,      Zᵀ p = s,      Zᵀ Uᵀ = Yᵀ,
 

@@ -1,1 +1,1 @@
-"""Machine: its description, components, connectors and loads, and the assembly of the coupled system."""
+"""The coupled system of a machine: components, connectors, meshes and loads in one set of modal coordinates."""

@@ -28,9 +28,9 @@ class HarmonicLoad:
         Circular frequency w at the nominal speeds [rad/s].
     amplitude : ndarray of complex, shape (n,)
     follows : "time", "turning" or "unbalance"
-        Dependence on the speed where it is not the nominal one, see :mod:`gearwhine.coupling.machine.speed_profile`:
-        constant frequency; phase that follows the rotation, e^{iws}; or inertia force of an eccentric mass, (s'² - i
-        s''/w) e^{iws}.
+        Dependence on the speed where it is not the nominal one, see
+        :mod:`gearwhine.coupling.machine.speed_profile`: constant frequency; phase that follows the rotation,
+        e^{iws}; or inertia force of an eccentric mass, (s'² - i s''/w) e^{iws}.
     mechanism : str
         What makes it, see :mod:`gearwhine.coupling.linear.line_mechanisms`.
     """

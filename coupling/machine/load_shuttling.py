@@ -15,9 +15,9 @@ about the driven gear's centre; the moment on the driver is opposite. Both arms 
 the mean force, which stands for F in M: the dynamic part of the force would add a product of two small quantities.
 The flanks are held there: their gap over the face is that of the mean load at every phase. How far the shafts yield to
 the moments, and how the flanks answer that, is the machine's motion, in which the mesh resists tilting
-(:mod:`gearwhine.coupling.machine.mesh_face`); so nothing counts twice. The moments act on the slope of the approach
-over the face, which is the tilt of the shafts and their twist over the face, by z̄, and on their tilt by -h ξ̄. The
-mean moments are those of the mesh's law over its face.
+(:mod:`gearwhine.coupling.machine.mesh_face`); so nothing counts twice. The moments act on the slope of the
+approach over the face, which is the tilt of the shafts and their twist over the face, by z̄, and on their tilt by -h
+ξ̄. The mean moments are those of the mesh's law over its face.
 
 Teeth that are not alike, by pitch deviations or damage, have other arms in each mesh period. The harmonics of the mesh
 are those of the mean of all mesh periods of the hunting period; the sidebands of the arms about them are left out.

@@ -31,7 +31,9 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class BowReactions:
-    """Shaft bow as forces on the straight shaft that rotate with it, see :func:`rotors.analyses.unbalance.bow_shape`.
+    """Shaft bow as forces on the straight shaft that rotate with it.
+
+    See :func:`gearwhine.rotors.analyses.unbalance.bow_shape`.
 
     Attributes
     ----------

@@ -18,8 +18,8 @@ centre, and a linear connector over y with the stiffness K and the offset M₀ -
 
 The modes of the shafts are exact in their static response to the force in the middle of the face. What they lack of the
 response to the slope and the tilt, and to the spread of the force, is a compliance R over (δ, y) in series with the
-slices' tangent (:mod:`gearwhine.coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken. R has
-nothing from mesh to mesh of one gear; the shafts have ports at both ends of such a face, so that their modes lack
+slices' tangent (:mod:`gearwhine.coupling.machine.face_compliance`): (K⁻¹ + R)⁻¹, of which a and K are taken.
+R has nothing from mesh to mesh of one gear; the shafts have ports at both ends of such a face, so that their modes lack
 little there.
 
 K resists as long as flanks touch. It is linear about the mean load, so it does not end where a mesh loses contact in
@@ -27,8 +27,8 @@ motion; linear analyses leave it out where the contact has parted. Flanks withou
 slices on the path of contact. The damping of K is that of the contact in proportion to the stiffness.
 
 What the loads do over a mesh period beside their mean is load shuttling
-(:mod:`gearwhine.coupling.machine.load_shuttling`), of flanks that are held at y₀; the machine's motion is their answer.
-a and K are those of the mean over a mesh period.
+(:mod:`gearwhine.coupling.machine.load_shuttling`), of flanks that are held at y₀; the machine's motion is
+their answer. a and K are those of the mean over a mesh period.
 """
 
 from dataclasses import dataclass, replace

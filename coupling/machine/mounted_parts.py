@@ -172,8 +172,9 @@ class GearMesh:
     behind_rims : float
         Compliance of the rims on their hubs along the line of action [m/N], in series with the contact.
     faces : FaceSlices, optional
-        Slices by which flanks that carry evenly resist tilting, see :mod:`gearwhine.coupling.machine.mesh_face`. By
-        default those of ``contact``; where it has none either, the mesh acts in the middle of its face alone.
+        Slices by which flanks that carry evenly resist tilting, see
+        :mod:`gearwhine.coupling.machine.mesh_face`. By default those of ``contact``; where it has none
+        either, the mesh acts in the middle of its face alone.
     """
 
     driver: MountedGear

@@ -180,7 +180,7 @@ class PairLoad:
 
     @property
     def station_gap(self) -> tuple[float, ...]:
-        """Gap of the flanks at the stations of the face, less its mean [m], for :attr:`coupling.GearPair.face_gap`."""
+        """Gap of the flanks at the stations of the face, less its mean [m], for the pair's ``face_gap``."""
         mean = float(self.pair.contact.face_mean @ self.approach)
         return tuple((mean - self.approach[:-1]).tolist())
 

@@ -196,7 +196,7 @@ def steady_part(system: CoupledSystem) -> LinearPart:
 
 
 class CollocationStepper:
-    """Exponential collocation; see :class:`coupling.time.integration.Stepper`. An element of time is a step."""
+    """Exponential collocation, a :class:`gearwhine.coupling.time.integration.Stepper`; a step is an element of time."""
 
     steps_in_one = ORDER  # an element has this many places and stands for as many steps
     order = 6.0  # at least, kinks in the laws' tables included

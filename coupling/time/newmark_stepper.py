@@ -29,7 +29,10 @@ _SEGMENTS_PER_CHUNK = 48  # number of stretches between two checks of the error
 
 
 class NewmarkStepper:
-    """Newmark's method; see :class:`coupling.time.integration.Stepper` and :mod:`gearwhine.coupling.time.newmark`."""
+    """Newmark's method, a :class:`gearwhine.coupling.time.integration.Stepper`.
+
+    Its kernel is :mod:`gearwhine.coupling.time.newmark`.
+    """
 
     steps_in_one = 1
     order = 2.0

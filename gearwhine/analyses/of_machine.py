@@ -28,8 +28,8 @@ from gearwhine.coupling.analyses.transient import (
     mean_bearing_forces,
     solve_transient,
 )
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning

@@ -35,10 +35,10 @@ from gearwhine.case.fields import (
 
 if TYPE_CHECKING:
     from gearwhine.case.housing import Material
+    from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.gears import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
     from gearwhine.coupling.gears.geometry.gear import Fault as BuiltFault
-    from gearwhine.coupling.machine.gear_train import GearTrain
 
 Deviation = Annotated[float, Quantity(units.LENGTH, at_least=-1e-3, at_most=1e-3)]
 RollAngle = Annotated[float, Quantity(units.ANGLE, at_least=0.0, at_most=2.0 * math.pi)]
@@ -593,7 +593,7 @@ def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]])
 def train_of_pairs(pairs: Iterable[tuple[int, Gear, Gear]], shafts: Iterable[str] = ()) -> GearTrain:
     """Return the gear train of pairs, see :func:`readable_pairs`; without pairs that of single shafts."""
     # The package brings numpy and scipy: only a case that turns waits for them.
-    from gearwhine.coupling.machine.gear_train import GearedShafts, gear_train
+    from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
 
     geared = [
         GearedShafts(shaft_of(driver), shaft_of(driven), (driver.teeth, driven.teeth)) for _, driver, driven in pairs

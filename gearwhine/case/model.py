@@ -30,7 +30,7 @@ from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.rotors import Rotor, RotorAnalysis
 
 if TYPE_CHECKING:
-    from gearwhine.coupling.machine.gear_train import GearTrain
+    from gearwhine.coupling.description.gear_train import GearTrain
 
 Text = Annotated[str, Field(max_length=10_000)]
 

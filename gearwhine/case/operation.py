@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling import BaseMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking as BuiltTracking
-    from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
+    from gearwhine.coupling.description.gear_train import Output as BuiltOutput
     from gearwhine.coupling.machine.loads import Ripple, TorqueOverTime
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
     from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
@@ -325,7 +325,7 @@ class Output(Table):
 
     def build(self) -> BuiltOutput:
         """Build the output torque of the gear train."""
-        from gearwhine.coupling.machine.gear_train import Output as BuiltOutput
+        from gearwhine.coupling.description.gear_train import Output as BuiltOutput
 
         history = None if self.over_time is None else self.over_time.build()
         return BuiltOutput(self.rotor, self.torque, self.at, history, [ripple.build() for ripple in self.ripple])

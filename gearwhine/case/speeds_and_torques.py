@@ -17,7 +17,7 @@ from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
 
 if TYPE_CHECKING:
-    from gearwhine.coupling.machine.gear_train import GearTrain
+    from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.machine.loads import Torque
 
 
@@ -62,7 +62,7 @@ def mesh_frequencies(case: Case, speed: float | None = None) -> tuple[float, ...
 def applied_torques(case: Case, torque: float | None = None) -> tuple[Torque, ...]:
     """Return the torques from outside: the input first, then the outputs. They balance through the gears.
 
-    They are those of :meth:`gearwhine.coupling.machine.gear_train.GearTrain.applied_torques`. Without an `at`, the
+    They are those of :meth:`gearwhine.coupling.description.gear_train.GearTrain.applied_torques`. Without an `at`, the
     input is at the left end of its rotor, an output at the right end; in a case without rotors shafts have no length,
     and every torque is at 0.
 
@@ -92,7 +92,7 @@ def pair_torques(case: Case) -> tuple[float, ...]:
     """Return the mean torque that each gear pair takes off its driver [N m], in the order of the file.
 
     Positive where power flows from driver to driven; see
-    :meth:`gearwhine.coupling.machine.gear_train.GearTrain.pair_torques`.
+    :meth:`gearwhine.coupling.description.gear_train.GearTrain.pair_torques`.
 
     Raises
     ------

@@ -12,12 +12,12 @@ from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.input_files import ChangedFileError
 from gearwhine.coupling import Machine
+from gearwhine.coupling.description.gear_train import LARGEST_OFFSET
+from gearwhine.coupling.description.parts import inertia_with_discs
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
 from gearwhine.coupling.gears.errors import ThinTipError
 from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
-from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
-from gearwhine.coupling.machine.parts import inertia_with_discs
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.rotors import build_gear, shaft_gears
 from gearwhine.numerics.progress import Progress, silent
@@ -174,7 +174,7 @@ def _table(path: Path, key: str) -> tuple[FloatArray, FloatArray]:
 
 
 def _inertia(case: Case, name: str) -> float:
-    """Polar inertia that rotates with a gear [kg m²], see :func:`coupling.machine.parts.inertia_with_discs`."""
+    """Polar inertia that rotates with a gear [kg m²], with the discs at its station."""
     entry = case.gear_named(name)
     if entry.rotor is None:
         return entry.polar_inertia or build_gear(case, entry).polar_inertia

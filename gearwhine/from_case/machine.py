@@ -5,8 +5,8 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, Rotor, require
 from gearwhine.coupling import Machine, MountedBearing, Shaft
+from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.machine.parts import LATERAL_LIMIT_HZ
 from gearwhine.from_case.gear_pairs import build_pair
 from gearwhine.from_case.rotors import (
     bearing_law,

@@ -12,9 +12,9 @@ from gearwhine.case import Rotor as GivenRotor
 from gearwhine.case.bearings import MatrixDamping, RadialDamping
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling import RollingLaw, ShaftGear
+from gearwhine.coupling.description.parts import rotor_with_gears
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
-from gearwhine.coupling.machine.parts import rotor_with_gears
 from gearwhine.rotors import Bearing as RotorBearing
 from gearwhine.rotors import EquilibriumError, Rotor, RotorError
 from gearwhine.rotors import rolling_bearings as rolling

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
-from gearwhine.coupling.machine.axial_location import ARRANGEMENTS
+from gearwhine.coupling.description.axial_location import ARRANGEMENTS
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Document, Section, counted

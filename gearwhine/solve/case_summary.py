@@ -7,8 +7,8 @@ from typing import Any
 from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.coupling import Machine
+from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
-from gearwhine.coupling.machine.axial_location import AxialLocation
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
     TakenMisalignment,
@@ -91,7 +91,7 @@ class CheckedCase:
         Mesh of the housing.
     rotors : tuple of CheckedRotor
     pairs : tuple of CheckedPair
-    locations : tuple of gearwhine.coupling.machine.axial_location.AxialLocation
+    locations : tuple of gearwhine.coupling.description.axial_location.AxialLocation
         Axial location of each rotor.
     machine : Machine or None
         Machine of the case on rigid seats; None without rotors and an operation.

@@ -11,9 +11,9 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import OrderTracking
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
-from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine

@@ -466,7 +466,7 @@ def load_of_case(
 ) -> SolvedLoad:
     """Find the static equilibrium of a case's machine, with what the case gives and leaves open of misalignments.
 
-    The parameters are those of :func:`gearwhine.coupling.analyses.operating_point.solve_load`.
+    The parameters are those of :func:`solve_load`.
     """
     solved = solve_load(machine, progress, over_torque=over_torque, over_hunting_period=over_hunting_period)
     taken = misalignments_of_case(case, solved.point)

@@ -16,12 +16,12 @@ from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.signature import SolvedSignature, TracedLine
 from gearwhine.coupling.analyses.transient import SolvedTransient
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.complex_modes import Stability
 from gearwhine.coupling.linear.damping_band import DampingBand
 from gearwhine.coupling.linear.frequency_response import BasisError
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
 from gearwhine.coupling.machine.base_motion import BaseHistory
-from gearwhine.coupling.machine.excitation import Run
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.machine.speed_profile import FreeRun
 from gearwhine.coupling.statics.mean_mesh import mean_contact

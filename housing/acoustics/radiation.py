@@ -183,7 +183,10 @@ class RadiatedSound:
 
     @property
     def interior_residual(self) -> float:
-        """Largest of all fields, see :class:`housing.acoustics.boundary_elements.SoundField`; infinite: no proof."""
+        """Largest of all fields; infinite: no proof.
+
+        See :class:`gearwhine.housing.acoustics.boundary_elements.SoundField`.
+        """
         return max(field.interior_residual for field in self.fields)
 
     @property

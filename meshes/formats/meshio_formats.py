@@ -110,7 +110,7 @@ def _groups(content: Any, number: int) -> list[tuple[str, IntArray]]:
 
 
 def _flagged_faces(content: Any, number: int, block: ElementBlock) -> Iterator[tuple[str, IntArray]]:
-    """Surfaces stored as a bit for each face of the elements, as :mod:`meshes.formats.meshio_formats` writes them."""
+    """Surfaces stored as a bit for each face of the elements, as this module writes them."""
     for key, arrays in content.cell_data.items():
         word, _, name = key.partition(":")
         if word == "faces":

@@ -11,8 +11,8 @@ from own_statics import linear_bearing as made_bearing
 from scipy.optimize import brentq
 
 from gearwhine.coupling import Machine, MountedBearing
+from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport
 from gearwhine.coupling.errors import EquilibriumNotFoundError
-from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,

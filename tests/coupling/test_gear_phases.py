@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from gearwhine.coupling import CouplingError
+from gearwhine.coupling.description.gear_train import mesh_phases
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.geometry.profile import pair_outlines
-from gearwhine.coupling.machine.gear_train import mesh_phases
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ import pytest
 
 from gearwhine.case import parse_case
 from gearwhine.coupling import ShaftGear
+from gearwhine.coupling.description.parts import gear_disc, inertia_with_discs, rotor_with_gears
 from gearwhine.coupling.gears import Gear
-from gearwhine.coupling.machine.parts import gear_disc, inertia_with_discs, rotor_with_gears
 from gearwhine.from_case.rotors import build_rotor
 from gearwhine.rotors import Rotor, Segment, ShaftMaterial
 

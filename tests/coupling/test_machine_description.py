@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearwhine.coupling import CouplingError, Machine, MountedBearing, Output, Shaft, ShaftGear, coupled_modes
+from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
+from gearwhine.coupling.description.parts import rotor_with_gears
 from gearwhine.coupling.gears import ConstantStiffness, Gear, GearError, SquareStiffness
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.machine.gear_train import GearedShafts, gear_train
-from gearwhine.coupling.machine.parts import rotor_with_gears
 from gearwhine.rotors import (
     Bearing,
     Coupling,

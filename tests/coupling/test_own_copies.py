@@ -9,14 +9,14 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.coupling import Machine, MountedBearing, Shaft, ShaftForce, ShaftGear
+from gearwhine.coupling.description.excitation import Driving
+from gearwhine.coupling.description.gear_train import Output
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.geometry.faults import MissingTooth
 from gearwhine.coupling.gears.geometry.modifications import ProfileDeviation
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.models import TableStiffness
 from gearwhine.coupling.machine.base_motion import BaseHarmonic, BaseHistory, BaseMotion
-from gearwhine.coupling.machine.excitation import Driving
-from gearwhine.coupling.machine.gear_train import Output
 from gearwhine.coupling.machine.loads import Torque, TorqueHistory, TorqueSlope
 from gearwhine.housing import STEEL, Housing, Joint, LumpedMass, Mount, Seat, Sensor, Support
 from gearwhine.housing.model.bushings import Bushing

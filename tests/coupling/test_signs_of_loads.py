@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearwhine.coupling.description.thrust import ThrustPair, axial_forces
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.stiffness.hertz import line_contact
 from gearwhine.coupling.gears.stiffness.iso6336 import iso6336_stiffness
 from gearwhine.coupling.machine.base_motion import BaseHistory, _velocities, participations
 from gearwhine.coupling.machine.components import HousingComponent, rotor_component
 from gearwhine.coupling.machine.load_shuttling import load_arms, shuttling_loads
-from gearwhine.coupling.machine.thrust import ThrustPair, axial_forces
 from gearwhine.coupling.signals.spectrum import averaged_spectrum
 from gearwhine.rotors import Rotor, Segment, ShaftMaterial, modal_rotor
 

@@ -6,7 +6,7 @@ import pytest
 from helical_pairs import ANGLE, TORQUE, couple_pairs, helical
 
 from gearwhine.coupling import CouplingError
-from gearwhine.coupling.machine.thrust import ThrustPair, axial_forces
+from gearwhine.coupling.description.thrust import ThrustPair, axial_forces
 
 
 def test_the_thrust_is_the_tangential_force_times_the_tangent_of_the_helix() -> None:

@@ -11,8 +11,8 @@ import numpy as np
 import gearwhine as gw
 from gearwhine.coupling import ShaftGear
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ as LIMIT_HZ
 from gearwhine.coupling.gears import Gear
-from gearwhine.coupling.machine.parts import LATERAL_LIMIT_HZ as LIMIT_HZ
 from gearwhine.meshes import BoxGeometry, WallThickness
 from gearwhine.rotors import ShaftMaterial
 

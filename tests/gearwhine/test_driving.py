@@ -15,9 +15,9 @@ from coupled_cases import about_operating_point, coupled
 from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
 from gearwhine.coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
+from gearwhine.coupling.description.excitation import Driving, machine_driving
 from gearwhine.coupling.gears.contact.tooth_force_kernels import tooth_force
 from gearwhine.coupling.machine.components import RotorComponent
-from gearwhine.coupling.machine.excitation import Driving, machine_driving
 from gearwhine.coupling.machine.loads import TorqueHistory, TorqueRipple, TorqueSlope, largest_torques
 from gearwhine.coupling.machine.speed_profile import free_speed
 from gearwhine.coupling.signals.spectrum import lines_at

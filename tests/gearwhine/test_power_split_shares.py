@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import gearwhine as gw
-from gearwhine.coupling.machine.gear_train import GearedShafts, gear_train
+from gearwhine.coupling.description.gear_train import GearedShafts, gear_train
 from gearwhine.results.check import sections
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}

@@ -312,7 +312,7 @@ class FaceContact:
         return flat.under_force(force, np.zeros(self.size), phases)
 
     def loaded_mesh(self, load: FaceLoad) -> LoadedMesh:
-        """Return a load as one of :mod:`coupling.gears.loaded.transmission_error`, for pressure and contact pattern."""
+        """Return a load of :mod:`gearwhine.coupling.gears.loaded.transmission_error`, for pressure and pattern."""
         stiffness = self.stiffness_of(load)
         return LoadedMesh(
             force=load.force,

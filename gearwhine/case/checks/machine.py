@@ -26,8 +26,8 @@ from gearwhine.case.speeds_and_torques import pair_torques
 from gearwhine.numerics.findings import in_mm
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.gears import Gear as BuiltGear
-    from gearwhine.coupling.machine.gear_train import GearTrain
     from gearwhine.numerics.findings import Finding as PartFinding
 
 
@@ -112,7 +112,7 @@ def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Loc
 def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
     """Yield a bow of one point, which bends nothing, and points of a bow where another one stands already."""
     if rotor.bow:
-        from gearwhine.coupling.machine.parts import bow_findings
+        from gearwhine.coupling.description.parts import bow_findings
 
         places = [point.at for point in rotor.bow]
         yield from _at(("rotor", index), bow_findings(("shaft", rotor.name), places, rotor.length))
@@ -120,7 +120,7 @@ def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
     """Yield findings where a rotor's axis or a bearing's place along it misses the seat."""
-    from gearwhine.coupling.machine.arrangement import SeatPlace, seat_findings
+    from gearwhine.coupling.description.arrangement import SeatPlace, seat_findings
 
     wall = 0.0
     if draft.box is not None:
@@ -140,7 +140,7 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
     for index, bearing in draft.bearings:
         yield from _check_tables(index, bearing)
         if bearing.pedestal is not None and not bearing.grounded:
-            from gearwhine.coupling.machine.arrangement import pedestal_finding
+            from gearwhine.coupling.description.arrangement import pedestal_finding
 
             part = ("bearing", bearing.name)
             yield from _at(("bearing", index), [pedestal_finding(part, bearing.seat, bearing.pedestal)])
@@ -190,7 +190,7 @@ def _check_reach(
     draft: Draft, index: int, bearing: Bearing, table: tuple[float, ...], ratio: float
 ) -> Iterator[Finding]:
     """Yield a table that does not hold every speed that the case names."""
-    from gearwhine.coupling.machine.arrangement import table_findings_of_speeds
+    from gearwhine.coupling.description.arrangement import table_findings_of_speeds
 
     needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
     part = ("bearing", bearing.name)
@@ -260,10 +260,10 @@ def _check_pair(
     draft: Draft, index: int, pair: GearPair, tables: tuple[Gear, Gear], gears: tuple[BuiltGear, BuiltGear]
 ) -> Iterator[Finding]:
     """Yield why two gears do not mesh, at any distance or at that of their axes, or are not opposite each other."""
+    from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, geometry_on_axes, plane_findings
     from gearwhine.coupling.gears import GearError, GearPairGeometry
     from gearwhine.coupling.gears.errors import StiffnessModelError
     from gearwhine.coupling.gears.stiffness.models import require_model_fit
-    from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET, geometry_on_axes, plane_findings
 
     try:
         require_model_fit(pair.stiffness.model, GearPairGeometry(*gears))
@@ -436,7 +436,7 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
     if rotor is not None and operation.at is not None:
         yield from check_station(rotor, operation.at, ("operation", "at"))
     if draft.gear_pairs and first is not None:
-        from gearwhine.coupling.machine.arrangement import output_elsewhere
+        from gearwhine.coupling.description.arrangement import output_elsewhere
 
         for place, output in enumerate(operation.output):
             if output.rotor == first:
@@ -461,14 +461,14 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _lacks_input(operation: Operation) -> bool:
     """Whether outputs have torques and the input has none."""
-    from gearwhine.coupling.machine.gear_train import lacks_input
+    from gearwhine.coupling.description.gear_train import lacks_input
 
     return lacks_input(operation.torque, [output.build() for output in operation.output])
 
 
 def _check_balance(operation: Operation, train: GearTrain) -> Iterator[Finding]:
     """Yield outputs that, through the gears, take another power than the input."""
-    from gearwhine.coupling.machine.gear_train import is_balanced, output_torque
+    from gearwhine.coupling.description.gear_train import is_balanced, output_torque
 
     delivered = output_torque(train, [output.build() for output in operation.output])
     if not is_balanced(operation.torque, delivered):
@@ -483,7 +483,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield shafts, none geared to another, whose own torques do not balance; the first output's takes the input."""
     if not operation.output:
         return
-    from gearwhine.coupling.machine.gear_train import imbalances_of_shafts
+    from gearwhine.coupling.description.gear_train import imbalances_of_shafts
 
     kind = "rotor" if draft.rotors else "gear"
     for imbalance in imbalances_of_shafts(operation.torque, [output.build() for output in operation.output]):
@@ -496,8 +496,8 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
 
 def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
-    from gearwhine.coupling.machine.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
-    from gearwhine.coupling.machine.gear_train import carrying_flanks
+    from gearwhine.coupling.description.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
+    from gearwhine.coupling.description.gear_train import carrying_flanks
 
     names = draft.names("gear")
     if operation.torque == 0.0 or len(set(names)) < len(names):

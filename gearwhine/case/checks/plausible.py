@@ -1,7 +1,7 @@
 """Findings of the library's parts, mapped to the keys of a case: what its machine cannot be, or hardly is.
 
 The parts check themselves: a gear its flanks, a disc its inertia, a pair its backlash, and
-:mod:`gearwhine.coupling.machine.solids` the places of all of them. Here they are made of a case's tables, and each
+:mod:`gearwhine.coupling.description.solids` the places of all of them. Here they are made of a case's tables, and each
 finding's part and attribute become a key. A finding that is a warning can be accepted by the case, see `Case.unusual`.
 """
 
@@ -28,10 +28,10 @@ from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.speeds_and_torques import pair_torques, rotor_speeds
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.description.parts import Shaft, ShaftGear
+    from gearwhine.coupling.description.solids import Wall
     from gearwhine.coupling.gears import Gear as BuiltGear
     from gearwhine.coupling.machine.mounted_parts import MountedBearing
-    from gearwhine.coupling.machine.parts import Shaft, ShaftGear
-    from gearwhine.coupling.machine.solids import Wall
     from gearwhine.numerics.findings import Finding as PartFinding
     from gearwhine.rotors.rolling_bearings import RollingBearing
 
@@ -237,8 +237,8 @@ def _of_machine(case: Case) -> Iterator[PlacedFinding]:
 def _place_findings(
     case: Case, shafts: list[Shaft], gears: list[ShaftGear], bearings: list[MountedBearing]
 ) -> Iterator[PartFinding]:
-    from gearwhine.coupling.machine.parts import rotor_with_gears
-    from gearwhine.coupling.machine.solids import (
+    from gearwhine.coupling.description.parts import rotor_with_gears
+    from gearwhine.coupling.description.solids import (
         force_findings,
         machine_findings,
         placed_solids,
@@ -265,7 +265,7 @@ def _place_findings(
 
 def _walls(case: Case) -> list[Wall]:
     """Return the walls of the case's box, the end walls with their seats."""
-    from gearwhine.coupling.machine.solids import Wall
+    from gearwhine.coupling.description.solids import Wall
 
     assert case.housing is not None
     assert case.housing.box is not None
@@ -329,14 +329,14 @@ def _has_place(gear: Gear) -> bool:
 
 
 def _shaft(case: Case, index: int) -> Shaft:
-    from gearwhine.coupling.machine.parts import Shaft
+    from gearwhine.coupling.description.parts import Shaft
 
     rotor = case.rotor[index]
     return Shaft(rotor.build(case.material), rotor.axis, rotor.start, rotor.damping_ratio, rotor.build_unbalance())
 
 
 def _mounted(case: Case, gear: Gear, built: BuiltGear) -> ShaftGear:
-    from gearwhine.coupling.machine.parts import ShaftGear
+    from gearwhine.coupling.description.parts import ShaftGear
 
     assert gear.rotor is not None
     assert gear.at is not None

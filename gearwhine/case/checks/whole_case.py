@@ -21,7 +21,7 @@ from gearwhine.case.overrides import parse_key_path, place_in_list
 from gearwhine.numerics.names import twin_of
 
 if TYPE_CHECKING:
-    from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
+    from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _TORSION = ("rotor_analysis", "torsional_response")
@@ -227,7 +227,7 @@ def check(draft: Draft) -> Iterator[Finding]:
 
 def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
     """Return the axial location of each rotor by its bearings; a bearing that cannot be built carries no thrust."""
-    from gearwhine.coupling.machine.axial_location import AxialLocation, AxialSupport
+    from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport
 
     locations = []
     for rotor in case.rotor:
@@ -247,7 +247,7 @@ def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
 
 
 def _axial_support(bearing: Bearing) -> AxialSupport:
-    from gearwhine.coupling.machine.axial_location import AxialSupport
+    from gearwhine.coupling.description.axial_location import AxialSupport
     from gearwhine.rotors import RotorError
 
     stiffness = bearing.stiffness

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from gearwhine.case import Case, RollingStiffness, Segment
 from gearwhine.coupling import Machine, ShaftGear
-from gearwhine.coupling.machine.parts import gear_disc
+from gearwhine.coupling.description.parts import gear_disc
 from gearwhine.figures.rotors.assembly import DrawnGear, DrawnUnbalance, RotorAssembly
 from gearwhine.figures.rotors.campbell import draw_campbell
 from gearwhine.figures.rotors.critical_speed_map import draw_critical_map

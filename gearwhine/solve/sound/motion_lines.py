@@ -70,7 +70,10 @@ class MotionLines:
         return MotionLines(self.frequencies, forces, self.tolerance)
 
     def paths(self, machine: CoupledMachine) -> HousingPaths:
-        """Motion of the housing by each bearing's force, see :func:`coupling.signals.transfer_paths.housing_paths`."""
+        """Motion of the housing by each bearing's force.
+
+        See :func:`gearwhine.coupling.signals.transfer_paths.housing_paths`.
+        """
         return housing_paths(machine, _TWO_PI * self.frequencies, self.forces)
 
     def rates(self, paths: HousingPaths) -> ComplexArray:

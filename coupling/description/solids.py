@@ -11,10 +11,10 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from gearwhine.coupling.description.parts import Shaft, ShaftGear
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
-from gearwhine.coupling.machine.parts import Shaft, ShaftGear
 from gearwhine.numerics.findings import Finding, Part, in_mm
 from gearwhine.rotors import Rotor, Segment
 from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, SphericalRollerRow

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from gearwhine.coupling.machine.gear_train import LARGEST_OFFSET
+from gearwhine.coupling.description.gear_train import LARGEST_OFFSET
 from gearwhine.numerics.findings import Finding, Part, in_mm
 
 _BORE_ERROR = 1e-3

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearwhine.coupling.description.gear_train import turning_senses
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import GearPairGeometry
-from gearwhine.coupling.machine.gear_train import turning_senses
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 
 _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that may be left over
@@ -63,7 +63,7 @@ def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
     """Whether a bearing holds its rotor axially in motion: by its stiffness, or by its elements until that is known.
 
     An operating point asks the elements wherever there are any, see
-    :func:`gearwhine.coupling.machine.axial_location.axial_support`.
+    :func:`gearwhine.coupling.description.axial_location.axial_support`.
     """
     elements = mounted.elements
     if mounted.needs_load and elements is not None:

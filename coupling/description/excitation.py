@@ -13,10 +13,11 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.coupling.description.gear_train import GearTrain, Output
+from gearwhine.coupling.description.parts import Shaft
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.base_motion import BaseMotion
 from gearwhine.coupling.machine.components import RotorComponent
-from gearwhine.coupling.machine.gear_train import GearTrain, Output
 from gearwhine.coupling.machine.loads import (
     AnyTorque,
     Drive,
@@ -26,7 +27,6 @@ from gearwhine.coupling.machine.loads import (
     TorqueOverTime,
     TorqueSlope,
 )
-from gearwhine.coupling.machine.parts import Shaft
 from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile, SpeedRun, TorqueLine, free_speed
 from gearwhine.housing.own_copies import keep_tuples
 

@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import Protocol
 
+from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, seat_findings
+from gearwhine.coupling.description.gear_train import Output
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.geometry.blank import CoreLength, blank_around
 from gearwhine.coupling.gears.geometry.toothed_section import bare_lengths, toothed_section
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
 from gearwhine.coupling.gears.stiffness.beam import shear_modulus
-from gearwhine.coupling.machine.arrangement import SeatPlace, pedestal_finding, seat_findings
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.machine.gear_train import Output
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.housing.own_copies import keep_tuples
