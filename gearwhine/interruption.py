@@ -105,6 +105,11 @@ _raised: list[int] = []
 """Interruptions raised so far; objects that are half built at one raise further errors."""
 
 
+def was_interrupted() -> bool:
+    """Return whether an interruption was raised since :func:`interruptible` was entered last."""
+    return bool(_raised)
+
+
 def _interrupt(number: int, frame: FrameType | None) -> None:
     # A library's own initialisation in C need not survive an exception: VTK's crashes. Imports are let finish.
     if _importing(frame):

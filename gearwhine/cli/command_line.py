@@ -8,7 +8,7 @@ from cyclopts import App, CycloptsError
 
 from gearwhine import __version__
 from gearwhine.cli import case, housing, machine
-from gearwhine.interruption import interruptible
+from gearwhine.interruption import interruptible, was_interrupted
 
 app = App(
     name="gearwhine",
@@ -74,13 +74,13 @@ def _run_command(arguments: list[str]) -> int:
         sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
         return 2
     except KeyboardInterrupt as stop:
-        sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
-        for note in getattr(stop, "__notes__", ()):
-            sys.stderr.write(f"gearwhine: {note}\n")
-        return 130
-    except BrokenPipeError:
-        return 1
+        return _interrupted(stop)
     except Exception as error:
+        if was_interrupted():
+            # A library may answer an interruption with an error of its own, or fail as it is unwound.
+            return _interrupted(error)
+        if isinstance(error, BrokenPipeError):
+            return 1
         code, message = explain(error)
         if message is None:
             raise
@@ -89,3 +89,11 @@ def _run_command(arguments: list[str]) -> int:
         sys.stderr.write(f"gearwhine: {message}\n")
         return code
     return 0
+
+
+def _interrupted(error: BaseException) -> int:
+    """Say that the command was interrupted, with the notes of the error that ended it; return the exit code."""
+    sys.stderr.write("gearwhine: interrupted; the output folder holds no half-written file\n")
+    for note in getattr(error, "__notes__", ()):
+        sys.stderr.write(f"gearwhine: {note}\n")
+    return 130

@@ -63,6 +63,21 @@ def test_an_import_is_not_cut_short(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert sys.modules.pop("slow_to_begin").whole
 
 
+@pytest.mark.parametrize("answer", [RuntimeError("a kernel failed"), BrokenPipeError(), ValueError("a wrong number")])
+def test_an_error_that_a_library_makes_of_an_interruption_is_the_interruption(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answer: Exception
+) -> None:
+    def work(*_: object, **__: object) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except KeyboardInterrupt:
+            raise answer from None
+
+    monkeypatch.setattr(command_line, "app", work)
+    assert command_line.run_command([]) == 130
+    assert capsys.readouterr().err == "gearwhine: interrupted; the output folder holds no half-written file\n"
+
+
 def test_what_falls_apart_by_an_interruption_is_not_told(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
