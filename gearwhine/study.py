@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
     from gearwhine.output.export import Signals
+    from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
@@ -133,6 +133,21 @@ class MachineStudy:
     def __repr__(self) -> str:
         """Return the machine's own words."""
         return f"<Study of {self.machine!r}>"
+
+    def rotors(self, *, speeds: Sequence[float] = (), **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
+        """Find modes, whirl, critical speeds and responses of each shaft, alone in its bearings on rigid seats.
+
+        Parameters
+        ----------
+        speeds : sequence of float
+            Signed speeds of the first driver's shaft over which the Campbell diagrams go [rad/s]; by default up to 1.5
+            times the speed of the machine.
+        **settings
+            See :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings`: ``mode_count=8``, ``orders=(2.0,)``.
+        """
+        from gearwhine.analyses import of_machine
+
+        return of_machine.rotors(self.machine, self.title, speeds=speeds, progress=self.progress, **settings)
 
     def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""

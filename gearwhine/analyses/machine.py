@@ -24,8 +24,8 @@ from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document
-from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.sound import SOUND, sound_document
+from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
@@ -38,16 +38,14 @@ from gearwhine.solve.operating_point import (
     require_load,
     sensitivity_warnings,
 )
-from gearwhine.solve.plausibility import (
-    centrifugal_warnings,
-)
-from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
+from gearwhine.solve.rotors import solve_rotors, write_ross_files
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 from gearwhine.solve.sound import check_before_modes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
@@ -70,31 +68,19 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
         Where modes fail their certificate.
     """
     solved = solve_rotors(case, progress)
-    document = rotors_document(solved)
-    for rotor in solved:
-        fast = [(name, state.bearing, rotor.operation or 0.0) for name, state in rotor.rolling.items()]
-        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in rotor.rolling.items()}
-        add_warnings(document, centrifugal_warnings(fast, loads))
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_rotors
-
-        return draw_rotors(case, solved, progress)
 
     def files(place: Path, *, pictures: bool) -> None:
         if write_ross:
             remarks = write_ross_files(place, solved)
-            add_warnings(document, [warning("ross", remark) for remark in remarks])
+            add_warnings(result.document, [warning("ross", remark) for remark in remarks])
 
-    return Result(
-        "rotors",
-        case,
-        solved,
-        document,
-        _arrays=lambda: labelled(labels_of(case), (ROTORS, solved)),
-        _figures=figures,
-        _files=files,
-    )
+    def assemblies() -> list["RotorAssembly"]:
+        from gearwhine.figures.rotors import rotor_assembly
+
+        return [rotor_assembly(case, one.rotor, one.bearings) for one in solved]
+
+    result = replace(of_machine.solved_rotors(solved, labels_of(case), assemblies), case=case, _files=files)
+    return result
 
 
 def gears(

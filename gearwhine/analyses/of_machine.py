@@ -20,6 +20,7 @@ from gearwhine.coupling.analyses.run_up import (
     run_signature_warnings,
     solve_run_signature,
 )
+from gearwhine.coupling.analyses.shafts_alone import solve_shafts
 from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import (
@@ -37,6 +38,7 @@ from gearwhine.output.dataset import Labels, labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
+from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import (
     RUN_SIGNATURE,
     TRANSIENT,
@@ -47,6 +49,7 @@ from gearwhine.results.run import (
 )
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
+from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings, solve_load
@@ -55,6 +58,7 @@ from gearwhine.solve.plausibility import (
     add_uncertainty,
     bearing_load_warnings,
     beyond_limit_warnings,
+    centrifugal_warnings,
     constant_speed_warnings,
     machine_warnings,
     parted_flank_warnings,
@@ -66,6 +70,7 @@ from gearwhine.solve.plausibility import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.solve.housing_modes import SolvedHousing
 
 
@@ -140,6 +145,54 @@ def machine_under_load(
     load = solve_load(machine, progress) if machine.is_loaded else None
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
     return MachineUnderLoad(title, loaded, load, [] if load is None else load_warnings(load))
+
+
+def rotors(
+    machine: Machine,
+    title: str = "",
+    *,
+    speeds: Sequence[float] = (),
+    progress: Progress = silent,
+    **settings: Any,
+) -> Result[tuple[SolvedRotor, ...]]:
+    """Find modes, whirl, critical speeds and responses of each shaft of a machine, alone on rigid seats.
+
+    The parameters are those of :func:`gearwhine.coupling.analyses.shafts_alone.solve_shafts`.
+    """
+    solved = solve_shafts(machine, speeds, progress, **settings)
+
+    def assemblies() -> list[RotorAssembly]:
+        from gearwhine.figures.rotors import shaft_assembly
+
+        return [shaft_assembly(machine, one.rotor.name, one.bearings) for one in solved]
+
+    return solved_rotors(solved, Labels(title, machine.speed), assemblies)
+
+
+def solved_rotors(
+    solved: tuple[SolvedRotor, ...], labels: Labels, assemblies: Callable[[], Sequence[RotorAssembly]]
+) -> Result[tuple[SolvedRotor, ...]]:
+    """Return the result of solved rotors; ``assemblies`` says how they are drawn."""
+    document = rotors_document(solved)
+    for rotor in solved:
+        fast = [(name, state.bearing, rotor.operation or 0.0) for name, state in rotor.rolling.items()]
+        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in rotor.rolling.items()}
+        add_warnings(document, centrifugal_warnings(fast, loads))
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_rotors
+
+        return draw_rotors(solved, assemblies(), progress)
+
+    return Result(
+        "rotors",
+        None,
+        solved,
+        document,
+        _arrays=lambda: labelled(labels, (ROTORS, solved)),
+        _figures=figures,
+        _title=labels.title,
+    )
 
 
 def operating_point(

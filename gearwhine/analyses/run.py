@@ -66,10 +66,10 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
     from gearwhine.housing.correlation import Comparison
+    from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.rotors import SolvedRotor
     from gearwhine.solve.sound.solution import SolvedSound
 
 _DRAWN_LINES = 6  # operating shapes of a run

@@ -15,6 +15,8 @@ from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Problem
 from gearwhine.case.gears import readable_pairs, train_of_pairs
 from gearwhine.case.model import Case, require
 from gearwhine.case.operation import listed
+from gearwhine.numerics import speed_ranges
+from gearwhine.numerics.speed_ranges import BEYOND_OPERATION, CAMPBELL_STEPS, SLOWEST_OF_BRANCH, evenly
 
 if TYPE_CHECKING:
     from gearwhine.coupling.description.gear_train import GearTrain
@@ -131,16 +133,6 @@ def with_sense_of_operation(case: Case, speeds: Iterable[float]) -> tuple[float,
     return tuple(math.copysign(speed, sense) for speed in speeds)
 
 
-BEYOND_OPERATION = 1.5
-"""Default end of a Campbell diagram over the speed of operation."""
-
-SLOWEST_OF_BRANCH = 0.5
-"""Default beginning of a branch of motions over the speed of operation."""
-
-CAMPBELL_STEPS = 50
-RESPONSE_STEPS = 300
-
-
 def whirl_speeds(case: Case, rotor: str) -> tuple[float, ...]:
     """Return the speed of operation, then those of the sweep."""
     operation_speed = () if case.operation is None else (case.operation.speed,)
@@ -161,13 +153,8 @@ def _diagram_speeds(case: Case, rotor: str) -> tuple[float, ...]:
         return _turned(case, rotor, listed(analysis.speed))
     if case.sweep is not None:
         return _turned(case, rotor, case.sweep.speeds)
-    if case.operation is None or case.operation.speed == 0.0:
-        return ()
-    (highest,) = _turned(case, rotor, (BEYOND_OPERATION * case.operation.speed,))
-    low, high = table_range(case, rotor)
-    if low >= abs(highest):
-        return ()
-    return _evenly(math.copysign(low, highest), math.copysign(min(high, abs(highest)), highest), CAMPBELL_STEPS)
+    operation = None if case.operation is None else _turned(case, rotor, (case.operation.speed,))[0]
+    return speed_ranges.campbell_speeds(operation, table_range(case, rotor))
 
 
 def response_speeds(case: Case, rotor: str) -> tuple[float, ...]:
@@ -178,10 +165,7 @@ def response_speeds(case: Case, rotor: str) -> tuple[float, ...]:
     analysis = case.rotor_analysis
     if analysis is not None and analysis.unbalance_response.speed is not None:
         return tuple(sorted(set(_turned(case, rotor, listed(analysis.unbalance_response.speed))), key=abs))
-    speeds = campbell_speeds(case, rotor)
-    if len(speeds) < 2:
-        return speeds
-    return _evenly(min(speeds, key=abs), max(speeds, key=abs), RESPONSE_STEPS)
+    return speed_ranges.response_speeds(campbell_speeds(case, rotor))
 
 
 def table_range(case: Case, rotor: str) -> tuple[float, float]:
@@ -241,7 +225,7 @@ def diagram_speeds(case: Case) -> tuple[float, ...]:
             raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
         return with_sense_of_operation(case, speeds)
     low, high = range_of_tables(case, 0.0, BEYOND_OPERATION * abs(operation))
-    return with_sense_of_operation(case, _evenly(low, high, CAMPBELL_STEPS))
+    return with_sense_of_operation(case, evenly(low, high, CAMPBELL_STEPS))
 
 
 def branch_speeds(case: Case, *, downwards: bool = False) -> tuple[float, float]:
@@ -273,7 +257,3 @@ def _turned(case: Case, rotor: str, speeds: tuple[float, ...]) -> tuple[float, .
     """
     ratio = float(speed_ratios(case).get(rotor, 0.0))
     return tuple(ratio * speed for speed in with_sense_of_operation(case, speeds))
-
-
-def _evenly(first: float, last: float, steps: int) -> tuple[float, ...]:
-    return (*(first + (last - first) * step / steps for step in range(steps)), last)

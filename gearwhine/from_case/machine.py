@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, Rotor, require
 from gearwhine.coupling import Machine, MountedBearing, Shaft
+from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
 from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.from_case.gear_pairs import build_pair
@@ -16,8 +17,6 @@ from gearwhine.from_case.rotors import (
     rolling_states,
     shaft_gears,
 )
-from gearwhine.rotors import Bearing
-from gearwhine.rotors.rolling_bearings import RollingState
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -109,7 +108,7 @@ def build_shaft(case: Case, rotor: Rotor) -> Shaft:
     )
 
 
-def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str, RollingState]]]:
+def rotor_bearings(case: Case) -> dict[str, BearingsUnderLoad]:
     """Bearings of each rotor and the states of the rolling ones, linearised about the operating point on rigid seats.
 
     The operating point is solved only if the load of a bearing is left to it.
@@ -123,15 +122,8 @@ def rotor_bearings(case: Case) -> dict[str, tuple[tuple[Bearing, ...], dict[str,
     built = {rotor.name: (build_bearings(case, rotor.name), rolling_states(case, rotor.name)) for rotor in case.rotor}
     if not any(case.finds_load(bearing) for bearing in case.bearing):
         return built
-    point = describe_machine(case, grounded=True).operating_point()
-    loaded = {}
-    for name, (_, states) in built.items():
-        on_rotor = [load for load in point.bearings if load.mounted.rotor == name]
-        open_loads = {
-            load.name: load.rolling for load in on_rotor if load.mounted.needs_load and load.rolling is not None
-        }
-        loaded[name] = tuple(load.linearised.bearing for load in on_rotor), states | open_loads
-    return loaded
+    under_load = bearings_under_load(describe_machine(case, grounded=True))
+    return {name: (under_load[name][0], states | under_load[name][1]) for name, (_, states) in built.items()}
 
 
 def _retained_modes(case: Case, rotor: str) -> tuple[float | None, int | None]:

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gearwhine.rotors.analyses.campbell import Crossing
+    from gearwhine.rotors.analyses.solved_rotor import Crossings, ProbeReading, SolvedResponse, SolvedRotor
     from gearwhine.rotors.rolling_bearings import RollingState
     from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
     from gearwhine.rotors.whirl.whirl_modes import WhirlModes
-    from gearwhine.solve.rotors import Crossings, ProbeReading, SolvedResponse, SolvedRotor
 
 _ROTATING = (
     "rotor {!r}: the damping of its coupling across the axis turns with the shaft and feeds forward whirl at speeds "
@@ -323,7 +323,7 @@ class _Probe(NamedTuple):
 
 
 PROBE = (
-    Quantity("", lambda row: f"{row.reading.probe.rotor}: {row.reading.probe.name}", "probe"),
+    Quantity("", lambda row: f"{row.reading.rotor}: {row.reading.probe.name}", "probe"),
     Quantity("", lambda row: row.reading.speeds * RPM, "response_speed", _PROBE, "rpm", "speed of the rotor"),
     Quantity("name", lambda row: row.reading.probe.name),
     Quantity("at_m", lambda row: row.reading.probe.at),
@@ -415,7 +415,7 @@ RESPONSE = (
 
 _TORSION = ("torsion_step",)
 TORSION_PROBE = (
-    Quantity("", lambda reading: f"{reading.probe.rotor}: {reading.probe.name}", "torsion_probe"),
+    Quantity("", lambda reading: f"{reading.rotor}: {reading.probe.name}", "torsion_probe"),
     Quantity(
         "",
         lambda reading: reading.frequencies / HERTZ,

@@ -74,7 +74,6 @@ MODES_CODE = (
     "gearwhine.housing.fem",
     "gearwhine.housing.model",
     "gearwhine.housing.modes",
-    "gearwhine.housing.own_copies",
     "gearwhine.housing.storage",
     "gearwhine.case",
     "gearwhine.from_case.fixtures",

@@ -12,7 +12,8 @@ from lopsided_case import AXES, DENSITY, GEARS, HELD_AT, SPEEDS, UNBALANCES, bea
 
 from gearwhine.case import parse_case
 from gearwhine.cli import run_command
-from gearwhine.solve.rotors import _largest_over_cycle, solve_rotors
+from gearwhine.rotors.analyses.solved_rotor import _largest_over_cycle
+from gearwhine.solve.rotors import solve_rotors
 
 pytestmark = pytest.mark.slow
 

@@ -31,7 +31,7 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
 from gearwhine.rotors import Bearing, Rotor
 from gearwhine.rotors import Segment as RotorSegment
-from gearwhine.solve.rotors import SolvedRotor
+from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +39,9 @@ _CIRCULAR_BACKWARD = -1.0 + 1e-6  # whirl on which unbalance does no work
 _MODES = 6  # modes drawn of each kind
 
 
-def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
+def draw_rotors(
+    solved: Sequence[SolvedRotor], assemblies: Sequence[RotorAssembly], progress: Progress = silent
+) -> Iterator[tuple[str, Figure]]:
     """Draw each rotor: the shaft, its modes, its whirl at speed, and the results of its analyses.
 
     These are the Campbell diagram, the critical-speed map, the response to unbalance and bow, and the static
@@ -47,9 +49,9 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
 
     Parameters
     ----------
-    case : Case
     solved : sequence of SolvedRotor
-        Rotors of the case.
+    assemblies : sequence of RotorAssembly
+        Each rotor as it is drawn.
     progress : callable
         Receives the name of the rotor being drawn.
 
@@ -60,9 +62,9 @@ def draw_rotors(case: Case, solved: Sequence[SolvedRotor], progress: Progress = 
     matplotlib.figure.Figure
     """
     stems = file_stems([rotor.rotor.name for rotor in solved], "rotor-")
-    for stem, rotor in zip(stems, solved, strict=True):
+    for stem, rotor, assembly in zip(stems, solved, assemblies, strict=True):
         progress(f"drawing rotor {rotor.rotor.name}")
-        for kind, figure in _figures(case, rotor):
+        for kind, figure in _figures(rotor, assembly):
             yield f"{stem}-{kind}", figure
 
 
@@ -117,8 +119,7 @@ def _drawn_gears(gears: Sequence[ShaftGear], rotor: Rotor) -> list[DrawnGear]:
     ]
 
 
-def _figures(case: Case, solved: SolvedRotor) -> list[tuple[str, Figure]]:
-    assembly = rotor_assembly(case, solved.rotor, solved.bearings)
+def _figures(solved: SolvedRotor, assembly: RotorAssembly) -> list[tuple[str, Figure]]:
     figures = [
         ("shaft", draw_shaft(assembly)),
         ("modes", draw_lateral_modes(assembly, solved.lateral, most=_MODES)),
@@ -169,7 +170,7 @@ def _figures(case: Case, solved: SolvedRotor) -> list[tuple[str, Figure]]:
         ]
         running = None if operation is None else (abs(operation), abs(operation))
         response = draw_unbalance_response(
-            f"{name}: response to unbalance" + (" and bow" if case.rotor_named(solved.rotor.name).bow else ""),
+            f"{name}: response to unbalance" + (" and bow" if solved.response.response.bow is not None else ""),
             np.abs(solved.response.response.speeds),
             readings,
             critical_speeds=critical[directions > _CIRCULAR_BACKWARD],
