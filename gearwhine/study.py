@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run import RunSolution
     from gearwhine.coupling import Machine
+    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
+    from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.sound.solution import SolvedSound
@@ -148,6 +149,12 @@ class MachineStudy:
         from gearwhine.analyses import of_machine
 
         return of_machine.rotors(self.machine, self.title, speeds=speeds, progress=self.progress, **settings)
+
+    def gears(self, aims: Sequence[ReliefAim] = ()) -> Result[tuple[PairAnalysis, ...]]:
+        """Analyse each gear pair, and find its best tip relief; see :func:`gearwhine.analyses.of_machine.gears`."""
+        from gearwhine.analyses import of_machine
+
+        return of_machine.gears(self.machine, self.title, aims=aims, progress=self.progress)
 
     def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""

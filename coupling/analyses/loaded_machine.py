@@ -21,6 +21,30 @@ NO_OPERATING_POINT = (CouplingError, EquilibriumNotFoundError, EquilibriumError,
 _MORE_MODES = 2.0  # limit factor of the shafts' modes in the basis for comparison, which gives the error
 
 
+def point_of_flanks(
+    machine: Machine, progress: Progress = silent, *, is_needed: bool | None = None
+) -> OperatingPoint | None:
+    """Return the operating point of a machine where a pair has its misalignment from there; else None.
+
+    A machine that has none has aligned flanks, unless the point ``is_needed``; by default it is where a bearing has its
+    stiffness from its load.
+
+    Raises
+    ------
+    CouplingError, EquilibriumNotFoundError
+        Where it is needed, and the machine has none.
+    """
+    if all(pair.misalignment is not None for pair in machine.gear_pairs):
+        return None
+    progress("misalignment of the flanks at the operating point")
+    try:
+        return machine.operating_point()
+    except NO_OPERATING_POINT:
+        if any(one.needs_load for one in machine.bearings) if is_needed is None else is_needed:
+            raise
+        return None
+
+
 @dataclass(frozen=True, eq=False)
 class LoadedMachine:
     """Machine about its operating point: its parts, its gear pairs under load, and the coupled system.

@@ -56,6 +56,10 @@ _RATIO_ROUNDING = 1e-9
 _NO_TORQUE = 1e-9  # part of the input torque below which the torque of a gear pair is rounding
 
 
+EQUAL_MESHES = "equal meshes"
+"""Origin of mean forces in a loop of pairs, which the torques alone do not fix: equal meshes would carry them."""
+
+
 @dataclass(frozen=True)
 class GearedShafts:
     """Two shafts that a gear pair connects.
@@ -158,6 +162,11 @@ class GearTrain:
         """Shafts that drive no other: the power leaves there unless outputs are given."""
         drivers = {pair.driver for pair in self.pairs}
         return tuple(shaft for shaft in self.ratios if shaft not in drivers)
+
+    @property
+    def force_origins(self) -> tuple[str, ...]:
+        """What the mean force of each pair follows from: the torques alone, or in a loop of pairs `EQUAL_MESHES`."""
+        return tuple(EQUAL_MESHES if shares else "torques" for shares in self.shares_torque)
 
     @property
     def shares_torque(self) -> tuple[bool, ...]:

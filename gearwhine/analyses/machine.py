@@ -12,6 +12,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
@@ -21,13 +22,12 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
-from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.solve.damping import assumed_mesh_damping
-from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
+from gearwhine.solve.gear_pairs import aims_at_sensor, analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
 from gearwhine.solve.operating_point import (
@@ -118,30 +118,15 @@ def gears(
     loaded, point = solve_pairs(case, housing, progress)
     aims = relief_aims(case, loaded, progress, point=point, housing=housing, folder=folder)
     pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
-    document = gears_document(pairs)
-    if point is not None and case.housing is not None:
-        for pair in document["pairs"]:
-            pair["misalignment_seats"] = "rigid" if housing is None else "housing"
-        if housing is None:
-            message = (
-                "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
-                "so is the best tip relief; run, load or modes before gears give it those of the housing"
-            )
-            add_warnings(document, [warning("rigid seats", message)])
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_gear_pairs
-
-        return draw_gear_pairs(pairs, progress)
-
-    return Result(
-        "gears",
-        case,
-        pairs,
-        document,
-        _arrays=lambda: labelled(labels_of(case), (GEARS, pairs)),
-        _figures=figures,
-    )
+    seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
+    result = of_machine.analysed_gears(pairs, labels_of(case), seats)
+    if seats == "rigid":
+        message = (
+            "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
+            "so is the best tip relief; run, load or modes before gears give it those of the housing"
+        )
+        add_warnings(result.document, [warning("rigid seats", message)])
+    return replace(result, case=case)
 
 
 def operating_point(

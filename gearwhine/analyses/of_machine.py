@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case
-from gearwhine.coupling import CoupledMachine, Machine, coupled_modes
+from gearwhine.coupling import CoupledMachine, CouplingError, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
-from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, analyse_machine, default_aims, solve_over_torques
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine, point_of_flanks
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem, solve_system
 from gearwhine.coupling.analyses.recording import Blocks, TransientPlan
 from gearwhine.coupling.analyses.run_up import (
@@ -30,12 +31,14 @@ from gearwhine.coupling.analyses.transient import (
     solve_transient,
 )
 from gearwhine.coupling.description.excitation import Run
+from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output.dataset import Labels, labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
+from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
@@ -190,6 +193,62 @@ def solved_rotors(
         solved,
         document,
         _arrays=lambda: labelled(labels, (ROTORS, solved)),
+        _figures=figures,
+        _title=labels.title,
+    )
+
+
+def gears(
+    machine: Machine, title: str = "", *, aims: Sequence[ReliefAim] = (), progress: Progress = silent
+) -> Result[tuple[PairAnalysis, ...]]:
+    """Analyse each gear pair of a machine: mesh stiffness, transmission error, load sharing, pressure, best tip relief.
+
+    Parameters
+    ----------
+    machine : Machine
+    title : str
+    aims : sequence of ReliefAim, optional
+        Objective of the best relief of each pair; by default those of
+        :func:`gearwhine.coupling.analyses.gear_pairs.default_aims`.
+    progress : callable
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
+        Where the machine has no gear pairs, there are more or fewer aims than pairs, or a pair cannot be solved.
+    """
+    count = len(machine.gear_pairs)
+    if not count or (aims and len(aims) != count):
+        expected = f"an aim for each of the {count} gear pairs, got {len(aims)}" if count else "a machine of gear pairs"
+        raise CouplingError(f"gears: expected {expected}")
+    point = point_of_flanks(machine, progress)
+    analysed = analyse_machine(machine, point, progress)
+    chosen = aims or default_aims(machine, point, [pair.solved for pair in analysed], progress)
+    analysed = tuple(replace(pair, aim_given=bool(aims)) for pair in analysed)
+    seats = None if point is None or machine.housing is None else "housing"
+    return analysed_gears(solve_over_torques(analysed, progress, chosen), Labels(title, machine.speed), seats)
+
+
+def analysed_gears(
+    pairs: tuple[PairAnalysis, ...], labels: Labels, seats: str | None
+) -> Result[tuple[PairAnalysis, ...]]:
+    """Return the result of analysed gear pairs; ``seats`` says what holds the bearings where misalignment is found."""
+    document = gears_document(pairs)
+    if seats is not None:
+        for pair in document["pairs"]:
+            pair["misalignment_seats"] = seats
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_gear_pairs
+
+        return draw_gear_pairs(pairs, progress)
+
+    return Result(
+        "gears",
+        None,
+        pairs,
+        document,
+        _arrays=lambda: labelled(labels, (GEARS, pairs)),
         _figures=figures,
         _title=labels.title,
     )

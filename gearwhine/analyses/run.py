@@ -60,6 +60,7 @@ from gearwhine.solve.sound import check_before_modes, is_in_run
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
     from gearwhine.coupling.analyses.run_up import RunSignature
     from gearwhine.coupling.analyses.signature import SolvedSignature
@@ -67,7 +68,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
     from gearwhine.housing.correlation import Comparison
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.sound.solution import SolvedSound

@@ -41,7 +41,6 @@ from gearwhine.case.model import Case, case_document, dump_case, require
 from gearwhine.case.operation import Operation, OrderTracking, Sweep, TorqueLine, Transient
 from gearwhine.case.rotors import CouplingSegment, Probe, Rotor, RotorAnalysis, Segment, TorsionalAnalysis, TorsionProbe
 from gearwhine.case.speeds_and_torques import (
-    EQUAL_MESHES,
     applied_torques,
     campbell_speeds,
     force_origins,
@@ -56,7 +55,6 @@ from gearwhine.case.speeds_and_torques import (
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 
 __all__ = [
-    "EQUAL_MESHES",
     "SPEED_KEY",
     "Bearing",
     "Box",

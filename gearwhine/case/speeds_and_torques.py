@@ -104,13 +104,12 @@ def pair_torques(case: Case) -> tuple[float, ...]:
     return gear_train_of(case).mean_pair_torques(applied_torques(case), _speed(case))
 
 
-EQUAL_MESHES = "equal meshes"
-"""Origin of mean forces in a loop of pairs, which the torques alone do not fix: equal meshes would carry them."""
-
-
 def force_origins(case: Case) -> tuple[str, ...]:
-    """Return what the mean force of each gear pair follows from: the torques alone, or `EQUAL_MESHES`."""
-    return tuple(EQUAL_MESHES if shares else "torques" for shares in gear_train_of(case).shares_torque)
+    """Return what the mean force of each gear pair follows from.
+
+    See :attr:`gearwhine.coupling.description.gear_train.GearTrain.force_origins`.
+    """
+    return gear_train_of(case).force_origins
 
 
 def _speed(case: Case, speed: float | None = None) -> float:

@@ -1,7 +1,7 @@
 """Gear pairs of a case: geometry, contact law, and static transmission error under the mean torque."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +11,10 @@ from gearwhine.case import Case, CaseError, Problem, pair_torques, require, roto
 from gearwhine.case import GearPair as GivenPair
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.input_files import ChangedFileError
-from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET
 from gearwhine.coupling.description.parts import inertia_with_discs
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
-from gearwhine.coupling.gears.errors import ThinTipError
-from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.rotors import build_gear, shaft_gears
@@ -53,36 +51,6 @@ def solve_gears(
         )
         solved.append(loaded)
     return tuple(solved)
-
-
-@dataclass(frozen=True)
-class TakenMisalignment:
-    """Misalignment that mesh stiffness and motion of a gear pair take.
-
-    Attributes
-    ----------
-    taken : float or None
-        Misalignment that is taken [rad]; None where the operating point gives it and is not solved.
-    origin : str
-        ``operating point``; ``case``, where the case gives it; or ``default``, which is 0.
-    found : float or None
-        Misalignment at the operating point [rad]; None where that is not solved.
-    """
-
-    taken: float | None
-    origin: str
-    found: float | None
-
-
-def taken_misalignments(machine: Machine, point: OperatingPoint) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of a machine, beside that of its operating point."""
-    misalignments = []
-    for pair, load in zip(machine.gear_pairs, point.pairs, strict=False):
-        if pair.misalignment is None:
-            misalignments.append(TakenMisalignment(load.misalignment, "operating point", load.misalignment))
-        else:
-            misalignments.append(TakenMisalignment(pair.misalignment, "case", load.misalignment))
-    return tuple(misalignments)
 
 
 def misalignments_of_case(
@@ -181,22 +149,3 @@ def _inertia(case: Case, name: str) -> float:
     gears = shaft_gears(case, entry.rotor)
     (gear,) = (shaft_gear for shaft_gear in gears if shaft_gear.name == name)
     return inertia_with_discs(gear, case.rotor_named(entry.rotor).build(case.material), gears)
-
-
-def geometry_warnings(pair: GearPair, geometry: GearPairGeometry) -> list[dict[str, str]]:
-    """Return warnings of gears that run but are doubtful."""
-    warnings = []
-    for gear in (geometry.driver, geometry.driven):
-        try:
-            require_tip_thickness(gear)
-        except ThinTipError as error:
-            warnings.append({"name": "thin tip", "message": str(error)})
-        if gear.is_undercut:
-            message = (
-                f"gear {gear.name!r}: the teeth are undercut, their flanks begin at a diameter of "
-                f"{2e3 * gear.form_radius:.6g} mm; a profile_shift of "
-                f"{gear.least_generating_shift + gear.profile_shift - gear.generating_shift:.4g} avoids it"
-            )
-            warnings.append({"name": "undercut", "message": message})
-    backlash = pair.backlash_warning(geometry)
-    return warnings if backlash is None else [*warnings, {"name": "backlash", "message": backlash}]

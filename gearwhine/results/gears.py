@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gearwhine.coupling.analyses.gear_pairs import geometry_warnings
 from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, TipRelief, path_of_contact
 from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, PathOfContact
 from gearwhine.coupling.gears.geometry.thickness import normal_tooth_thickness, over_balls, span_measurement
-from gearwhine.from_case.gear_pairs import geometry_warnings
 from gearwhine.output.files import file_stems
 from gearwhine.output.quantity import Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, percent, table_of
@@ -21,7 +21,7 @@ from gearwhine.results.operating_point import misalignment_words, share_words
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from gearwhine.solve.gear_pairs import PairAnalysis
+    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
 
 _MOST_YIELDING = 0.1
 """Deflection of the teeth above which an overload is warned of, in modules: teeth break before."""
@@ -367,7 +367,7 @@ def _aim(pair: "PairAnalysis") -> dict[str, Any]:
     assert optimum is not None
     return {
         "kind": "sensor" if sensor is not None else "peak-to-peak" if weights is None else "harmonics",
-        "given": pair.given.relief_aim is not None,
+        "given": pair.aim_given,
         "sensor": sensor,
         "weights": None if weights is None else {str(n): weight for n, weight in weights.items()},
         "unit": "m" if sensor is None else "m/s^2",
@@ -415,7 +415,7 @@ PAIR = (
     Quantity("", lambda pair: pair.label.replace("→", "->"), "gear_pair"),
     Quantity("driver", lambda pair: pair.solved.pair.driver, heading="driver"),
     Quantity("driven", lambda pair: pair.solved.pair.driven, heading="driven"),
-    Quantity("model", lambda pair: pair.given.stiffness.model),
+    Quantity("model", lambda pair: pair.solved.model.name),
     Quantity("contact_ratio", lambda pair: pair.solved.geometry.contact_ratio, heading="contact ratio", shown=".4f"),
     Quantity("overlap_ratio", lambda pair: pair.solved.geometry.overlap_ratio),
     Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.case import EQUAL_MESHES
+from gearwhine.coupling.description.gear_train import EQUAL_MESHES
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.housing.acoustics.sound_levels import power_level
 from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
@@ -812,7 +812,7 @@ def misalignment_words(misalignment: float | None, origin: str, at_operating_poi
     misalignment, at_operating_point : float or None
         [rad]; None where the operating point is not solved.
     origin : str
-        See :class:`gearwhine.from_case.gear_pairs.TakenMisalignment`.
+        See :class:`gearwhine.coupling.analyses.gear_pairs.TakenMisalignment`.
     """
     beside = "" if at_operating_point is None else f" (found: {_MICRO * at_operating_point:z.2f} µrad)"
     if origin == "default":

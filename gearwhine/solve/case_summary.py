@@ -7,13 +7,12 @@ from typing import Any
 from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.gear_pairs import (
-    TakenMisalignment,
     build_pair,
-    geometry_warnings,
     misalignments_of_case,
     pair_geometries,
 )

@@ -8,7 +8,7 @@ from scipy import linalg, sparse
 
 from gearwhine.case import Case, require
 from gearwhine.coupling import Machine
-from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
+from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import OrderTracking
 from gearwhine.coupling.description.excitation import Run
@@ -56,14 +56,8 @@ def solve_pairs(
         return solve_gears(case, progress), None
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
-    machine, point = described_machine(case, housing), None
-    if any(pair.misalignment is None for pair in machine.gear_pairs):
-        progress("misalignment of the flanks at the operating point")
-        try:
-            point = machine.operating_point()
-        except NO_OPERATING_POINT:
-            if case.needs_operating_point:
-                raise
+    machine = described_machine(case, housing)
+    point = point_of_flanks(machine, progress, is_needed=case.needs_operating_point)
     return machine.with_flanks_of(point).loaded_pairs(progress), point
 
 

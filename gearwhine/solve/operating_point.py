@@ -16,12 +16,13 @@ import numpy.typing as npt
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
-from gearwhine.from_case.gear_pairs import TakenMisalignment, misalignments_of_case, taken_misalignments
+from gearwhine.from_case.gear_pairs import misalignments_of_case
 from gearwhine.from_case.machine import require_machine
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning

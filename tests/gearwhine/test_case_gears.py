@@ -6,13 +6,14 @@ from typing import Any
 import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
+from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
 from gearwhine.from_case.gear_pairs import pair_geometry, solve_gears
 from gearwhine.from_case.rotors import build_gear
 from gearwhine.output.terminal import show, shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.gears import gears_document, sections
-from gearwhine.solve.gear_pairs import analyse_pairs, solve_over_torques
+from gearwhine.solve.gear_pairs import analyse_pairs
 
 STEEL = {"youngs_modulus": "207 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
 TOOTH = {"module": "3.175 mm", "face_width": "30 mm", "material": "steel"}

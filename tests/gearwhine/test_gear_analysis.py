@@ -13,6 +13,7 @@ import pytest
 from coupled_cases import coupled
 
 from gearwhine.case import Case, load_case, parse_case
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques, with_coarser_slices
 from gearwhine.coupling.gears import (
     Gear,
     GearPairGeometry,
@@ -33,7 +34,7 @@ from gearwhine.output.dataset import arrays_of, labelled, labels_of
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import GEARS, gears_document, sections
-from gearwhine.solve.gear_pairs import PairAnalysis, analyse_pairs, relief_aims, solve_over_torques, with_coarser_slices
+from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import solve_housing
 
 

@@ -12,6 +12,7 @@ from coupled_cases import coupled
 
 from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.case.gears import ReliefAim
+from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import TipRelief, loaded_transmission_error
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
@@ -22,7 +23,7 @@ from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
-from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims, solve_over_torques
+from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import full_housing_component
 

@@ -11,6 +11,7 @@ import xarray as xr
 
 import gearwhine as gw
 from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
+from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
 from gearwhine.solve.housing_modes import bearing_places, describe_housing
 from gearwhine.solve.machine import plan_of
 
@@ -149,3 +150,41 @@ def test_a_machine_on_the_modes_of_a_housing_of_python_is_that_of_the_case() -> 
     for one, other in zip(*motions, strict=True):
         assert one["name"] == other["name"]
         assert one["rms_m_per_s2"] == pytest.approx(other["rms_m_per_s2"], rel=1e-9)
+
+
+def equal(found: gw.Result[Any], expected: gw.Result[Any]) -> None:
+    """Document, arrays and figures are the same."""
+    assert found.json() == expected.json()
+    assert set(found.dataset.variables) == set(expected.dataset.variables)
+    for name, array in expected.dataset.variables.items():
+        np.testing.assert_array_equal(found.dataset.variables[name], array)
+        assert found.dataset.variables[name].attrs == array.attrs
+    assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
+
+
+def test_rotors_and_gears_are_those_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+    for found, expected in ((machine.rotors(), study.rotors()), (machine.gears(), study.gears())):
+        equal(found, expected)
+
+
+def test_rotors_take_their_own_settings(machine: gw.MachineStudy) -> None:
+    speeds = [50.0, 100.0, 150.0]
+    rotors = machine.rotors(speeds=speeds, mode_count=4, orders=(2.0,)).document["rotors"]
+    ratio = machine.machine.speeds["output"] / machine.machine.speed
+    for rotor, factor in zip(rotors, (1.0, ratio), strict=True):
+        assert sorted(rotor["campbell"]["speed_rpm"], key=abs) == pytest.approx(
+            [factor * speed * 30.0 / np.pi for speed in speeds]
+        )
+        assert [row["order"] for row in rotor["campbell"]["orders"]] == [2.0]
+    with pytest.raises(gw.RotorError, match="mode_count"):
+        machine.rotors(mode_count=0)
+    with pytest.raises(CouplingError, match="an aim for each of the 1 gear pairs, got 2"):
+        machine.gears([PeakToPeak(), PeakToPeak()])
+
+
+@pytest.mark.slow
+def test_the_best_relief_of_a_machine_in_a_housing_aims_at_the_loudest_sensor_as_in_the_case() -> None:
+    study = gw.load("small-gearbox", {"housing.box.mesh_size": "50 mm"})
+    found = gw.MachineStudy(study.machine).gears()  # solves the housing, which `gears` of the case then takes
+    equal(found, study.gears())
+    assert found.document["pairs"][0]["optimal_relief"]["aim"]["kind"] == "sensor"

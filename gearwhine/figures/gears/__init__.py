@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
 from gearwhine.figures.style import shortened
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
-from gearwhine.solve.gear_pairs import PairAnalysis
 
 
 def draw_gear_pairs(pairs: Sequence[PairAnalysis], progress: Progress = silent) -> Iterator[tuple[str, Figure]]:
