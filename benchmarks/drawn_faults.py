@@ -6,7 +6,7 @@ Verdicts are kept in ``build/drawn-faults``, so that a run goes on where it was.
 with the reason in ``equivalent_faults.toml``; a fault in a kernel's source would compile all kernels and is not drawn::
 
     python benchmarks/drawn_faults.py --map                            # which test runs which lines, half an hour
-    python benchmarks/drawn_faults.py --map tests/gearwhine/test_x.py  # of these tests anew
+    python benchmarks/drawn_faults.py --map tests/coupling/test_x.py   # of these tests anew
     python benchmarks/drawn_faults.py --number 60 --seed 1 --under gearwhine/results --under coupling
     python benchmarks/drawn_faults.py --survivors                      # again what survived before, of any seed
 """
@@ -35,7 +35,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent_faults.toml")
 _SECONDS_OF_TESTS = 60.0  # of a fault's tests by the map, which is made at about half the speed
 _FILES_OF_TESTS = 15
 # Tests that read the source of what they hold, and so run no line of it.
-_READING = {"gearwhine/results/": "tests/gearwhine/test_units_of_declarations.py"}
+_READING = {"gearwhine/results/": "tests/gearwhine/results/test_units_of_declarations.py"}
 _TIMEOUT = 300.0  # s of one run: a fault that never ends is caught
 
 _KEY = re.compile(r"[a-z][a-z0-9_]+")

@@ -13,7 +13,7 @@ from gearwhine.case.gears import Gear
 from gearwhine.case.operation import Transient
 from gearwhine.cli.command_line import app
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")
