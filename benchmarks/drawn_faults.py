@@ -3,7 +3,7 @@
 A list of faults from one's own memory holds what one has tested. Here a seed draws them: a sign, a factor, an index, a
 name, a unit, a term, a comparison, two arguments. The tests of a fault are those that run its line, the quickest first.
 Verdicts are kept in ``build/drawn-faults``, so that a run goes on where it was. A fault that changes no result stands
-with the reason in ``equivalent_faults.toml``; a fault in a kernel's source would compile all kernels and is not drawn::
+with the reason in ``tests/faults/equivalent.toml``. None is drawn in a kernel's source: all kernels would be compiled::
 
     python benchmarks/drawn_faults.py --map                            # which test runs which lines, half an hour
     python benchmarks/drawn_faults.py --map tests/coupling/test_x.py   # of these tests anew
@@ -24,14 +24,13 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
-from faults import ROOT, Fault, caught, copy_tree, environment
+from faults import LISTS, ROOT, Fault, caught, copy_tree, environment
 from traced_lines import ROOMS
 
 BUILD = ROOT / "build" / "drawn-faults"
 LINES, VERDICTS, TREE = BUILD / "lines.jsonl", BUILD / "verdicts.json", BUILD / "tree"
-EQUIVALENT = Path(__file__).with_name("equivalent_faults.toml")
+EQUIVALENT = LISTS / "equivalent.toml"
 _SECONDS_OF_TESTS = 60.0  # of a fault's tests by the map, which is made at about half the speed
 _FILES_OF_TESTS = 15
 # Tests that read the source of what they hold, and so run no line of it.
