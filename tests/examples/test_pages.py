@@ -52,8 +52,9 @@ def anchors(page: Path) -> set[str]:
     return found
 
 
-def test_readme_shows_the_first_example() -> None:
-    assert blocks("README.md") == [body("first_steps.py")]
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_the_first_pages_show_the_first_example(page: str) -> None:
+    assert blocks(page) == [body("first_steps.py")]
 
 
 def test_every_example_is_short_and_listed() -> None:
@@ -172,8 +173,15 @@ def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tm
 
 
 def test_programs_of_all_pages_are_run() -> None:
-    """Those of README are an example, and tutorials and how-to pages run as a whole."""
-    here = {"README.md", "docs/python.md", "docs/report.md", "docs/sound.md", "docs/two-stage-reducer.md"}
+    """Those of the first pages are an example, and tutorials and how-to pages run as a whole."""
+    here = {
+        "README.md",
+        "docs/index.md",
+        "docs/python.md",
+        "docs/report.md",
+        "docs/sound.md",
+        "docs/two-stage-reducer.md",
+    }
     for page in PAGES:
         name = page.relative_to(ROOT).as_posix()
         if "```python" in page.read_text(encoding="utf-8"):
