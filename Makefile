@@ -97,11 +97,11 @@ docs: $(VENV)/.installed-docs install
 	$(BIN)/sphinx-build -W --keep-going -q -j 2 -b html -c docs . build/site
 	@echo "Open $(CURDIR)/build/site/index.html in a browser."
 
-# The validation page, from the tests against published values.
+# The validation page and its values, from the tests against published values.
 validation: install-dev
 	$(BIN)/pytest tests/validation -q --validation-table docs/validation.md
 
-# The tables of the case file and the page of the commands, from the schema and the commands.
+# The pages of the case file and of the commands with all keys and options, in build/reference; make docs has them too.
 reference: install
 	$(BIN)/python scripts/reference_pages.py
 

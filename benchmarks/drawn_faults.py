@@ -3,10 +3,10 @@
 A list of faults from one's own memory holds what one has tested. Here a seed draws them: a sign, a factor, an index, a
 name, a unit, a term, a comparison, two arguments. The tests of a fault are those that run its line, the quickest first.
 Verdicts are kept in ``build/drawn-faults``, so that a run goes on where it was. A fault that changes no result stands
-with the reason in ``equivalent_faults.toml``; a fault in a kernel's source would compile all kernels and is not drawn::
+with the reason in ``tests/faults/equivalent.toml``. None is drawn in a kernel's source: all kernels would be compiled::
 
     python benchmarks/drawn_faults.py --map                            # which test runs which lines, half an hour
-    python benchmarks/drawn_faults.py --map tests/gearwhine/test_x.py  # of these tests anew
+    python benchmarks/drawn_faults.py --map tests/coupling/test_x.py   # of these tests anew
     python benchmarks/drawn_faults.py --number 60 --seed 1 --under gearwhine/results --under coupling
     python benchmarks/drawn_faults.py --survivors                      # again what survived before, of any seed
 """
@@ -24,18 +24,17 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
-from faults import ROOT, Fault, caught, copy_tree, environment
+from faults import LISTS, ROOT, Fault, caught, copy_tree, environment
 from traced_lines import ROOMS
 
 BUILD = ROOT / "build" / "drawn-faults"
 LINES, VERDICTS, TREE = BUILD / "lines.jsonl", BUILD / "verdicts.json", BUILD / "tree"
-EQUIVALENT = Path(__file__).with_name("equivalent_faults.toml")
+EQUIVALENT = LISTS / "equivalent.toml"
 _SECONDS_OF_TESTS = 60.0  # of a fault's tests by the map, which is made at about half the speed
 _FILES_OF_TESTS = 15
 # Tests that read the source of what they hold, and so run no line of it.
-_READING = {"gearwhine/results/": "tests/gearwhine/test_units_of_declarations.py"}
+_READING = {"gearwhine/results/": "tests/gearwhine/results/test_units_of_declarations.py"}
 _TIMEOUT = 300.0  # s of one run: a fault that never ends is caught
 
 _KEY = re.compile(r"[a-z][a-z0-9_]+")

@@ -1,8 +1,10 @@
 """Puts hand-made faults into the code, one at a time, and tells which of them the tests let through: faults.py
 
-Each fault of `faults.toml` replaces a piece of one file: two axes swapped, a sign, a unit, a name. The tests of its
-area run on a copy of the tree with the fault in it; where all of them pass, it is missed. The copies, one for each
-worker, stand in a temporary folder with kernels of their own, and the checkout is not touched::
+Each fault replaces a piece of one file: two axes swapped, a sign, a unit, a name. The faults of a room stand in
+`tests/faults/ROOM.toml`, as `[[fault]]` with `area`, `file`, `before` (which the file has once) and `after`; the tests
+of each area in `tests/faults/areas.toml`. These run on a copy of the tree with the fault in it; where all of them pass,
+it is missed. The copies, one for each worker, stand in a temporary folder with kernels of their own, and the checkout
+is not touched::
 
     python benchmarks/faults.py                       # all: half a day on two cores
     python benchmarks/faults.py --sample 60           # as many at random, the same for the same --seed
@@ -27,15 +29,18 @@ from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from typing import Any
+
+from traced_lines import ROOMS
 
 ROOT = Path(__file__).parent.parent
-LIST = Path(__file__).with_suffix(".toml")
+LISTS = ROOT / "tests" / "faults"
 _NOTHING_RAN = (3, 4, 5)  # pytest's exit codes for its own failure, wrong usage and no tests
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A piece of a file and what stands in its place; ``number`` is its place in the list, from 1."""
+    """A piece of a file and what stands in its place; ``number`` is its place in the lists of all rooms, from 1."""
 
     number: int
     area: str
@@ -74,12 +79,21 @@ class Fault:
 
 def read_faults() -> tuple[list[Fault], dict[str, list[str]]]:
     """The faults, and for each area the tests that are to catch its faults."""
-    listed = tomllib.loads(LIST.read_text(encoding="utf-8"))
-    faults = [Fault(number, **entry) for number, entry in enumerate(listed["fault"], start=1)]
-    unknown = {fault.area for fault in faults} - set(listed["tests"])
+    listed = [(room, entry) for room in ROOMS for entry in read_list(room).get("fault", [])]
+    faults = [Fault(number, **entry) for number, (_, entry) in enumerate(listed, start=1)]
+    for fault, (room, _) in zip(faults, listed, strict=True):
+        if not fault.file.startswith(f"{room}/"):
+            raise ValueError(f"fault {fault.number}: {fault.file} stands in {room}.toml; expected a file of {room}")
+    tests = read_list("areas")["tests"]
+    unknown = {fault.area for fault in faults} - set(tests)
     if unknown:
         raise ValueError(f"areas without tests: {', '.join(sorted(unknown))}")
-    return faults, listed["tests"]
+    return faults, tests
+
+
+def read_list(name: str) -> dict[str, Any]:
+    """What a file of `tests/faults` holds."""
+    return tomllib.loads((LISTS / f"{name}.toml").read_text(encoding="utf-8"))
 
 
 def misfits(faults: list[Fault], tests: dict[str, list[str]]) -> list[str]:

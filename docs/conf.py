@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "site")]
 
 import gallery  # noqa: E402
+import generated_pages  # noqa: E402
 import python_pages  # noqa: E402
 
 import gearwhine  # noqa: E402
@@ -80,6 +81,19 @@ def write_pages(app: Sphinx) -> None:
     _pages_of = python_pages.write_pages(ROOT, ROOT / "docs" / "reference")
 
 
+def fill_page(app: Sphinx, name: str, source: list[str]) -> None:
+    """Set the tables that are made of schema, commands and validation at the marks of a page."""
+    if name in generated_pages.FILLED:
+        source[0] = generated_pages.FILLED[name](source[0])
+
+
+def generated_names(
+    app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[str], removed: set[str]
+) -> list[str]:
+    """Pages to be read in every build, since what they are made of has changed unseen."""
+    return list(generated_pages.FILLED)
+
+
 def find_public_name(
     app: Sphinx, env: BuildEnvironment, node: nodes.Element, shown: nodes.Element
 ) -> nodes.Element | None:
@@ -133,6 +147,8 @@ def add_start(app: Sphinx, failure: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     """Connect what happens while building."""
     app.connect("builder-inited", write_pages)
+    app.connect("env-get-outdated", generated_names)
+    app.connect("source-read", fill_page)
     app.connect("missing-reference", find_public_name)
     app.connect("autodoc-process-signature", name_arrays)
     app.connect("autodoc-process-docstring", keep_bars)

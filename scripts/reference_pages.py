@@ -1,8 +1,8 @@
-"""Writes the tables of docs/case-file.md and the page docs/commands.md, from the case's schema and the commands.
+"""Tables of keys of docs/case-file.md and options of docs/commands.md, from the case's schema and the commands.
 
 Meanings are the texts below the keys in `gearwhine/case`; types, units, ranges and defaults are those that the keys are
-validated by. Prose of the page stands in the page itself: tables are what lies between `<!-- keys: ... -->` and
-`<!-- end -->`.
+validated by. Prose stands in the pages; `<!-- keys: ... -->` and `<!-- commands -->` are where tables and options go.
+`make docs` fills them in on the site; this program writes both pages, filled in, to the folder `build/reference`.
 """
 
 import ast
@@ -26,8 +26,9 @@ from gearwhine.cli.command_line import app
 ROOT = Path(__file__).resolve().parents[1]
 CASE_FILE = ROOT / "docs" / "case-file.md"
 COMMANDS = ROOT / "docs" / "commands.md"
+OUT = ROOT / "build" / "reference"
 
-_MARKED = re.compile(r"<!-- keys: (\S+) -->\n.*?<!-- end -->", re.DOTALL)
+_MARKED = re.compile(r"<!-- keys: (\S+) -->")
 _HEAD = "| key | value | unit | range | default | meaning |\n|---|---|---|---|---|---|"
 
 
@@ -291,7 +292,7 @@ def _rows(table: type[Table], link: dict[type[Table], str]) -> str:
 
 
 def case_file(page: str) -> str:
-    """The page of the case file with its tables made anew."""
+    """The page of the case file with tables for its marks."""
     tables = case_tables()
     marked = _MARKED.findall(page)
     missing = set(tables) - {path for path in tables for mark in marked if path == mark or path.startswith(f"{mark}.")}
@@ -307,23 +308,13 @@ def case_file(page: str) -> str:
             if path == mark
             or (path.startswith(f"{mark}.") and not any(path == d or path.startswith(f"{d}.") for d in deeper))
         ]
-        return f"<!-- keys: {mark} -->\n\n" + "\n\n".join(parts) + "\n\n<!-- end -->"
+        return "\n\n".join(parts)
 
     return _MARKED.sub(fill, page)
 
 
-_COMMANDS_HEAD = """\
-# Commands
-
-`gearwhine COMMAND CASE [OPTIONS]`. A case is a TOML file or the name of a bundled case. Exit code 0 means done, 2 wrong
-input, 1 anything else. What each command solves, and its limits, stand in [limits](limits.md). This page is written
-from the commands by `make reference`.
-
-"""
-
-
-def commands() -> str:
-    """The page of the commands, from their parameters."""
+def commands(page: str) -> str:
+    """The page of the commands with a section for each, from their parameters, in place of its mark."""
     text = app.generate_docs(output_format="markdown", heading_level=1)
     text = text[text.index("## gearwhine ") :]
     # A name in angle brackets is no HTML; the first argument has no option of its own in practice.
@@ -332,14 +323,15 @@ def commands() -> str:
     # Where this runs as `python -m pytest`, cyclopts shows that as part of the usage.
     text = re.sub(r"^(gearwhine \w+) -m \S+ ", r"\1 ", text, flags=re.MULTILINE)
     text = text.replace("`CASE, --case`", "`CASE`")
-    return (
-        _COMMANDS_HEAD + re.sub(r"^## gearwhine (\w+)$", r"## `gearwhine \1`", text, flags=re.MULTILINE).rstrip() + "\n"
-    )
+    text = re.sub(r"^## gearwhine (\w+)$", r"## `gearwhine \1`", text, flags=re.MULTILINE).rstrip()
+    return page.replace("<!-- commands -->", text)
 
 
 def main() -> None:
-    CASE_FILE.write_text(case_file(CASE_FILE.read_text(encoding="utf-8")), encoding="utf-8")
-    COMMANDS.write_text(commands(), encoding="utf-8")
+    OUT.mkdir(parents=True, exist_ok=True)
+    for page, filled in ((CASE_FILE, case_file), (COMMANDS, commands)):
+        (OUT / page.name).write_text(filled(page.read_text(encoding="utf-8")), encoding="utf-8")
+        print(OUT / page.name)
 
 
 if __name__ == "__main__":

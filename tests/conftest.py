@@ -1,6 +1,7 @@
 """Shared by all tests: blocks of all elements, published values beside ours with their page, what runs first."""
 
 import gc
+import json
 import logging
 from base64 import b64decode
 from collections import OrderedDict, defaultdict
@@ -36,7 +37,8 @@ _HEAD = """\
 
 Published values beside ours, as the tests in `tests/validation` met them. Each value has a tolerance of its own,
 absolute (in the value's unit) or relative (in per cent): the digits printed, or the source's own scatter. A test fails
-beyond it, and this page is not written then. Written by `make validation`.
+beyond it, and nothing is written then. `make validation` writes this page and the values, `docs/validation.json`, which
+`make docs` sets below.
 """
 
 
@@ -61,7 +63,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--validation-table",
         metavar="FILE",
-        help="write the published values that the tests met, beside ours, to a Markdown file",
+        help="write sources and remarks to a Markdown file, and the published values beside ours to JSON of its name",
     )
 
 
@@ -149,34 +151,44 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
             elif key == _REMARK and kept[1] not in remarks[kept[0]]:
                 remarks[kept[0]].append(kept[1])
     Path(target).write_text(_page(rows, remarks), encoding="utf-8")
+    Path(target).with_suffix(".json").write_text(_values(rows), encoding="utf-8")
     terminalreporter.write_line(f"{sum(map(len, rows.values()))} published values written to {target}")
 
 
 def _page(rows: dict[str, list[Row]], remarks: dict[str, list[str]]) -> str:
-    sections = sorted(rows.items(), key=lambda section: section[0].casefold())
     lines = [_HEAD, "| source | values | largest part of its tolerance that a value takes |", "|---|---:|---:|"]
-    for source, group in sections:
+    for source, group in _sorted(rows):
         worst = max(abs(row.difference) / row.tolerance for row in group)
         lines.append(f"| {source} | {len(group)} | {100 * worst:.0f} % |")
-    lines.append("")
-    for source, group in sections:
-        lines += [f"## {source}", ""]
-        for text in remarks[source]:
-            lines += [text, ""]
-        lines += ["| quantity | published | ours | unit | difference | tolerance |", "|---|---:|---:|---|---:|---:|"]
-        lines += map(_line, group)
-        lines.append("")
-    return "\n".join(lines)
+    lines += ["", "## Remarks on sources", ""]
+    for source, _ in _sorted(rows):
+        if remarks[source]:
+            lines.append("\n\n".join([f"**{source}**", *remarks[source]]) + "\n")
+    return "\n".join([*lines, "## Values", "", "<!-- values -->", ""])
 
 
-def _line(row: Row) -> str:
+def _sorted(rows: dict[str, list[Row]]) -> list[tuple[str, list[Row]]]:
+    return sorted(rows.items(), key=lambda section: section[0].casefold())
+
+
+def _values(rows: dict[str, list[Row]]) -> str:
+    """JSON of the cells of each value by source, a line for each value."""
+    sources = []
+    for source, group in _sorted(rows):
+        lines = ",\n".join(f"   {json.dumps(_cells(row), ensure_ascii=False)}" for row in group)
+        sources.append(f" {json.dumps(source, ensure_ascii=False)}: [\n{lines}\n ]")
+    return "{\n" + ",\n".join(sources) + "\n}\n"
+
+
+def _cells(row: Row) -> list[str]:
+    """Quantity, published value, ours, unit, difference and tolerance."""
     allowed = row.tolerance * abs(row.value) if row.relative else row.tolerance
     decimals = max(0, 1 - floor(log10(allowed)))
     ours = f"{row.ours:.0f}" if row.ours.is_integer() else f"{row.ours:.{decimals}f}"
     value = f"{round(row.value, decimals + 2):.12g}"
     scale, sign = (100.0, " %") if row.relative else (1.0, "")
     difference, tolerance = f"{scale * row.difference:+.2g}{sign}", f"±{scale * row.tolerance:.2g}{sign}"
-    return f"| {row.quantity} | {value} | {ours} | {row.unit} | {difference} | {tolerance} |"
+    return [row.quantity, value, ours, row.unit, difference, tolerance]
 
 
 _KEPT_HOUSINGS = 8  # the last ones: their shapes take memory

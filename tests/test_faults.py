@@ -1,4 +1,4 @@
-"""The hand-made faults of benchmarks/faults.toml still fit the code; that tests catch them, faults.py itself shows."""
+"""The hand-made faults of tests/faults still fit the code; that tests catch them, faults.py itself shows."""
 
 import sys
 from dataclasses import replace

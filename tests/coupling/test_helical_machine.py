@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from helical_pairs import helical
 
 from gearwhine.coupling import (
     GearMesh,
@@ -14,7 +15,7 @@ from gearwhine.coupling import (
     assemble_machine,
     static_equilibrium,
 )
-from gearwhine.coupling.gears import Gear, GearPairGeometry, PotentialEnergyStiffness, tooth_contact
+from gearwhine.coupling.gears import PotentialEnergyStiffness, tooth_contact
 from gearwhine.coupling.gears.contact.face_slices import face_slices
 from gearwhine.coupling.machine.components import rotor_component
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, modal_rotor
@@ -25,16 +26,9 @@ ANGLE = math.radians(18.0)
 TORQUE = 200.0
 
 
-def gears(hand: float) -> GearPairGeometry:
-    return GearPairGeometry(
-        Gear("pinion", 23, 3e-3, math.radians(20.0), 25e-3, helix_angle=hand * ANGLE),
-        Gear("wheel", 41, 3e-3, math.radians(20.0), 25e-3, helix_angle=-hand * ANGLE),
-    )
-
-
 def machine(hand: float, sense: int, line: float = 0.6):  # type: ignore[no-untyped-def]
     """Two shafts on two bearings each, the left ones holding along z as well; gears in the middle."""
-    pair = gears(hand)
+    pair = helical(hand, ANGLE)
     distance = pair.working_centre_distance
     held = [
         Bearing("left", 0.0, np.diag([2e8, 2e8, 3e8, 0.0, 0.0]), np.zeros((5, 5))),

@@ -1,13 +1,10 @@
 """The worked examples of whole cases: a bundled gearbox, the noise rig, and a parameter study."""
 
-import runpy
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-
-import gearwhine as gw
 
 # Module times teeth over two, at 20 degrees [m]: the pinion of `two_gears.toml`, and the rig's.
 BASE_RADIUS = 3e-3 * 28 / 2 * np.cos(np.radians(20.0))
@@ -47,16 +44,3 @@ def test_noise_rig_carries_its_torque_and_names_the_measured_modes(example: Any)
     pairs = found["run"].document["compare"]["pairs"]
     measured = [658.0, 1049.0, 1710.0, 2000.0, 2276.0, 2536.0, 2722.0, 2962.0]
     assert [pair["measured_hz"] for pair in pairs] == pytest.approx(measured)
-
-
-@pytest.mark.slow
-def test_figures_of_the_three_stage_train_are_redrawn(tmp_path: Path) -> None:
-    """TM-101442, Figs. 4 to 12; the torsional modes of stage 1 in Fig. 9 are a rigid rotation and those of Table I."""
-    script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "redraw_three_stage.py"))
-    script["main"](str(tmp_path), "transient.revolutions=2", "transient.discard=1")
-    assert sorted(path.stem for path in tmp_path.iterdir()) == [f"figure-{number:02d}" for number in range(4, 13)]
-    data = gw.load("three-stage").rotors().dataset
-    figure = script["shapes"](data, "rotor_torsional_shape", [0], 3)
-    crossings = [np.count_nonzero(np.diff(np.sign(line.get_ydata()))) for line in figure.axes[0].lines[:3]]
-    assert crossings == [0, 1, 2]
-    assert data["rotor_torsional_frequency"].values[0, 1:3] == pytest.approx([355.0, 1090.0], rel=5e-3)

@@ -8,6 +8,7 @@ import importlib
 import re
 import sys
 import tomllib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +52,9 @@ def anchors(page: Path) -> set[str]:
     return found
 
 
-def test_readme_shows_the_first_example() -> None:
-    assert blocks("README.md") == [body("first_steps.py")]
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_the_first_pages_show_the_first_example(page: str) -> None:
+    assert blocks(page) == [body("first_steps.py")]
 
 
 def test_every_example_is_short_and_listed() -> None:
@@ -85,13 +87,34 @@ def test_every_page_is_in_the_index_and_its_tree() -> None:
         assert re.search(rf"(^|<){re.escape(place.removesuffix('.md'))}>?$", tree, re.MULTILINE), place
 
 
-def test_every_public_name_has_a_page_of_the_reference() -> None:
-    """Of the pages that the site makes: those of each room's own docstring and of what its `__init__` imports."""
+@pytest.fixture(scope="module")
+def of_the_site() -> Iterator[Callable[[str], Any]]:
+    """Modules of the site by name."""
     sys.path.insert(0, str(ROOT / "docs" / "site"))
     try:
-        import python_pages
+        yield importlib.import_module
     finally:
         sys.path.remove(str(ROOT / "docs" / "site"))
+
+
+def test_pages_of_the_site_have_keys_options_and_published_values(of_the_site: Any) -> None:
+    filled = of_the_site("generated_pages").FILLED
+    pages = {name: fill((ROOT / f"{name}.md").read_text(encoding="utf-8")) for name, fill in filled.items()}
+    assert not [name for name, text in pages.items() if re.search("<!-- (keys|commands|values)", text)]
+    assert "| `youngs_modulus` | elastic modulus | Pa |" in pages["docs/case-file"]
+    assert "* `--over-torque" in pages["docs/commands"]
+    # As many values of each source as the page says in the tree.
+    validation = pages["docs/validation"]
+    numbers = re.findall(r"^\| (.*) \| (\d+) \| \d+ % \|$", validation, re.MULTILINE)
+    assert len(numbers) >= 45
+    for source, number in numbers:
+        section = re.split(r"^#", validation.split(f"### {source}\n")[1], maxsplit=1, flags=re.MULTILINE)[0]
+        assert len(re.findall(r"^\| ", section, re.MULTILINE)) - 1 == int(number), source
+
+
+def test_every_public_name_has_a_page_of_the_reference(of_the_site: Any) -> None:
+    """Of the pages that the site makes: those of each room's own docstring and of what its `__init__` imports."""
+    python_pages = of_the_site("python_pages")
     names_of = {package: python_pages.public_names(package) for package in python_pages.packages(ROOT)}
     home_of = python_pages.homes(names_of)
     for room in python_pages.ROOMS:
@@ -150,8 +173,15 @@ def test_the_variant_of_the_reducer_is_drawn(monkeypatch: pytest.MonkeyPatch, tm
 
 
 def test_programs_of_all_pages_are_run() -> None:
-    """Those of README are an example, and tutorials and how-to pages run as a whole."""
-    here = {"README.md", "docs/python.md", "docs/report.md", "docs/sound.md", "docs/two-stage-reducer.md"}
+    """Those of the first pages are an example, and tutorials and how-to pages run as a whole."""
+    here = {
+        "README.md",
+        "docs/index.md",
+        "docs/python.md",
+        "docs/report.md",
+        "docs/sound.md",
+        "docs/two-stage-reducer.md",
+    }
     for page in PAGES:
         name = page.relative_to(ROOT).as_posix()
         if "```python" in page.read_text(encoding="utf-8"):

@@ -66,6 +66,13 @@ def cube(steel: Material) -> tuple[Mesh, Matrices]:
     return mesh, assemble(mesh, steel)
 
 
+@pytest.fixture(scope="session")
+def beam(steel: Material) -> tuple[Mesh, Matrices]:
+    """A solid of 0.3 x 0.06 x 0.05 m, 405 degrees of freedom: small enough for dense algebra."""
+    mesh = _block((0.05, 0.06, 0.3), (1, 1, 3))
+    return mesh, assemble(mesh, steel)
+
+
 def _block(size: tuple[float, float, float], cells: tuple[int, int, int] = (1, 1, 1), order: int = 2) -> Mesh:
     numbers: dict[tuple[int, ...], int] = {}
 

@@ -1,13 +1,11 @@
 """Responses at the limit among the residual attachments, against dense solves at single frequencies."""
 
-from collections.abc import Callable
-
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy import linalg, sparse
 
-from gearwhine.housing import HousingError, Material, ModeSet, Seat, Support, assemble, solve_modes
+from gearwhine.housing import HousingError, ModeSet, Seat, Support, solve_modes
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.seats import seat_matrix
 from gearwhine.housing.model.supports import fixed_freedoms
@@ -18,13 +16,6 @@ from gearwhine.meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 LIMIT = 2.0 * np.pi * 6000.0
-
-
-@pytest.fixture(scope="module")
-def beam(block: Callable[..., Mesh], steel: Material) -> tuple[Mesh, Matrices]:
-    """A solid of 0.3 x 0.06 x 0.05 m, 405 degrees of freedom."""
-    mesh = block((0.05, 0.06, 0.3), (1, 1, 3))
-    return mesh, assemble(mesh, steel)
 
 
 @pytest.fixture(scope="module")

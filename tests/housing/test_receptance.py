@@ -1,6 +1,5 @@
 """Receptance against direct solves of the dynamic stiffness, its reciprocity, and the selection of modes."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from gearwhine.housing import HousingError, Material, ModeSet, Seat, Sensor, Support, assemble, receptance, solve_modes
+from gearwhine.housing import HousingError, ModeSet, Seat, Sensor, Support, receptance, solve_modes
 from gearwhine.housing.fem.matrices import Matrices
 from gearwhine.housing.model.seats import seat_matrix, sensor_port
 from gearwhine.housing.model.supports import fixed_freedoms
@@ -19,12 +18,6 @@ from gearwhine.meshes import Mesh
 FloatArray = npt.NDArray[np.float64]
 
 LIMIT = 2 * np.pi * 9000.0
-
-
-@pytest.fixture(scope="module")
-def beam(block: Callable[..., Mesh], steel: Material) -> tuple[Mesh, Matrices]:
-    mesh = block((0.05, 0.06, 0.3), (1, 1, 3))
-    return mesh, assemble(mesh, steel)
 
 
 @pytest.fixture(scope="module")

@@ -12,12 +12,10 @@ from scipy import linalg, sparse
 
 from gearwhine.housing import (
     HousingError,
-    Material,
     ModeSet,
     Seat,
     Support,
     add_residual_modes,
-    assemble,
     attach_fixtures,
     solve_modes,
 )
@@ -32,13 +30,6 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 LIMIT = 2 * np.pi * 6000.0
-
-
-@pytest.fixture(scope="module")
-def beam(block: Callable[..., Mesh], steel: Material) -> tuple[Mesh, Matrices]:
-    """A solid of 0.3 x 0.06 x 0.05 m, 405 degrees of freedom: small enough for dense algebra."""
-    mesh = block((0.05, 0.06, 0.3), (1, 1, 3))
-    return mesh, assemble(mesh, steel)
 
 
 @pytest.fixture(scope="module")

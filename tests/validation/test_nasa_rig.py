@@ -14,21 +14,11 @@ was fitted to the text; how much a peak must stand out is ours. Runs differ from
 several decay times of the housing's slowest mode.
 """
 
-import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-from gearwhine.case import Case, load_case
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.solve.comparison import compare_housing
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-
-sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
-
-from rig_boxes import (
+from rig_statements import (
     END,
     MESH_HZ,
     STATEMENTS,
@@ -42,6 +32,11 @@ from rig_boxes import (
     stands_out,
     unbalance_rises,
 )
+
+from gearwhine.case import Case, load_case
+from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 
 TABLE_I = "NASA TM-104434 (Choy et al., 1991), Table I, gears"
 TABLE_II = "NASA TM-104434 (Choy et al., 1991), Table II, housing modes"

@@ -9,10 +9,8 @@ coupled system has not the frequencies of Table I, whose stages stand alone: a l
 within 2.5 Hz, two lines of the record.
 """
 
-import importlib.util
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -119,7 +117,7 @@ def test_natural_frequencies_of_the_stages(
     remark(
         TABLE_I,
         "Found, not predicted: no dimension is printed, and the shafts, discs and bearings of the case were searched "
-        "so that these fifteen frequencies hold (scripts/find_three_stage.py). Lateral modes are planar ones on "
+        "so that these fifteen frequencies hold (studies/find_three_stage.py). Lateral modes are planar ones on "
         "averaged supports, torsional ones those of the free shaft, rigid rotation apart.",
     )
     rotor, bearings = build_rotor(case, case.rotor_named(f"stage-{stage}")), build_bearings(case, f"stage-{stage}")
@@ -132,24 +130,6 @@ def test_natural_frequencies_of_the_stages(
         published(TABLE_I, f"stage {stage}, lateral mode {number}", value, ours, "Hz", rel=0.01)
     for number, (value, ours) in enumerate(zip(TORSIONAL_HZ[stage], torsional[1:], strict=True), start=1):
         published(TABLE_I, f"stage {stage}, torsional mode {number}", value, ours, "Hz", rel=0.01)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [1, 2, 3])
-def test_the_search_for_rotors_leads_to_those_of_the_case(case: Case, number: int) -> None:
-    """Each stage found anew, from the script's own nominal design; every size as the case has it."""
-    path = Path(__file__).parents[2] / "scripts" / "find_three_stage.py"
-    specification = importlib.util.spec_from_file_location("find_three_stage", path)
-    assert specification is not None
-    assert specification.loader is not None
-    script = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(script)
-    stage = script.STAGES[number - 1]
-    found = load_case("three-stage", script.drawn(stage, script.find(stage))).case.rotor_named(f"stage-{number}")
-    ours = case.rotor_named(f"stage-{number}")
-    for part, expected in zip((*found.segments, *found.discs), (*ours.segments, *ours.discs), strict=True):
-        assert part.diameter == pytest.approx(expected.diameter, rel=2e-3)
-    assert found.length == pytest.approx(ours.length, abs=2e-3)
 
 
 def test_gears_and_supports_are_as_published(case: Case, published: Callable[..., None]) -> None:

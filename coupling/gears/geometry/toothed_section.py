@@ -7,7 +7,7 @@ the axis:
 
     I = I_root + cos²β (cos²β − ν sin²β) (I_outline − I_root).
 
-Finite elements of solid pinions, `benchmarks/helical_pinion.py`, agree within 2 % up to 30°.
+Finite elements of solid pinions, `studies/helical_pinion.py`, agree within 2 % up to 30°.
 
 The stress of the teeth builds up from the ends of the face, so that some length of it is without them,
 `ToothedSection.end_length`.

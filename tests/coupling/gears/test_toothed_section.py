@@ -147,7 +147,7 @@ def test_a_solid_pinion_bends_as_the_round_one(teeth: int, width: float) -> None
 
 @pytest.mark.parametrize(("degrees", "elements"), [(15.0, 1.039), (30.0, 1.136)])
 def test_helical_teeth_carry_less(degrees: float, elements: float) -> None:
-    """Compliance over that of straight teeth, each by its root circle, as `benchmarks/helical_pinion.py` finds it.
+    """Compliance over that of straight teeth, each by its root circle, as `studies/helical_pinion.py` finds it.
 
     Of whole pinions of 20 teeth, face of 10 modules. Teeth that carried as much as straight ones would give 1.01 and
     1.05.

@@ -3,6 +3,9 @@
 Writes OUT/figure-04.png, orbits of the gears over the last revolutions; 05 and 06, mesh forces in time and frequency;
 07 and 08, the first three torsional modal coordinates of stage 1 in time and frequency; 09, their shapes; 10, 11, 12,
 the first lateral mode of each stage likewise. Frequency axes end at 1024 Hz, as the source's do.
+
+Found: nine figures to lay beside the source's; which of its statements on them hold, and which do not, is listed in
+docs/three-stage.md and tested in tests/validation/test_three_stage.py.
 """
 
 import sys

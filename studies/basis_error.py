@@ -3,8 +3,11 @@
 Sensors' motion by a transmission error, over frequency up to the limit, on three meshes with two limits each. True is
 the difference from the same machine with the housing's modes, and its shafts', to twice the limit.
 
-    OMP_NUM_THREADS=1 python benchmarks/basis_error.py            # some four minutes
-    OMP_NUM_THREADS=1 python benchmarks/basis_error.py 20 16      # these meshes [mm]
+Found: over three meshes and two limits the told error covers the true one at every frequency looked at. Used in
+docs/theory.md, for `uncertainty` and `basis_error` of results.
+
+    OMP_NUM_THREADS=1 python studies/basis_error.py            # some four minutes
+    OMP_NUM_THREADS=1 python studies/basis_error.py 20 16      # these meshes [mm]
 """
 
 import sys

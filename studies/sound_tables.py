@@ -1,13 +1,17 @@
 """Tables of docs/sound.md that the bundled cases fill: methods side by side, refinement, missed peaks, moved walls.
 
-    OMP_NUM_THREADS=1 python benchmarks/sound_tables.py                 # all, three quarters of an hour
-    OMP_NUM_THREADS=1 python benchmarks/sound_tables.py --only modes    # speeds, modes, refinement, peaks, walls, face
+Found: what the estimates by Rayleigh's integral and by velocity err by, how far triangles and speeds have to be refined,
+and how well gradients foretell a moved wall. Used in docs/sound.md.
+
+    OMP_NUM_THREADS=1 python studies/sound_tables.py                 # all, three quarters of an hour
+    OMP_NUM_THREADS=1 python studies/sound_tables.py --only modes    # speeds, modes, refinement, peaks, walls, face
 
 ``refinement`` solves the lines of a motion on triangles of two sizes; ``peaks`` sweeps the rig over eight speeds, then
 with those speeds too at which the first sweep tells of peaks that it passes by; ``walls`` and ``face`` move a wall by a
 millimetre, and solve mesh, modes, operating point, lines and sound anew.
 """
 
+import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -17,13 +21,16 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from timing import arguments, machine, timed
 
 import gearwhine as gw
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.meshes import Mesh
 from gearwhine.solve import housing_modes
 from gearwhine.solve.sensitivity.housing_changes import face_changes
+
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+
+from timing import arguments, machine, timed
 
 RIG = "nasa-gear-noise-rig"
 OUTER = ["top", "bottom", "front", "back", "left", "right"]

@@ -95,7 +95,7 @@ def test_what_a_killed_run_left_is_cleared_and_what_a_living_one_is_at_is_not(tm
         "with staging(Path(sys.argv[1])) as place:\n"
         "    (place / 'half.txt').write_text('half'); print(place.name, flush=True); time.sleep(60)"
     )
-    root = Path(__file__).parent.parent.parent
+    root = Path(__file__).parents[3]
     with subprocess.Popen(
         [sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE, text=True, cwd=root
     ) as process:

@@ -1,9 +1,13 @@
 """Bending of solid helical pinions with round stubs, by finite elements of the whole, over that of straight teeth.
 
-    OMP_NUM_THREADS=1 python benchmarks/helical_pinion.py
+    OMP_NUM_THREADS=1 python studies/helical_pinion.py
 
 The pinion of 20 teeth has a face of 10 modules. Its sections are lofted along the helix, whose tips cut a little into
 the teeth's flanks, as the few points of the outline do; the ratio to straight teeth of the same outline hardly sees it.
+
+Found: compliance over that of straight teeth is 1.039 at 15° and 1.136 at 30°; the round shafts that stand for toothed
+sections agree within 2 %. Used in coupling/gears/geometry/toothed_section.py, tests/coupling/gears/
+test_toothed_section.py and docs/theory.md.
 """
 
 import math

@@ -22,10 +22,11 @@ TORQUE = 150.0
 ANGLE = math.radians(15.0)
 
 
-def helical(hand: float) -> GearPairGeometry:
+def helical(hand: float, angle: float = ANGLE) -> GearPairGeometry:
+    """Return the teeth of a pair whose driver has a helix of this hand, 1 to the right and -1 to the left."""
     return GearPairGeometry(
-        Gear("pinion", 23, 3e-3, math.radians(20.0), 25e-3, helix_angle=hand * ANGLE),
-        Gear("wheel", 41, 3e-3, math.radians(20.0), 25e-3, helix_angle=-hand * ANGLE),
+        Gear("pinion", 23, 3e-3, math.radians(20.0), 25e-3, helix_angle=hand * angle),
+        Gear("wheel", 41, 3e-3, math.radians(20.0), 25e-3, helix_angle=-hand * angle),
     )
 
 

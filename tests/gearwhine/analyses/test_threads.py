@@ -122,6 +122,6 @@ solve(found)
 
 
 def _python(script: str) -> subprocess.CompletedProcess[str]:
-    root = str(Path(__file__).parents[2])
+    root = str(Path(__file__).parents[3])
     environment = os.environ | {"PYTHONPATH": root}
     return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=environment, timeout=300)
