@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling import Shaft as Shaft
     from gearwhine.coupling import ShaftForce as ShaftForce
     from gearwhine.coupling import ShaftGear as ShaftGear
+    from gearwhine.coupling.analyses.recording import TransientPlan as TransientPlan
     from gearwhine.coupling.gears import Gear as Gear
     from gearwhine.coupling.gears import GearError as GearError
     from gearwhine.coupling.gears.loaded.gear_pair import GearPair as GearPair
@@ -58,7 +59,8 @@ if TYPE_CHECKING:
     from gearwhine.rotors import RotorError as RotorError
     from gearwhine.rotors import Segment as Segment
     from gearwhine.rotors import ShaftMaterial as ShaftMaterial
-    from gearwhine.study import MachineStudy as MachineStudy
+    from gearwhine.study import CaseStudy as CaseStudy
+    from gearwhine.study import Settings as Settings
     from gearwhine.study import Study as Study
     from gearwhine.study import build as build
     from gearwhine.study import load as load
@@ -70,12 +72,13 @@ except PackageNotFoundError:  # run from a checkout that is not installed
 
 _HOMES = {
     "gearwhine.coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftForce", "ShaftGear"),
+    "gearwhine.coupling.analyses.recording": ("TransientPlan",),
     "gearwhine.coupling.gears": ("Gear", "GearError"),
     "gearwhine.coupling.gears.loaded.gear_pair": ("GearPair",),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
-    "gearwhine.study": ("MachineStudy", "Study", "build", "load"),
+    "gearwhine.study": ("CaseStudy", "Settings", "Study", "build", "load"),
     "gearwhine.housing": (
         "Housing",
         "HousingError",

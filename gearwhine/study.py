@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import threading
 from collections.abc import Mapping, Sequence
@@ -11,13 +12,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.case import Case, CaseSource, LoadedCase, load_case
+from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.analyses.case import Format
-    from gearwhine.analyses.of_machine import MachineMotion, MachineUnderLoad
+    from gearwhine.analyses.of_machine import MachineUnderLoad
     from gearwhine.analyses.result import Result
-    from gearwhine.analyses.run import RunSolution
+    from gearwhine.analyses.run_solution import RunSolution
     from gearwhine.coupling import Machine
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
     from gearwhine.sweep.run import SweptPoint
 
 
-def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequence[str] = ()) -> Study:
+def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequence[str] = ()) -> CaseStudy:
     """Read and check a case.
 
     Parameters
@@ -55,10 +58,10 @@ def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequenc
     CaseError
         With everything that is wrong.
     """
-    return Study(load_case(os.fspath(source), _texts(changes)))
+    return CaseStudy(load_case(os.fspath(source), _texts(changes)))
 
 
-def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
+def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> CaseStudy:
     """Check a case given as Python objects in place of a file.
 
     Parameters
@@ -94,11 +97,48 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> Study:
     >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
     2.7744
     """
-    return Study(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
+    return CaseStudy(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
 
 
-class MachineStudy:
-    """A machine of Python and its analyses, each a call that returns a labelled result.
+@dataclass(frozen=True)
+class Settings:
+    """What analyses of a machine take beside it.
+
+    Attributes
+    ----------
+    title : str
+        Title of the results.
+    transient : TransientPlan, optional
+        Stretch of the motion over time; without one ``run`` has no motion.
+    tracking : OrderTracking, optional
+        Windows of the orders along a run.
+    speeds : sequence of float
+        Signed speeds of the first driver's shaft for analyses over speed [rad/s].
+    """
+
+    title: str = ""
+    transient: TransientPlan | None = None
+    tracking: OrderTracking | None = None
+    speeds: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        """Keep own copies, and check each of them."""
+        from gearwhine.coupling.analyses.recording import TransientPlan
+        from gearwhine.coupling.analyses.run_up import OrderTracking
+        from gearwhine.coupling.errors import CouplingError
+
+        keep_tuples(self, "speeds")
+        rules: dict[str, Rule] = {
+            "title": Instance(str, "a text"),
+            "transient": Instance(TransientPlan, "a TransientPlan, or None", optional=True),
+            "tracking": Instance(OrderTracking, "an OrderTracking, or None", optional=True),
+            "speeds": Numbers(each=Number(unit="rad/s")),
+        }
+        refuse(attribute_findings(("settings", self.title), self, **rules), CouplingError)
+
+
+class Study:
+    """A machine, what its analyses take beside it, and the analyses: each a call that returns a labelled result.
 
     The results are those of the same machine in a case: the same numbers, warnings, figures and files.
 
@@ -106,8 +146,8 @@ class MachineStudy:
     ----------
     machine : Machine
         Machine; where its housing is the result of :meth:`gearwhine.Housing.modes`, it stands in that.
-    title : str
-        Title of its results.
+    settings : Settings, optional
+        Title, stretch of the transient, and speeds of analyses over speed.
     progress : callable
         Receives the progress of long work in words; silent by default.
 
@@ -118,15 +158,20 @@ class MachineStudy:
     >>> import gearwhine as gw
     >>> shaft = gw.Shaft(gw.Rotor("shaft", [gw.Segment(0.5, 0.03, 0.0, gw.STEEL)]))
     >>> bearings = [gw.MountedBearing(gw.Bearing.isotropic(f"at {at}", at, 1e8), "shaft", None) for at in (0.02, 0.48)]
-    >>> study = gw.MachineStudy(gw.Machine([shaft], bearings, speed=100.0))
+    >>> study = gw.Study(gw.Machine([shaft], bearings, speed=100.0), gw.Settings("a shaft"))
     >>> modes = study.system()
     >>> modes.dataset["system_frequency"].attrs["units"]
     'Hz'
     """
 
-    def __init__(self, machine: Machine, title: str = "", progress: Progress = silent) -> None:
-        self.machine = machine
-        self.title = title
+    def __init__(self, machine: Machine, settings: Settings | None = None, progress: Progress = silent) -> None:
+        from gearwhine.coupling import CouplingError
+        from gearwhine.coupling import Machine as Described
+
+        if not isinstance(machine, Described):
+            raise CouplingError(f"a study is of a gearwhine.Machine, got {machine!r}; gearwhine.load reads a case")
+        self._machine = machine
+        self._settings = settings or Settings()
         self.progress = progress
         self._under_load: MachineUnderLoad | None = None
         self._lock = threading.RLock()
@@ -135,79 +180,92 @@ class MachineStudy:
         """Return the machine's own words."""
         return f"<Study of {self.machine!r}>"
 
-    def rotors(self, *, speeds: Sequence[float] = (), **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
+    @property
+    def machine(self) -> Machine:
+        """The shafts, gears, bearings and gear pairs as one object, with all that loads it."""
+        return self._machine
+
+    @property
+    def settings(self) -> Settings:
+        """Title, stretch of the transient, and speeds of analyses over speed."""
+        return self._settings
+
+    def rotors(self, **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
         """Find modes, whirl, critical speeds and responses of each shaft, alone in its bearings on rigid seats.
+
+        Campbell diagrams go over the speeds of the settings, by default up to 1.5 times the speed of the machine.
 
         Parameters
         ----------
-        speeds : sequence of float
-            Signed speeds of the first driver's shaft over which the Campbell diagrams go [rad/s]; by default up to 1.5
-            times the speed of the machine.
         **settings
             See :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings`: ``mode_count=8``, ``orders=(2.0,)``.
         """
         from gearwhine.analyses import of_machine
 
-        return of_machine.rotors(self.machine, self.title, speeds=speeds, progress=self.progress, **settings)
+        return of_machine.rotors(
+            self.machine, self.settings.title, speeds=self.settings.speeds, progress=self.progress, **settings
+        )
 
     def gears(self, aims: Sequence[ReliefAim] = ()) -> Result[tuple[PairAnalysis, ...]]:
         """Analyse each gear pair, and find its best tip relief; see :func:`gearwhine.analyses.of_machine.gears`."""
         from gearwhine.analyses import of_machine
 
-        return of_machine.gears(self.machine, self.title, aims=aims, progress=self.progress)
+        return of_machine.gears(self.machine, self.settings.title, aims=aims, progress=self.progress)
 
     def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
         """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""
         from gearwhine.analyses import of_machine
 
-        return of_machine.operating_point(self.machine, self.title, over_torque=over_torque, progress=self.progress)
+        return of_machine.operating_point(
+            self.machine, self.settings.title, over_torque=over_torque, progress=self.progress
+        )
 
     def system(
         self,
         *,
-        speeds: Sequence[float] = (),
+        campbell: bool = False,
         sidebands: int = 0,
         mesh_harmonics: int = 3,
         mesh_phase: float | None = None,
     ) -> Result[SolvedSystem]:
-        """Find the complex modes of the coupled machine, and their course over signed speeds [rad/s].
+        """Find the complex modes of the coupled machine, and their course over the speeds of the settings.
 
-        See :func:`gearwhine.analyses.of_machine.system`.
+        ``campbell`` follows them over speed without such speeds, too: up to 1.5 times the speed of the machine. See
+        :func:`gearwhine.analyses.of_machine.system`.
         """
         from gearwhine.analyses import of_machine
 
         return of_machine.system(
             self._loaded(),
             mesh_phase=mesh_phase,
-            over_speed=speeds,
+            over_speed=self._diagram_speeds() if campbell or self.settings.speeds else (),
             sidebands=sidebands,
             mesh_harmonics=mesh_harmonics,
             progress=self.progress,
         )
 
     def steady(
-        self, *, speeds: tuple[float, float] | None = None, points: int = 100, exact: bool = False
+        self, *, curve: bool = False, down: bool = False, points: int = 100, exact: bool = False
     ) -> Result[SolvedSteady]:
-        """Find the periodic motion, and its branch from one signed speed to another [rad/s].
+        """Find the periodic motion, and with ``curve`` its branch over the range of the settings' speeds.
 
-        See :func:`gearwhine.analyses.of_machine.steady`.
+        The branch goes by default from half to 1.5 times the speed of the machine; ``down`` follows it from the
+        highest speed downwards. See :func:`gearwhine.analyses.of_machine.steady`.
         """
         from gearwhine.analyses import of_machine
 
+        speeds = self._branch_speeds(down=down) if curve or down else None
         return of_machine.steady(self._loaded(), over_speed=speeds, points=points, exact=exact, progress=self.progress)
 
-    def simulate(
-        self, plan: TransientPlan | None = None, /, tracking: OrderTracking | None = None, **settings: Any
-    ) -> Result[MachineMotion]:
+    def simulate(self, plan: TransientPlan | None = None, /, **stretch: Any) -> Result[RunSolution]:
         """Integrate the motion over time.
 
         Parameters
         ----------
         plan : TransientPlan, optional
-            Stretch of the motion; or its attributes by name: ``revolutions=40, discard=20``.
-        tracking : OrderTracking, optional
-            Windows of the orders along a run.
-        **settings
+            Stretch of the motion, by default that of the settings; or its attributes by name: ``revolutions=40,
+            discard=20``.
+        **stretch
             See :class:`gearwhine.coupling.analyses.recording.TransientPlan`.
 
         Raises
@@ -220,19 +278,52 @@ class MachineStudy:
         from gearwhine.analyses import of_machine
         from gearwhine.coupling.analyses.recording import TransientPlan
 
-        plan = TransientPlan(**settings) if plan is None else plan
-        machine = self._loaded()
-        if plan.run is not None:
-            machine = of_machine.machine_under_load(self.machine, self.title, plan.run, self.progress)
-        return of_machine.simulate(machine, plan, tracking, self.progress)
+        if plan is None:
+            given = self.settings.transient
+            plan = TransientPlan(**stretch) if given is None or stretch else given
+        return of_machine.simulate(self._loaded(plan), plan, self.settings.tracking, self.progress)
 
-    def _loaded(self) -> MachineUnderLoad:
-        """Return the machine about its operating point at constant speed, assembled once."""
+    def run(self) -> Result[RunSolution]:
+        """Find everything: rotors, gears, operating point, modes and responses, and the transient of the settings."""
+        from gearwhine.analyses import of_machine
+
+        plan = self.settings.transient
+        rotors = self.rotors().solved
+        return of_machine.run(self.machine, self._loaded(plan), rotors, plan, self.settings.tracking, self.progress)
+
+    def _diagram_speeds(self) -> tuple[float, ...]:
+        """Return the signed speeds of a diagram of the machine [rad/s], ascending in size."""
+        from gearwhine.numerics.speed_ranges import campbell_speeds
+
+        chosen = sorted(self.settings.speeds, key=abs)
+        return tuple(chosen) or campbell_speeds(self.machine.speed, self._held_speeds())
+
+    def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
+        """Return the signed speeds from which and to which a motion is followed [rad/s]."""
+        from gearwhine.numerics.speed_ranges import BEYOND_OPERATION, SLOWEST_OF_BRANCH
+
+        low, high = self._held_speeds()
+        speeds = sorted(self.settings.speeds, key=abs)
+        if not speeds:
+            sense, size = math.copysign(1.0, self.machine.speed), abs(self.machine.speed)
+            speeds = [sense * max(SLOWEST_OF_BRANCH * size, low), sense * min(BEYOND_OPERATION * size, high)]
+        return (speeds[-1], speeds[0]) if down else (speeds[0], speeds[-1])
+
+    def _held_speeds(self) -> tuple[float, float]:
+        """Return the range of speeds of the first shaft, without sense, that the bearings' tables hold [rad/s]."""
+        from gearwhine.coupling.analyses.shafts_alone import held_speeds
+
+        return held_speeds(self.machine)
+
+    def _loaded(self, plan: TransientPlan | None = None) -> MachineUnderLoad:
+        """Return the machine about its operating point, assembled for a plan; at constant speed it is made once."""
+        from gearwhine.analyses.of_machine import machine_under_load
+
+        if plan is not None and plan.run is not None:
+            return machine_under_load(self.machine, self.settings.title, plan.run, self.progress)
         with self._lock:
             if self._under_load is None:
-                from gearwhine.analyses.of_machine import machine_under_load
-
-                self._under_load = machine_under_load(self.machine, self.title, progress=self.progress)
+                self._under_load = machine_under_load(self.machine, self.settings.title, progress=self.progress)
             return self._under_load
 
 
@@ -244,8 +335,8 @@ class _KeptHousing:
     lock: threading.RLock = field(default_factory=threading.RLock)
 
 
-class Study:
-    """A checked case and its analyses.
+class CaseStudy(Study):
+    """A checked case and its analyses: a study of the machine that the case describes, with the case's settings.
 
     The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study. Threads
     may share a study: who needs the housing while another thread solves it waits.
@@ -276,7 +367,7 @@ class Study:
 
         return case_html(self.case)
 
-    def changed(self, changes: Mapping[str, object] | Sequence[str]) -> Study:
+    def changed(self, changes: Mapping[str, object] | Sequence[str]) -> CaseStudy:
         """Return a study of the same case with other values of some keys; this one stays as it is.
 
         The case is the one that was read: neither its file nor those that it names are read again, and one that has
@@ -294,7 +385,7 @@ class Study:
         CaseError
             With everything that is wrong.
         """
-        study = Study(self._source.changed(_texts(changes)), self.progress)
+        study = CaseStudy(self._source.changed(_texts(changes)), self.progress)
         if self.case.housing is not None and study.case.housing is not None:
             from gearwhine.solve.housing_modes import housing_key
 
@@ -329,6 +420,17 @@ class Study:
         solved = self.housing
         part = None if solved is None else reduce_housing(self.case, solved, self.progress)
         return described_machine(self.case, part)
+
+    @property
+    def settings(self) -> Settings:
+        """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
+        from gearwhine.case.speeds_and_torques import with_sense_of_operation
+        from gearwhine.solve.machine import plan_of, tracking_of
+
+        case = self.case
+        plan = None if case.transient is None else plan_of(case)
+        speeds = () if case.sweep is None else with_sense_of_operation(case, case.sweep.speeds)
+        return Settings(case.title, plan, tracking_of(case), speeds)
 
     def check(self) -> Result[CheckedCase]:
         """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""
@@ -397,19 +499,19 @@ class Study:
         written = write_report(Path(folder), self.case, interactive=interactive, progress=self.progress)
         return Path(folder) / str(written["files"][0])
 
-    def rotors(self) -> Result[tuple[SolvedRotor, ...]]:
+    def rotors(self, **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
         """Find modes, whirl and critical speeds of each rotor; see :func:`gearwhine.analyses.machine.rotors`."""
         from gearwhine.analyses import machine
 
-        return machine.rotors(self.case, progress=self.progress)
+        return machine.rotors(self.case, progress=self.progress, **settings)
 
-    def gears(self) -> Result[tuple[PairAnalysis, ...]]:
+    def gears(self, aims: Sequence[ReliefAim] = ()) -> Result[tuple[PairAnalysis, ...]]:
         """Analyse each gear pair; see :func:`gearwhine.analyses.machine.gears`."""
         from gearwhine.analyses import machine
         from gearwhine.solve.gear_pairs import aims_at_sensor
 
         housing = self.housing if aims_at_sensor(self.case) else self._kept.solved
-        return machine.gears(self.case, housing=housing, progress=self.progress)
+        return machine.gears(self.case, aims=aims, housing=housing, progress=self.progress)
 
     def operating_point(
         self,
@@ -475,11 +577,16 @@ class Study:
 
         return machine.sound(self.case, housing=self._solved_housing(with_sound=True), progress=self.progress)
 
-    def simulate(self) -> Result[RunSolution]:
-        """Integrate the transient of `[transient]`; see :func:`gearwhine.analyses.run.simulate`."""
-        from gearwhine.analyses import run
+    def simulate(self, plan: TransientPlan | None = None, /, **stretch: Any) -> Result[RunSolution]:
+        """Integrate the motion over time, by default of `[transient]`; see :func:`gearwhine.analyses.run.simulate`.
 
-        return run.simulate(self.case, housing=self.housing, progress=self.progress)
+        A plan, or the attributes of one, take the place of that of the case.
+        """
+        from gearwhine.analyses import run
+        from gearwhine.coupling.analyses.recording import TransientPlan
+
+        plan = TransientPlan(**stretch) if stretch else plan
+        return run.simulate(self.case, plan=plan, housing=self.housing, progress=self.progress)
 
     def run(self) -> Result[RunSolution]:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""

@@ -47,12 +47,12 @@ REDUCER = {"acoustics.mesh_size": "26 mm"}
 FACE = "+z at 11, 165, -72 mm"
 
 
-def loaded(name: str, changes: dict[str, object]) -> gw.Study:
+def loaded(name: str, changes: dict[str, object]) -> gw.CaseStudy:
     """A bundled case, named before the first comma."""
     return gw.load(name.split(",")[0], changes)
 
 
-def methods(changes: dict[str, object], faces: list[str]) -> list[gw.Study]:
+def methods(changes: dict[str, object], faces: list[str]) -> list[gw.CaseStudy]:
     """A case by boundary elements, the equivalent power and Rayleigh's integral of some faces."""
     ways: list[dict[str, object]] = [{}, {"acoustics.method": "erp"}]
     ways.append({"acoustics.method": "rayleigh", "acoustics.faces": faces})
@@ -121,7 +121,7 @@ def swept(speeds: list[float], folder: Path) -> dict[str, Any]:
     return gw.load(RIG, SWEPT | {"sweep.speed": texts}).sweep(folder=folder).document
 
 
-def line_levels(study: gw.Study, mesh: Mesh | None = None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def line_levels(study: gw.CaseStudy, mesh: Mesh | None = None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Document of the operating point with its sensitivity, and its loudest lines; on a mesh where one is given."""
     given = nullcontext() if mesh is None else mock.patch.object(housing_modes, "build_mesh", return_value=mesh)
     with given:

@@ -306,10 +306,17 @@ def analyse_pair(
 
 
 def analyse_machine(
-    machine: Machine, point: OperatingPoint | None = None, progress: Progress = silent
+    machine: Machine,
+    point: OperatingPoint | None = None,
+    progress: Progress = silent,
+    *,
+    pairs: Sequence[LoadedGearPair] | None = None,
 ) -> tuple[PairAnalysis, ...]:
-    """Analyse every gear pair of a machine; ``point`` is its operating point, where it has one."""
-    pairs = machine.with_flanks_of(point).loaded_pairs(progress)
+    """Analyse every gear pair of a machine; ``point`` is its operating point, where it has one.
+
+    ``pairs`` are those of the machine about that point, where they are loaded already.
+    """
+    pairs = machine.with_flanks_of(point).loaded_pairs(progress) if pairs is None else pairs
     rows = zip(pairs, taken_misalignments(machine, point), machine.train.force_origins, strict=True)
     return tuple(replace(analyse_pair(pair, misalignment), force_origin=origin) for pair, misalignment, origin in rows)
 

@@ -1,5 +1,6 @@
 """Shafts of a machine, each alone in its bearings on rigid seats."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -68,6 +69,19 @@ def shaft_settings(
         bow=shaft.bow,
     )
     return settings if machine.gravity is None else replace(settings, gravity=machine.gravity)
+
+
+def held_speeds(machine: Machine) -> tuple[float, float]:
+    """Return the range of speeds of the first driver's shaft, without sense, that the tables of all bearings hold.
+
+    Zero and infinity for bearings without tables [rad/s].
+    """
+    low, high = 0.0, math.inf
+    for name, ratio in machine.train.ratios.items():
+        least, most = table_range([one.bearing for one in machine.bearings if one.rotor == name])
+        if ratio:
+            low, high = max(low, least / abs(float(ratio))), min(high, most / abs(float(ratio)))
+    return low, high
 
 
 def bearings_on_rigid_seats(machine: Machine) -> dict[str, BearingsUnderLoad]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, require
@@ -67,8 +67,9 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, meshed)
     warnings += mesh_health.resolution_warnings(case, meshed, case.housing.frequency_limit if case.housing else None)
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_mesh(meshed, place / f"mesh.{suffix}")
+        return {}
 
     return Result("mesh", case, meshed, mesh_document(meshed, warnings), _files=files)
 
@@ -106,8 +107,9 @@ def modes(
     """
     solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_shapes(place / "modes.vtu", solved)
+        return {}
 
     return Result(
         "modes",
@@ -156,10 +158,11 @@ def compare(
     add_warnings(document, comparison_warnings(comparison, solved.modes))
     geometry = None if survey is None else survey.geometry
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_comparison(place, comparison, geometry)
         if isinstance(likeness, ResponseCorrelation):
             write_response_correlation(place, likeness)
+        return {}
 
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_comparison_figures
@@ -212,8 +215,9 @@ def survey(
     progress(f"choosing {sensors} sensors")
     planned = plan_housing(case, solved, sensors, modes)
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_plan(place, planned)
+        return {}
 
     return Result("survey", case, planned, plan_document(planned, solved), _files=files, _housing=solved)
 
@@ -245,8 +249,9 @@ def update(
     document = update_document(case, solved)
     add_warnings(document, updating.noise_warnings(solved.misfit_after, solved.target.noise))
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         (place / "updated.toml").write_text(updated_case(case, solved), encoding="utf-8")
+        return {}
 
     return Result(
         "update",
@@ -312,13 +317,15 @@ def render(
                 raise  # else the modes are drawn without their measured partners
     document = origin_document(solved)
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        drawn: dict[str, Any] = {}
         if modes is not None:
             draw_modes(solved, comparison, modes, view, mode_format, place, progress)
         if lines and folder is not None:
-            document["lines"] = draw_lines(solved, folder, lines, view, mode_format, place, progress)
+            drawn["lines"] = draw_lines(solved, folder, lines, view, mode_format, place, progress)
         if measured:
             draw_measured(case, solved, comparison, survey, view, place)
+        return drawn
 
     return Result("render", case, solved, document, _files=files, _housing=solved)
 

@@ -16,6 +16,8 @@ from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torq
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
+from gearwhine.coupling.description.excitation import Run
+from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -50,7 +52,9 @@ if TYPE_CHECKING:
     from gearwhine.sweep.run import SweptPoint
 
 
-def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent) -> Result[tuple[SolvedRotor, ...]]:
+def rotors(
+    case: Case, *, write_ross: bool = False, progress: Progress = silent, **settings: Any
+) -> Result[tuple[SolvedRotor, ...]]:
     """Find lateral and torsional modes, whirl and critical speeds of each rotor.
 
     Parameters
@@ -59,6 +63,8 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     write_ross : bool
         Whether the result writes each rotor with its bearings as a file that ROSS loads, too.
     progress : callable
+    **settings
+        Attributes of :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings` in place of those of the case.
 
     Raises
     ------
@@ -67,25 +73,24 @@ def rotors(case: Case, *, write_ross: bool = False, progress: Progress = silent)
     gearwhine.rotors.IncompleteModesError
         Where modes fail their certificate.
     """
-    solved = solve_rotors(case, progress)
+    solved = solve_rotors(case, progress, **settings)
 
-    def files(place: Path, *, pictures: bool) -> None:
-        if write_ross:
-            remarks = write_ross_files(place, solved)
-            add_warnings(result.document, [warning("ross", remark) for remark in remarks])
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        remarks = write_ross_files(place, solved) if write_ross else ()
+        return {"warnings": [warning("ross", remark) for remark in remarks]}
 
     def assemblies() -> list["RotorAssembly"]:
         from gearwhine.figures.rotors import rotor_assembly
 
         return [rotor_assembly(case, one.rotor, one.bearings) for one in solved]
 
-    result = replace(of_machine.solved_rotors(solved, labels_of(case), assemblies), case=case, _files=files)
-    return result
+    return replace(of_machine.solved_rotors(solved, labels_of(case), assemblies), case=case, _files=files)
 
 
 def gears(
     case: Case,
     *,
+    aims: Sequence[ReliefAim] = (),
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     progress: Progress = silent,
@@ -95,6 +100,8 @@ def gears(
     Parameters
     ----------
     case : Case
+    aims : sequence of ReliefAim, optional
+        Objective of the best relief of each pair, in place of those of the case.
     housing : SolvedHousing, optional
         Housing where it is solved already. It is solved here for a tip relief whose aim names a sensor alone; without
         one a misalignment that is found is that of rigid seats, with a warning, and the best relief aims at no
@@ -116,17 +123,15 @@ def gears(
         elif case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
             housing = kept_housing(case, folder, progress)
     loaded, point = solve_pairs(case, housing, progress)
-    aims = relief_aims(case, loaded, progress, point=point, housing=housing, folder=folder)
-    pairs = solve_over_torques(analyse_pairs(case, loaded, point), progress, aims)
+    analysed = analyse_pairs(case, loaded, point)
+    if aims:
+        of_machine.require_aims(aims, len(analysed))
+        analysed = tuple(replace(pair, aim_given=True) for pair in analysed)
+    else:
+        aims = relief_aims(case, loaded, progress, point=point, housing=housing, folder=folder)
+    pairs = solve_over_torques(analysed, progress, aims)
     seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
-    result = of_machine.analysed_gears(pairs, labels_of(case), seats)
-    if seats == "rigid":
-        message = (
-            "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
-            "so is the best tip relief; run, load or modes before gears give it those of the housing"
-        )
-        add_warnings(result.document, [warning("rigid seats", message)])
-    return replace(result, case=case)
+    return replace(of_machine.analysed_gears(pairs, labels_of(case), seats), case=case)
 
 
 def operating_point(
@@ -189,11 +194,10 @@ def operating_point(
 
         return draw_load(solved)
 
-    def files(place: Path, *, pictures: bool) -> None:
-        if pictures:
-            add_warnings(result.document, draw_load_pictures(housing, solved, place, progress))
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        return {"warnings": draw_load_pictures(housing, solved, place, progress)} if pictures else {}
 
-    result = Result(
+    return Result(
         "load",
         case,
         solved,
@@ -204,30 +208,30 @@ def operating_point(
         _housing=housing,
         _options=(LOAD_OPTIONS, LOAD_SAME),
     )
-    return result
 
 
-def _loaded_case(
-    case: Case,
-    housing: SolvedHousing | None,
-    folder: Path | None,
-    progress: Progress,
-    *,
-    fresh: bool,
-    varies: bool = True,
+def loaded_case(
+    case: Case, housing: SolvedHousing | None, run: Run | None, progress: Progress = silent
 ) -> MachineUnderLoad:
-    """Solve the housing and the operating point of a case, and assemble its machine about that.
+    """Find the operating point of a case in its solved housing, and assemble its machine about that.
 
-    ``varies`` takes the speed and the torques over time of a `[transient]`; without, they are those of operation.
+    ``run`` is the course of speed and torques over time; without one, they are those of operation.
     """
-    require_machine(case)
-    if housing is None and case.housing is not None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh)
     part = None if housing is None else reduce_housing(case, housing, progress)
     machine = described_machine(case, part)
     load, warnings = find_load(case, machine, progress)
-    loaded = load_machine(machine, None if load is None else load.point, run_of(case) if varies else None, progress)
+    loaded = load_machine(machine, None if load is None else load.point, run, progress)
     return MachineUnderLoad(case.title, loaded, load, warnings, case, housing)
+
+
+def _housing_of(
+    case: Case, housing: SolvedHousing | None, folder: Path | None, progress: Progress, *, fresh: bool
+) -> SolvedHousing | None:
+    """Return the solved housing of a case whose parts make a machine; None without one."""
+    require_machine(case)
+    if housing is None and case.housing is not None:
+        return solve_housing(case, progress, folder=folder, fresh=fresh)
+    return housing
 
 
 def system(
@@ -269,7 +273,7 @@ def system(
     require(case, "rotor", "operation", command="system")
     if mesh_phase is not None:
         require(case, "gear_pair", command="system --mesh-phase")
-    loaded = _loaded_case(case, housing, folder, progress, fresh=fresh)
+    loaded = loaded_case(case, _housing_of(case, housing, folder, progress, fresh=fresh), run_of(case), progress)
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     over_speed = campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS
     return of_machine.system(
@@ -323,7 +327,8 @@ def steady(
     assert case.operation is not None
     if case.operation.speed == 0.0:
         raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
-    loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
+    solved_housing = _housing_of(case, housing, folder, progress, fresh=fresh)
+    loaded = loaded_case(case, solved_housing, None, progress)
 
     def with_assumed_damping(solved: SolvedSteady) -> SolvedSteady:
         return solved if solved.curve is None else replace(solved, assumed_damping=assumed_mesh_damping(case))
@@ -379,7 +384,8 @@ def sound(
     further_warnings: list[dict[str, Any]] = []
     steady = case.model_copy(update={"transient": None})
     if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
-        loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
+        require_machine(case)
+        loaded = loaded_case(case, housing, None, progress)
         machine, further_warnings = loaded.coupled, list(loaded.warnings)
         steady_state = solve_steady(machine, progress)
         motion = lines_of_steady(steady_state, highest_estimated(case, housing))
@@ -393,11 +399,10 @@ def sound(
         progress("drawing the sound")
         yield from draw_sound(case.title, solved)
 
-    def files(place: Path, *, pictures: bool) -> None:
-        if pictures:
-            add_warnings(result.document, draw_sound_pictures(solved, place, progress, housing.up))
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
 
-    result = Result(
+    return Result(
         "sound",
         case,
         solved,
@@ -407,7 +412,6 @@ def sound(
         _files=files,
         _housing=housing,
     )
-    return result
 
 
 def sweep(

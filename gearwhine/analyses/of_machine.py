@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
+from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine, coupled_modes
 from gearwhine.coupling import stability as coupled_stability
@@ -35,7 +37,7 @@ from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.result_warnings import ResultWarning
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.dataset import Labels, labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
@@ -43,10 +45,6 @@ from gearwhine.results.housing import HOUSING, origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import (
-    RUN_SIGNATURE,
-    TRANSIENT,
-    HistoryStream,
-    TracedTransient,
     run_signature_document,
     transient_document,
 )
@@ -114,18 +112,22 @@ class MachineUnderLoad:
 
     def add_to(self, document: dict[str, Any], progress: Progress) -> None:
         """Add the operating point, its warnings and the errors of the modal basis to a document of the machine."""
-        if self.load is not None:
-            document["load"] = load_part(self.load)
-        add_warnings(document, self.warnings)
         progress("comparing with another modal basis")
         add_uncertainty(document, self.loaded.basis_error, document["trusted_below_hz"])
         progress("mechanisms of the lines, and their bands by damping")
         add_mechanisms(document, self.loaded.mechanisms)
+        self.add_parts_to(document)
+
+    def add_parts_to(self, document: dict[str, Any]) -> None:
+        """Add the damping, the bodies of the gears, the operating point and its warnings to a document."""
         if self.case is not None:
             document["damping"] = damping_document(self.case)
             add_warnings(document, damping_warnings(self.case))
         if bodies := gear_body_document(self.loaded.machine):
             document["gear_bodies"] = bodies
+        if self.load is not None:
+            document["load"] = load_part(self.load)
+        add_warnings(document, self.warnings)
 
     def figures(self) -> Iterator[tuple[str, Figure]]:
         """Draw the operating point."""
@@ -217,16 +219,26 @@ def gears(
     gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
         Where the machine has no gear pairs, there are more or fewer aims than pairs, or a pair cannot be solved.
     """
-    count = len(machine.gear_pairs)
-    if not count or (aims and len(aims) != count):
-        expected = f"an aim for each of the {count} gear pairs, got {len(aims)}" if count else "a machine of gear pairs"
-        raise CouplingError(f"gears: expected {expected}")
+    if not machine.gear_pairs:
+        raise CouplingError("gears: expected a machine with a gear pair")
+    require_aims(aims, len(machine.gear_pairs))
     point = point_of_flanks(machine, progress)
     analysed = analyse_machine(machine, point, progress)
     chosen = aims or default_aims(machine, point, [pair.solved for pair in analysed], progress)
     analysed = tuple(replace(pair, aim_given=bool(aims)) for pair in analysed)
     seats = None if point is None or machine.housing is None else "housing"
     return analysed_gears(solve_over_torques(analysed, progress, chosen), Labels(title, machine.speed), seats)
+
+
+def require_aims(aims: Sequence[ReliefAim], pairs: int) -> None:
+    """Refuse more or fewer aims than pairs; none are the default.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+    """
+    if aims and len(aims) != pairs:
+        raise CouplingError(f"gears: expected an aim for each of the {pairs} gear pairs, got {len(aims)}")
 
 
 def analysed_gears(
@@ -237,6 +249,12 @@ def analysed_gears(
     if seats is not None:
         for pair in document["pairs"]:
             pair["misalignment_seats"] = seats
+    if seats == "rigid":
+        message = (
+            "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
+            "so is the best tip relief; run, load or modes before gears give it those of the housing"
+        )
+        add_warnings(document, [warning("rigid seats", message)])
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_gear_pairs
@@ -428,12 +446,61 @@ def add_motion(
     return document
 
 
+def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tuple[SolvedSystem, dict[str, Any]]:
+    """Find the modes and responses of a machine, and the part of a run's document that they are."""
+    progress("comparing with another modal basis")
+    basis, mechanisms = machine.loaded.basis_error, machine.loaded.mechanisms
+    solved = solve_system(machine.coupled, progress)
+    document: dict[str, Any] = {"system": system_document(solved, machine.housing)}
+    add_warnings(document, unstable_modes_warnings(solved.stability))
+    add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
+    add_mechanisms(document["system"], mechanisms)
+    machine.add_parts_to(document)
+    return solved, document
+
+
+def run(
+    described: Machine,
+    machine: MachineUnderLoad,
+    rotors: tuple[SolvedRotor, ...],
+    plan: TransientPlan | None = None,
+    tracking: OrderTracking | None = None,
+    progress: Progress = silent,
+) -> Result[RunSolution]:
+    """Find everything of a machine: gears, operating point, modes and responses, and its motion, beside its rotors.
+
+    ``machine`` is the described one under load, assembled for the run of ``plan``; without a plan there is no motion.
+    """
+    start = time.perf_counter()
+    point = None if machine.load is None else machine.load.point
+    pairs = analyse_machine(described, point, progress, pairs=machine.loaded.pairs)
+    document = {"title": machine.title} | rotors_document(rotors)
+    if pairs:
+        document = joined(document, gears_document(pairs))
+    system, of_system = modes_of_run(machine, progress)
+    document, motion = joined(document, of_system), None
+    if plan is not None:
+        motion = solve_motion(machine.loaded, plan, tracking or OrderTracking(), system.modes, progress)
+        document = add_motion(document, machine.loaded, motion, machine.warnings)
+    document["seconds"] = {"total": time.perf_counter() - start}
+    solved = RunSolution(rotors, pairs, system=system, load=machine.load).with_motion(motion)
+    return Result(
+        "run",
+        None,
+        solved,
+        document,
+        _arrays=lambda: solved.arrays(machine.labels),
+        _figures=partial(solved.figures, machine.title),
+        _title=machine.title,
+    )
+
+
 def simulate(
     machine: MachineUnderLoad,
     plan: TransientPlan,
     tracking: OrderTracking | None = None,
     progress: Progress = silent,
-) -> Result[MachineMotion]:
+) -> Result[RunSolution]:
     """Integrate the motion of a machine that is assembled for the run of a plan."""
     system = machine.coupled.system
     modes = coupled_modes(system, mean_contact(system))
@@ -442,35 +509,14 @@ def simulate(
     add_warnings(document, [*machine.warnings, *unstable_modes_warnings(coupled_stability(modes))])
     if machine.load is not None:
         document["load"] = load_part(machine.load)
-    transient = motion.transient
-
-    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
-        from gearwhine.figures import draw_run, draw_transient
-
-        progress("drawing the motion")
-        yield from draw_transient(machine.title, transient, motion.signature, machine.housing, None)
-        if motion.run_signature is not None:
-            yield from draw_run(machine.title, transient, motion.run_signature)
-        yield from machine.figures()
-
+    solved = RunSolution(housing=machine.housing, load=machine.load).with_motion(motion)
     return Result(
         "simulate",
         machine.case,
-        motion,
+        solved,
         document,
-        _arrays=partial(_motion_arrays, machine, motion),
-        _figures=figures,
+        _arrays=lambda: solved.arrays(machine.labels),
+        _figures=partial(solved.figures, machine.title),
         _housing=machine.housing,
         _title=machine.title,
-    )
-
-
-def _motion_arrays(machine: MachineUnderLoad, motion: MachineMotion) -> Any:
-    return labelled(
-        machine.labels,
-        (HOUSING, machine.housing),
-        (LOAD, machine.load),
-        (TRANSIENT, TracedTransient(motion.transient, motion.signature)),
-        (RUN_SIGNATURE, motion.run_signature),
-        streams=(HistoryStream(motion.transient),),
     )

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 from gearwhine.case import Case
 from gearwhine.case.checks.whole_case import warnings_of
@@ -56,8 +56,9 @@ def _no_figures(progress: Progress) -> Iterable[tuple[str, Figure]]:
     return ()
 
 
-def _no_files(place: Path, *, pictures: bool) -> None:
+def _no_files(place: Path, *, pictures: bool) -> Mapping[str, Any]:
     """Write nothing beside the data and the figures."""
+    return {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +88,7 @@ class Result(Generic[Solved]):
     document: dict[str, Any]
     _arrays: Callable[[], LabelledArrays | xr.Dataset] | None = None
     _figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = _no_figures
-    _files: Callable[..., None] = _no_files
+    _files: Callable[..., Mapping[str, Any]] = _no_files
     _housing: SolvedHousing | None = None
     _data_file: str = "results.nc"
     _started: float | None = None
@@ -95,9 +96,11 @@ class Result(Generic[Solved]):
     _title: str = ""
 
     def __post_init__(self) -> None:
-        """Give the document its list of warnings, with those of the case."""
+        """Take a copy of the document with its list of warnings, with those of the case."""
         of_case = () if self.case is None else warnings_of(self.case)
-        add_warnings(self.document, [warning("case", text) for text in of_case])
+        document = dict(self.document)
+        add_warnings(document, [warning("case", text) for text in of_case])
+        object.__setattr__(self, "document", document)
 
     @property
     def title(self) -> str:
@@ -192,10 +195,16 @@ class Result(Generic[Solved]):
         OSError
             Where the folder cannot be written to; what it held stays as it was.
         """
+        return list(self.stored(folder, pictures=pictures, progress=progress).document["files"])
+
+    def stored(self, folder: str | Path, *, pictures: bool = True, progress: Progress = silent) -> Self:
+        """Write the result as :meth:`write`, and return it as it stands in the folder.
+
+        Its document has the folder's name, the files, what the folder keeps of earlier results of the same command, and
+        warnings of drawing.
+        """
         begin = time.perf_counter()
-        kept = Kept()
-        for key in self.document.pop("kept", ()):  # of another folder
-            del self.document[key]
+        kept, document = Kept(), dict(self.document)
         options, same = self._options
         finish_moves(Path(folder))
         if self.case is not None and options and (earlier := earlier_result(Path(folder), self.command)) is not None:
@@ -204,10 +213,10 @@ class Result(Generic[Solved]):
                 require_as_written(Path(folder), lambda name: Path(name).parent == place)
             except DamagedResultsError as error:
                 text = f"{error}; the parts of those results that this one would keep are left out"
-                add_warnings(self.document, [warning("results folder", text)])
+                add_warnings(document, [warning("results folder", text)])
             else:
-                kept = kept_options(options, same, self.case, self.document, *earlier)
-                self.document.update(kept.document)
+                kept = kept_options(options, same, self.case, document, *earlier)
+                document.update(kept.document)
 
         def write(place: Path) -> None:
             progress("writing results")
@@ -219,10 +228,12 @@ class Result(Generic[Solved]):
                 from gearwhine.figures.style import save
 
                 save(figure, place / f"{name}.png")
-            self._files(place, pictures=pictures)
+            added = dict(self._files(place, pictures=pictures))
+            add_warnings(document, added.pop("warnings", ()))
+            document.update(added)
             if self._started is not None:
                 now = time.perf_counter()
-                self.document["seconds"] |= {"writing": now - begin, "total": now - self._started}
+                document["seconds"] = document["seconds"] | {"writing": now - begin, "total": now - self._started}
 
         def write_with_modes(place: Path) -> None:
             write(place)
@@ -233,15 +244,15 @@ class Result(Generic[Solved]):
 
         if self.case is not None and self.command in COMMANDS:
             cached = self._housing is not None and self._housing.source is not None
-            store_results(self.command, self.document, self.case, Path(folder), write_with_modes, modes_stored=cached)
+            store_results(self.command, document, self.case, Path(folder), write_with_modes, modes_stored=cached)
         else:
             with staging(Path(folder)) as place:
                 write(place)
                 if self.case is None:
-                    (place / SUMMARY).write_text(f"{self.json()}\n", encoding="utf-8")
+                    (place / SUMMARY).write_text(f"{json_text(finite(document))}\n", encoding="utf-8")
                 files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
-            self.document.update(folder=str(folder), files=files)
-        return list(self.document["files"])
+            document.update(folder=str(folder), files=files)
+        return replace(self, document=document)
 
     def _write_data(self, place: Path, kept_arrays: Variables) -> None:
         if self._arrays is None:

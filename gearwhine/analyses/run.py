@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearwhine.analyses.of_machine import add_motion, solve_motion
+from gearwhine.analyses.machine import loaded_case
+from gearwhine.analyses.of_machine import add_motion, modes_of_run, solve_motion
 from gearwhine.analyses.result import Result
+from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
-from gearwhine.coupling.analyses.loaded_machine import load_machine
-from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.errors import TransientError
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine
@@ -23,54 +22,30 @@ from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operati
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging
 from gearwhine.output.checkpoints import stored_record
-from gearwhine.output.dataset import LabelledArrays, labelled, labels_of
+from gearwhine.output.dataset import labels_of
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.comparison import comparison_document, write_comparison
-from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
+from gearwhine.results.gears import gears_document
+from gearwhine.results.housing import modes_document, origin_document, write_shapes
 from gearwhine.results.motion import leading_lines
-from gearwhine.results.operating_point import LOAD, load_part
-from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.rotors import rotors_document
 from gearwhine.results.run import (
-    RUN_SIGNATURE,
     SOUND_LEFT_OUT,
-    TRANSIENT,
-    HistoryStream,
-    TracedTransient,
 )
-from gearwhine.results.sound import SOUND, sound_document
-from gearwhine.results.system import SYSTEM, system_document
+from gearwhine.results.sound import sound_document
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
-from gearwhine.solve.damping import damping_document, damping_warnings
-from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of, tracking_of
-from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.machine import plan_of, tracking_of
 from gearwhine.solve.operating_shapes import highest_lines
-from gearwhine.solve.plausibility import (
-    add_mechanisms,
-    add_uncertainty,
-    unstable_modes_warnings,
-)
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.solve.sound import check_before_modes, is_in_run
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
-    from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
-    from gearwhine.coupling.analyses.run_up import RunSignature
-    from gearwhine.coupling.analyses.signature import SolvedSignature
-    from gearwhine.coupling.analyses.transient import SolvedTransient
+    from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-    from gearwhine.housing.correlation import Comparison
-    from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.sound.solution import SolvedSound
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -78,6 +53,7 @@ _DRAWN_LINES = 6  # operating shapes of a run
 def run(
     case: Case,
     *,
+    plan: TransientPlan | None = None,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -90,6 +66,8 @@ def run(
     Parameters
     ----------
     case : Case
+    plan : TransientPlan, optional
+        Stretch of the motion over time, in place of that of `[transient]`.
     housing : SolvedHousing, optional
         Solved housing, where it exists already.
     folder : path, optional
@@ -110,7 +88,9 @@ def run(
     gearwhine.housing.errors.RendererUnavailableError
         Where modes are to be drawn and no renderer is available.
     """
-    if case.transient is not None:
+    if plan is None and case.transient is not None:
+        plan = plan_of(case)
+    if plan is not None:
         require(case, "rotor", "operation", command="run")
     require_machine(case)
     require_comparable(case)
@@ -132,21 +112,18 @@ def run(
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=before)
     timed("housing", begin)
     begin = time.perf_counter()
-    described, part, load, loaded, warnings_of_load = None, None, None, None, list[dict[str, Any]]()
-    pairs: tuple[LoadedGearPair, ...] = ()
-    if case.rotor and case.operation:
-        part = None if housing is None else reduce_housing(case, housing, progress)
-        described = described_machine(case, part)
-        load, warnings_of_load = find_load(case, described, progress)
+    course = None if plan is None else plan.run
+    loaded = loaded_case(case, housing, course, progress) if case.rotor and case.operation else None
     timed("load", begin)
     begin = time.perf_counter()
-    if described is not None:
-        loaded = load_machine(described, None if load is None else load.point, run_of(case), progress)
-        pairs = loaded.pairs
+    pairs: tuple[LoadedGearPair, ...] = ()
+    if loaded is not None:
+        pairs = loaded.loaded.pairs
     elif case.gear_pair:
         pairs = solve_gears(case, progress)
+    load = None if loaded is None else loaded.load
     analysed = analyse_pairs(case, pairs, None if load is None else load.point)
-    timed("rotors_and_gears", begin - seconds["rotors_and_gears"])
+    seconds["rotors_and_gears"] += time.perf_counter() - begin
     if rotors:
         document = joined(document, rotors_document(rotors))
     if pairs:
@@ -160,46 +137,35 @@ def run(
             document["compare"] = comparison_document(comparison, housing)
             add_warnings(document, comparison_warnings(comparison, housing.modes))
 
-    transient, system, signature, run_signature, sound, machine = None, None, None, None, None, None
-    if loaded is not None and described is not None:
+    system, motion = None, None
+    if loaded is not None:
         begin = time.perf_counter()
-        progress("comparing with another modal basis")
-        machine, mechanisms, basis = loaded.coupled, loaded.mechanisms, loaded.basis_error
-        system = solve_system(machine, progress)
-        document["system"] = system_document(system, housing)
-        add_warnings(document, unstable_modes_warnings(system.stability))
-        add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
-        add_mechanisms(document["system"], mechanisms)
-        document["damping"] = damping_document(case)
-        if bodies := gear_body_document(loaded.machine):
-            document["gear_bodies"] = bodies
-        add_warnings(document, damping_warnings(case))
+        system, of_system = modes_of_run(loaded, progress)
+        document = joined(document, of_system)
         timed("system", begin)
-        if load is not None:
-            document["load"] = load_part(load)
-        add_warnings(document, warnings_of_load)
-        if case.transient is not None:
-            if folder is not None and housing is not None and not housing.source_holds:
-                # Modes are cached before the results, so that a resumed long transient need not solve them again.
-                with staging(folder) as place:
-                    write_mode_cache(place, housing)
-                housing = replace(housing, source=folder / MODE_CACHE_FILE, source_holds=True)
-            begin = time.perf_counter()
-            keep = None
-            if folder is not None and until_written is not None:
-                keep = partial(_checkpoints, folder, until_written, fresh=fresh)
-            try:
-                motion = solve_motion(loaded, plan_of(case), tracking_of(case), system.modes, progress, keep=keep)
-            except TransientError as error:
-                # Under a load that no tooth bears the advice of the integration is beside the point.
-                if told := overload(case):
-                    raise TransientError(f"{told}; no motion under this load is found") from error
-                raise
-            transient, signature, run_signature = motion.transient, motion.signature, motion.run_signature
-            document = add_motion(document, loaded, motion, warnings_of_load)
-            timed("transient", begin)
-            seconds["time_stepping"] = transient.result.seconds
+    if loaded is not None and system is not None and plan is not None:
+        if folder is not None and housing is not None and not housing.source_holds:
+            # Modes are cached before the results, so that a resumed long transient need not solve them again.
+            with staging(folder) as place:
+                write_mode_cache(place, housing)
+            housing = replace(housing, source=folder / MODE_CACHE_FILE, source_holds=True)
+        begin = time.perf_counter()
+        keep = None
+        if folder is not None and until_written is not None:
+            keep = partial(_checkpoints, folder, until_written, fresh=fresh)
+        try:
+            motion = solve_motion(loaded.loaded, plan, tracking_of(case), system.modes, progress, keep=keep)
+        except TransientError as error:
+            # Under a load that no tooth bears the advice of the integration is beside the point.
+            if told := overload(case):
+                raise TransientError(f"{told}; no motion under this load is found") from error
+            raise
+        document = add_motion(document, loaded.loaded, motion, loaded.warnings)
+        timed("transient", begin)
+        seconds["time_stepping"] = motion.transient.result.seconds
+    transient = None if motion is None else motion.transient
 
+    sound = None
     if case.acoustics is not None and not is_in_run(case):
         document["sound_not_solved"] = SOUND_LEFT_OUT
     if is_in_run(case) and housing is not None:
@@ -210,6 +176,7 @@ def run(
         lines, without = None, []
         if transient is not None and not (without := left_out_warnings(case)):
             lines = lines_of_run(transient, highest_estimated(case, housing))
+        machine = None if loaded is None else loaded.coupled
         sound = solve_sound(case, housing, lines, machine, progress)
         if transient is not None:
             sound, housing = with_histories(case, housing, sound, transient, progress)
@@ -219,18 +186,16 @@ def run(
 
     seconds["total"] = time.perf_counter() - start
     document["seconds"] = seconds
-    solved = RunSolution(
-        rotors, analysed, housing, comparison, system, transient, signature, run_signature, load, sound
-    )
+    solved = RunSolution(rotors, analysed, housing, comparison, system, load=load, sound=sound).with_motion(motion)
 
-    def files(place: Path, *, pictures: bool) -> None:
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         if solved.housing is None:
-            return
+            return {}
         write_shapes(place / "modes.vtu", solved.housing)
         if comparison is not None:
             write_comparison(place, comparison)
         if not pictures:
-            return
+            return {}
         from gearwhine.drawing_process import one_process
 
         with one_process():
@@ -246,14 +211,15 @@ def run(
                 lines = highest_lines(solved.signature, solved.transient.trusted_limit, _DRAWN_LINES)
                 if lines:
                     draw_operating_shapes(solved.housing, lines, "auto", "png", place, progress)
+        return {}
 
     return Result(
         "run",
         case,
         solved,
         document,
-        _arrays=partial(run_arrays, case, solved),
-        _figures=partial(_figures, case, solved),
+        _arrays=lambda: solved.arrays(labels_of(case)),
+        _figures=partial(solved.figures, case.title),
         _files=files,
         _housing=housing,
         _started=start,
@@ -261,15 +227,20 @@ def run(
 
 
 def simulate(
-    case: Case, *, housing: SolvedHousing | None = None, folder: Path | None = None, progress: Progress = silent
+    case: Case,
+    *,
+    plan: TransientPlan | None = None,
+    housing: SolvedHousing | None = None,
+    folder: Path | None = None,
+    progress: Progress = silent,
 ) -> Result[RunSolution]:
     """Integrate the motion of a case's machine in time: its transient.
 
     Parameters
     ----------
     case : Case
-        Case with `[transient]`.
-    housing, folder, progress
+        Case with `[transient]`, unless a plan is given.
+    plan, housing, folder, progress
         As :func:`run`.
 
     Raises
@@ -279,9 +250,9 @@ def simulate(
     gearwhine.coupling.TransientError
         Where the motion cannot be followed or its energies do not balance.
     """
-    require(case, "rotor", "operation", "transient", command="simulate")
+    require(case, "rotor", "operation", *(["transient"] if plan is None else []), command="simulate")
     only = case.model_copy(update={"measured": None})
-    result = run(only, housing=housing, folder=folder, pictures=False, progress=progress)
+    result = run(only, plan=plan, housing=housing, folder=folder, pictures=False, progress=progress)
     return replace(result, command="simulate", case=case)
 
 
@@ -308,8 +279,7 @@ def run_into(
             until_written=until_written,
             progress=progress,
         )
-        result.write(folder, pictures=pictures, progress=progress)
-        return result
+        return result.stored(folder, pictures=pictures, progress=progress)
 
 
 def _require_renderer() -> None:
@@ -324,61 +294,3 @@ def _require_renderer() -> None:
 
 def _checkpoints(folder: Path, until_written: ExitStack, key: str, *, fresh: bool) -> Any:
     return until_written.enter_context(stored_record(folder, key, fresh=fresh))
-
-
-@dataclass(frozen=True)
-class RunSolution:
-    """Solution of a whole run, None or empty where the case does not ask for an analysis."""
-
-    rotors: tuple[SolvedRotor, ...]
-    pairs: tuple[PairAnalysis, ...]
-    housing: SolvedHousing | None
-    comparison: Comparison | None
-    system: SolvedSystem | None
-    transient: SolvedTransient | None
-    signature: SolvedSignature | None
-    run_signature: RunSignature | None
-    load: SolvedLoad | None = None
-    sound: SolvedSound | None = None
-
-
-def run_arrays(case: Case, solved: RunSolution) -> LabelledArrays:
-    """Return the labelled arrays of the analyses that were made."""
-    streams = () if solved.transient is None else (HistoryStream(solved.transient),)
-    return labelled(
-        labels_of(case),
-        (HOUSING, solved.housing),
-        (ROTORS, solved.rotors),
-        (GEARS, solved.pairs),
-        (LOAD, solved.load),
-        (SYSTEM, solved.system),
-        (TRANSIENT, None if solved.transient is None else TracedTransient(solved.transient, solved.signature)),
-        (RUN_SIGNATURE, solved.run_signature),
-        (SOUND, solved.sound),
-        streams=streams,
-    )
-
-
-def _figures(case: Case, solved: RunSolution, progress: Progress) -> Iterator[tuple[str, Figure]]:
-    """Draw the figures of the analyses that were made, each with its name."""
-    from gearwhine import figures
-
-    if solved.pairs:
-        yield from figures.draw_gear_pairs(solved.pairs, progress)
-    if solved.load is not None:
-        yield from figures.draw_load(solved.load)
-    if solved.system is not None:
-        progress("drawing the coupled system")
-        yield from figures.draw_system(solved.system)
-    if solved.transient is not None:
-        progress("drawing the motion")
-        parts_of_motion = solved.transient, solved.signature, solved.housing, solved.comparison
-        yield from figures.draw_transient(case.title, *parts_of_motion)
-    if solved.transient is not None and solved.run_signature is not None:
-        yield from figures.draw_run(case.title, solved.transient, solved.run_signature)
-    if solved.sound is not None:
-        progress("drawing the sound")
-        yield from figures.draw_sound(case.title, solved.sound)
-    if solved.housing is not None and solved.comparison is not None:
-        progress("drawing the comparison with measured modes")
-        yield from figures.draw_comparison_figures(case.title, solved.comparison, solved.housing.modes.frequencies)

@@ -126,9 +126,7 @@ def on_loaded(
 
 def written(result: "Result[Any]", folder: Path | None, progress: "Progress") -> dict[str, Any]:
     """Write a result where a folder is given, and return its document."""
-    if folder is not None:
-        result.write(folder, progress=progress)
-    return result.document
+    return (result if folder is None else result.stored(folder, progress=progress)).document
 
 
 def results_folder(case: str, common: Common) -> Path:

@@ -1,6 +1,8 @@
 """Rotors of a case, each alone on grounded bearings: its tables as settings of the rotor's analyses."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,8 +35,8 @@ from gearwhine.rotors.analyses.torsional_response import Torque, TorsionalDashpo
 _TWO_PI = 2.0 * np.pi
 
 
-def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, ...]:
-    """Solve every rotor of the case, alone on grounded bearings.
+def solve_rotors(case: Case, progress: Progress = silent, **chosen: Any) -> tuple[SolvedRotor, ...]:
+    """Solve every rotor of the case, alone on grounded bearings; ``chosen`` settings take the place of the case's.
 
     Raises
     ------
@@ -47,7 +49,7 @@ def solve_rotors(case: Case, progress: Progress = silent) -> tuple[SolvedRotor, 
     for table in case.rotor:
         progress(f"rotor {table.name}")
         bearings, rolling = built[table.name]
-        settings = rotor_settings(case, table)
+        settings = replace(rotor_settings(case, table), **chosen)
         solved.append(solve_rotor(build_rotor(case, table), bearings, settings, rolling=rolling, progress=progress))
     return tuple(solved)
 

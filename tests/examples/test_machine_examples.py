@@ -11,7 +11,7 @@ import gearwhine as gw
 BASE_RADIUS = 3e-3 * 28 / 2 * np.cos(np.radians(20.0))
 
 
-def mesh_resonance_rpm(study: gw.Study) -> float:
+def mesh_resonance_rpm(study: gw.CaseStudy) -> float:
     """Speed at which the mesh frequency of 28 teeth meets the first elastic mode of the coupled machine."""
     frequencies = study.system().dataset["system_frequency"].values
     return float(60.0 / 28.0 * frequencies[frequencies > 1.0].min())

@@ -33,7 +33,7 @@ TOP = {
 
 
 @cache
-def small_gearbox() -> gw.Study:
+def small_gearbox() -> gw.CaseStudy:
     """The gearbox with the housing of all these."""
     return gw.load("small-gearbox")
 
@@ -45,7 +45,7 @@ def sounding_housing() -> SolvedHousing:
     return housing
 
 
-def sounding_gearbox(changes: dict[str, Any]) -> gw.Study:
+def sounding_gearbox(changes: dict[str, Any]) -> gw.CaseStudy:
     """Load the gearbox with changes that leave its housing as it is."""
     return small_gearbox().changed(changes)
 

@@ -27,7 +27,7 @@ SHORT = {"transient.revolutions": 6, "transient.discard": 4, "transient.toleranc
 
 
 @pytest.fixture(scope="module")
-def study() -> gw.Study:
+def study() -> gw.CaseStudy:
     return gw.load("small-gearbox", COARSE | SHORT)
 
 
@@ -62,7 +62,7 @@ def test_command_has_one_thread_of_blas_unless_told_otherwise(given: dict[str, s
 
 
 @pytest.mark.slow
-def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_modes_are_the_command_s(study: gw.CaseStudy, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = study.modes()
     changes = [part for key, value in (COARSE | SHORT).items() for part in ("--set", f"{key}={value}")]
     assert run_command(["modes", "small-gearbox", "--json", "-q", *changes]) == 0
@@ -73,7 +73,7 @@ def test_modes_are_the_command_s(study: gw.Study, tmp_path: Path, capsys: pytest
     assert json.loads(found.json())["modes"] == printed["modes"]
 
 
-def test_the_housing_is_solved_once(study: gw.Study) -> None:
+def test_the_housing_is_solved_once(study: gw.CaseStudy) -> None:
     assert study.modes().solved is study.housing
     assert study.system().solved.machine.housing is not None
     # The machine as an object stands in the same housing, not on the ground.
@@ -93,7 +93,7 @@ def test_modes_are_written_without_loading_a_library_of_figures(tmp_path: Path) 
 
 
 @pytest.mark.slow
-def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> None:
+def test_a_written_result_is_the_dataset(study: gw.CaseStudy, tmp_path: Path) -> None:
     found = study.changed({"sweep.speed": ["2000 rpm", "3000 rpm", "4000 rpm"]}).system(campbell=True)
     files = found.write(tmp_path)
     assert {"results.nc", "summary.json", "case.toml", "system-campbell.png"} <= set(files)
@@ -106,7 +106,7 @@ def test_a_written_result_is_the_dataset(study: gw.Study, tmp_path: Path) -> Non
         found.plot("campbel")
 
 
-def test_what_is_done_to_a_dataset_stays_in_it(study: gw.Study, tmp_path: Path) -> None:
+def test_what_is_done_to_a_dataset_stays_in_it(study: gw.CaseStudy, tmp_path: Path) -> None:
     """Neither other results of the study nor what is written know of it."""
     before, result = study.modes().dataset.copy(deep=True), study.modes()
     for name, variable in result.dataset.variables.items():
@@ -120,7 +120,7 @@ def test_what_is_done_to_a_dataset_stays_in_it(study: gw.Study, tmp_path: Path) 
             np.testing.assert_array_equal(written[name].values, variable.values, err_msg=str(name))
 
 
-def test_a_dataset_of_arrays_at_hand_is_a_copy(study: gw.Study) -> None:
+def test_a_dataset_of_arrays_at_hand_is_a_copy(study: gw.CaseStudy) -> None:
     at_hand = xr.Dataset({"level": ("sensor", np.array([1.0, 2.0]))})
     result = gw.Result("sweep", study.case, None, {}, _arrays=lambda: at_hand)
     result.dataset["level"].values[:] = 0.0
@@ -128,7 +128,7 @@ def test_a_dataset_of_arrays_at_hand_is_a_copy(study: gw.Study) -> None:
 
 
 @pytest.mark.slow
-def test_a_run_has_histories_in_memory_as_on_file(study: gw.Study, tmp_path: Path) -> None:
+def test_a_run_has_histories_in_memory_as_on_file(study: gw.CaseStudy, tmp_path: Path) -> None:
     found = study.simulate()
     assert found.command == "simulate"
     assert found.proofs["energy_error"] < 1e-2
@@ -267,7 +267,7 @@ def test_a_check_is_a_result_like_the_others(tmp_path: Path, capsys: pytest.Capt
     assert "mesh frequency 2566.67 Hz" in page
 
 
-def test_modes_are_selected_by_their_number(study: gw.Study) -> None:
+def test_modes_are_selected_by_their_number(study: gw.CaseStudy) -> None:
     housing, system, rotors = study.modes().dataset, study.system().dataset, study.rotors().dataset
     for data, variable, dimension in (
         (housing, "housing_frequency", "housing_mode"),
@@ -322,7 +322,7 @@ def test_a_simulation_leaves_the_results_of_a_run_in_the_folder(tmp_path: Path) 
     assert page.count("the energy balance closes") == 3  # of each, and once on the first page
 
 
-def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw.Study) -> None:
+def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw.CaseStudy) -> None:
     assert study.housing is not None
     kept = study.changed({"operation.torque": "30 N*m", "gear.*.tip_relief": ""})
     assert (kept.case.operation.torque, study.case.operation.torque) != (30.0, 30.0)  # type: ignore[union-attr]

@@ -40,16 +40,16 @@ def alike(found: dict[str, Any], expected: dict[str, Any]) -> None:
 
 
 @pytest.fixture(scope="module")
-def study() -> gw.Study:
+def study() -> gw.CaseStudy:
     return gw.load("spur-pair", SHORT)
 
 
 @pytest.fixture(scope="module")
-def machine(study: gw.Study) -> gw.MachineStudy:
-    return gw.MachineStudy(study.machine, "two spur gears")
+def machine(study: gw.CaseStudy) -> gw.Study:
+    return gw.Study(study.machine, gw.Settings("two spur gears"))
 
 
-def test_modes_and_responses_are_those_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+def test_modes_and_responses_are_those_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
     found, expected = machine.system(), study.system()
     alike(found.document, expected.document)
     for name, array in expected.dataset.data_vars.items():
@@ -59,18 +59,18 @@ def test_modes_and_responses_are_those_of_the_case(study: gw.Study, machine: gw.
     assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
 
 
-def test_the_operating_point_is_that_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+def test_the_operating_point_is_that_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
     found, expected = machine.operating_point(), study.operating_point()
     alike(found.document, expected.document)
     assert found.document["bearings"][0]["force_n"] == expected.document["bearings"][0]["force_n"]
 
 
-def test_the_periodic_motion_is_that_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+def test_the_periodic_motion_is_that_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
     alike(machine.steady().document, study.steady().document)
 
 
 def test_motion_over_time_is_that_of_the_case_and_is_written(
-    study: gw.Study, machine: gw.MachineStudy, tmp_path: Path
+    study: gw.CaseStudy, machine: gw.Study, tmp_path: Path
 ) -> None:
     found, expected = machine.simulate(plan_of(study.case)), study.simulate()
     assert found.document["steps"] == expected.document["steps"]
@@ -93,25 +93,36 @@ def test_a_run_up_of_a_machine_is_that_of_the_case() -> None:
     study = gw.load("spur-pair", {"transient": run})
     speeds = tuple(np.array([600.0, 1500.0]) * np.pi / 30.0)
     plan = replace(plan_of(study.case), run=SpeedRun((0.0, 0.06), speeds))
-    found = gw.MachineStudy(study.machine).simulate(plan)
+    found = gw.Study(study.machine).simulate(plan)
     expected = study.simulate()
     np.testing.assert_allclose(found.dataset["mesh_force"], expected.dataset["mesh_force"], rtol=1e-9)
 
 
-def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.MachineStudy) -> None:
+def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.Study) -> None:
     """The mean mesh force of the last revolution follows a torque that has risen by half."""
     given = machine.machine
     risen = replace(given, torque_over_time=TorqueOverTime((0.0, 1e-3), (0.0, 0.5 * given.torque)))
     plan = {"revolutions": 6.0, "discard": 5.0, "tolerance": 1e-4}
     forces = [
-        float(gw.MachineStudy(one).simulate(**plan).dataset["mesh_force"].isel(contact=0).mean())
-        for one in (given, risen)
+        float(gw.Study(one).simulate(**plan).dataset["mesh_force"].isel(contact=0).mean()) for one in (given, risen)
     ]
     assert forces[1] == pytest.approx(1.5 * forces[0], rel=0.02)
     with pytest.raises(CouplingError, match=r"torque over time: times is .*; expected numbers that ascend"):
         TorqueOverTime((1.0, 0.0), (1.0, 2.0))
     with pytest.raises(CouplingError, match="expected one of the two"):
         machine.simulate()
+    with pytest.raises(CouplingError, match="a study is of a gearwhine\\.Machine, got 'spur-pair'"):
+        gw.Study("spur-pair")  # type: ignore[arg-type]
+
+
+def test_writing_a_result_leaves_it_as_it_is(machine: gw.Study, tmp_path: Path) -> None:
+    result = machine.operating_point()
+    before = result.json()
+    files = result.write(tmp_path / "one", pictures=False)
+    assert result.json() == before
+    stored = result.stored(tmp_path / "two", pictures=False)
+    assert stored.document["files"] == files
+    assert stored.document["folder"] == str(tmp_path / "two")
 
 
 @pytest.mark.slow
@@ -119,7 +130,7 @@ def test_a_machine_in_its_housing_has_the_lines_of_the_case() -> None:
     """Sensors, mechanisms of their lines, bands by damping and the error of the modal basis, at rest and in motion."""
     coarse = {"housing.box.mesh_size": "45 mm", "transient.revolutions": 4, "transient.discard": 2}
     study = gw.load("small-gearbox", coarse)
-    machine = gw.MachineStudy(study.machine, study.case.title)
+    machine = gw.Study(study.machine, gw.Settings(study.case.title))
     moved, expected = machine.simulate(plan_of(study.case)), study.simulate()
     for name in ("sensor_acceleration", "sensor_spectrum", "mesh_force", "bearing_force"):
         np.testing.assert_array_equal(moved.dataset[name], expected.dataset[name])
@@ -144,7 +155,7 @@ def test_a_machine_on_the_modes_of_a_housing_of_python_is_that_of_the_case() -> 
     described = replace(describe_housing(case, solved.mesh), damping_ratio=case.housing.damping_ratio)
     places = bearing_places(case)
     modes = described.modes(below_hz=case.housing.frequency_limit, bearings=places)
-    found = gw.MachineStudy(replace(study.machine, housing=modes)).steady()
+    found = gw.Study(replace(study.machine, housing=modes)).steady()
     expected = study.steady()
     motions = (result.document["motions"][0]["sensors"] for result in (found, expected))
     for one, other in zip(*motions, strict=True):
@@ -162,14 +173,45 @@ def equal(found: gw.Result[Any], expected: gw.Result[Any]) -> None:
     assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
 
 
-def test_rotors_and_gears_are_those_of_the_case(study: gw.Study, machine: gw.MachineStudy) -> None:
+def test_rotors_and_gears_are_those_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
     for found, expected in ((machine.rotors(), study.rotors()), (machine.gears(), study.gears())):
         equal(found, expected)
 
 
-def test_rotors_take_their_own_settings(machine: gw.MachineStudy) -> None:
+def test_a_whole_run_is_that_of_the_case(study: gw.CaseStudy) -> None:
+    """A machine with the settings of a case; the case adds what it says of its damping, and other times."""
+    found, expected = gw.Study(study.machine, study.settings).run(), study.run()
+    of_case = {key: value for key, value in expected.document.items() if key not in {"seconds", "damping"}}
+    of_machine = {key: value for key, value in found.document.items() if key != "seconds"}
+    for document in (of_case, of_machine):
+        document.pop("steps_per_second", None)
+    assert json.dumps(of_machine) == json.dumps(of_case)
+    assert set(found.dataset.variables) == set(expected.dataset.variables)
+    for name in ("mesh_force", "system_frequency", "rotor_rest_frequency", "transmission_error"):
+        np.testing.assert_array_equal(found.dataset[name], expected.dataset[name])
+    assert [name for name, _ in found.figures()] == [name for name, _ in expected.figures()]
+
+
+def test_a_plan_takes_the_place_of_that_of_the_case(study: gw.CaseStudy, machine: gw.Study) -> None:
+    stretch = {"revolutions": 4.0, "discard": 3.0}
+    found, expected = machine.simulate(**stretch), study.simulate(**stretch)
+    np.testing.assert_array_equal(found.dataset["mesh_force"], expected.dataset["mesh_force"])
+
+
+def test_speeds_of_the_settings_are_those_of_diagrams_and_branches(machine: gw.Study) -> None:
+    speed = machine.machine.speed
+    over = gw.Study(machine.machine, gw.Settings(speeds=[0.8 * speed, 1.1 * speed]))
+    assert over.system().solved.campbell is not None
+    assert machine.system().solved.campbell is None
+    assert machine.system(campbell=True).solved.campbell is not None
+    with pytest.raises(CouplingError, match=r"settings: speeds is .*; expected numbers, each a finite number rad/s"):
+        gw.Settings(speeds=[float("nan")])
+
+
+def test_rotors_take_their_own_settings(machine: gw.Study) -> None:
     speeds = [50.0, 100.0, 150.0]
-    rotors = machine.rotors(speeds=speeds, mode_count=4, orders=(2.0,)).document["rotors"]
+    over = gw.Study(machine.machine, gw.Settings(speeds=speeds))
+    rotors = over.rotors(mode_count=4, orders=(2.0,)).document["rotors"]
     ratio = machine.machine.speeds["output"] / machine.machine.speed
     for rotor, factor in zip(rotors, (1.0, ratio), strict=True):
         assert sorted(rotor["campbell"]["speed_rpm"], key=abs) == pytest.approx(
@@ -185,6 +227,6 @@ def test_rotors_take_their_own_settings(machine: gw.MachineStudy) -> None:
 @pytest.mark.slow
 def test_the_best_relief_of_a_machine_in_a_housing_aims_at_the_loudest_sensor_as_in_the_case() -> None:
     study = gw.load("small-gearbox", {"housing.box.mesh_size": "50 mm"})
-    found = gw.MachineStudy(study.machine).gears()  # solves the housing, which `gears` of the case then takes
+    found = gw.Study(study.machine).gears()  # solves the housing, which `gears` of the case then takes
     equal(found, study.gears())
     assert found.document["pairs"][0]["optimal_relief"]["aim"]["kind"] == "sensor"

@@ -41,7 +41,7 @@ def inline(value: Any) -> str:
     return json.dumps(value)
 
 
-def lines_of(study: gw.Study) -> str:
+def lines_of(study: gw.CaseStudy) -> str:
     return "\n".join(
         f"{section.title}{section.note} {' '.join(section.sentences)}"
         for section in check_sections(study.check().document)

@@ -20,7 +20,7 @@ APART = 88.9e-3
 _TWO_PI = 2.0 * math.pi
 
 
-def said() -> gw.Study:
+def said() -> gw.CaseStudy:
     """Return a case with the keys that it has to have, and no other."""
     names = ("in", "out")
     return gw.build(

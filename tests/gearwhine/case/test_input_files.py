@@ -34,7 +34,7 @@ def digest(path: Path) -> str:
     return sha256(path.read_bytes()).hexdigest()
 
 
-def of_rotor(folder: Path) -> gw.Study:
+def of_rotor(folder: Path) -> gw.CaseStudy:
     return gw.build(folder, rotor=[{"name": "shaft", "file": "fan.toml"}], operation={"speed": "3000 rpm"})
 
 
@@ -124,7 +124,7 @@ def box() -> Mesh:
     return build_mesh(load_case("steel-box", ["housing.box.mesh_size=120 mm"]).case)
 
 
-def of_mesh(folder: Path) -> gw.Study:
+def of_mesh(folder: Path) -> gw.CaseStudy:
     housing = {"material": "steel", "modes": 8, "damping_ratio": 0.01, "mesh": {"file": "box.msh"}}
     return gw.build(folder, material={"steel": STEEL}, housing=housing)
 

@@ -28,7 +28,7 @@ def changes(*floating: int, law: str = "linear", **more: Any) -> dict[str, Any]:
     return found
 
 
-def forces(study: gw.Study) -> np.ndarray[Any, np.dtype[np.float64]]:
+def forces(study: gw.CaseStudy) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Forces x, y, z of the shafts on the four bearings at the operating point [N], shape (4, 3)."""
     return np.array([one["force_n"] for one in study.operating_point().document["bearings"]])
 

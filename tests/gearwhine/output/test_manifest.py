@@ -133,7 +133,7 @@ def test_a_truncated_file_of_results_without_digests_is_named(tmp_path: Path, si
 _GEARS: list[gw.Result] = []
 
 
-def gears_of(study: gw.Study) -> gw.Result:
+def gears_of(study: gw.CaseStudy) -> gw.Result:
     """The pair's analysis, solved once for all tests."""
     if not _GEARS:
         _GEARS.append(study.gears())

@@ -15,7 +15,7 @@ BEGIN = 4.37  # turns before the record: 122.36 mesh periods
 
 
 @cache
-def study() -> gw.Study:
+def study() -> gw.CaseStudy:
     """The bundled spur pair on the flanks of its drive alone, without its unbalance."""
     return gw.load("spur-pair", {"operation.speed": "3000 rpm", "rotor.0.unbalance": []})
 

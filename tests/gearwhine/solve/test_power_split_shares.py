@@ -20,7 +20,7 @@ def test_pairs_in_a_loop_share_the_torque() -> None:
 
 
 @pytest.fixture(scope="module")
-def split() -> gw.Study:
+def split() -> gw.CaseStudy:
     """Two equal pairs between two shafts; the second is near the end where the torque leaves."""
     gears: list[dict[str, Any]] = [
         {"name": f"{rotor} {number}", "rotor": rotor, "at": at, "teeth": teeth, "module": "2 mm", "face_width": "15 mm"}
@@ -51,7 +51,7 @@ def split() -> gw.Study:
     )
 
 
-def test_check_says_what_shares_of_a_power_split_assume(split: gw.Study) -> None:
+def test_check_says_what_shares_of_a_power_split_assume(split: gw.CaseStudy) -> None:
     """Equal shares are those of equal meshes; shafts that twist make them uneven, which `load` finds."""
     document = split.check().document
     forces = [pair["mean_force_n"] for pair in document["gear_pairs"]]

@@ -13,7 +13,7 @@ SETTINGS = {
 }
 
 
-def settling(study: gw.Study) -> list[dict[str, object]]:
+def settling(study: gw.CaseStudy) -> list[dict[str, object]]:
     return [dict(one) for one in study.run().document["warnings"] if one["name"] == "settling"]
 
 

@@ -206,7 +206,7 @@ SOUNDING = {
 
 
 @pytest.fixture(scope="module")
-def study() -> gw.Study:
+def study() -> gw.CaseStudy:
     """The gearbox with a quick sound, whose housing is solved once."""
     return gw.load("small-gearbox", SOUNDING)
 
@@ -227,7 +227,7 @@ def test_a_line_sounds_as_in_the_motion_where_the_mesh_stiffness_hardly_varies()
 
 
 @pytest.mark.slow
-def test_the_document_ranks_by_the_sound(study: gw.Study) -> None:
+def test_the_document_ranks_by_the_sound(study: gw.CaseStudy) -> None:
     result = study.operating_point(sensitivity=True)
     loudest = result.document["loudest_lines"]
     assert [one["excitation"] for one in loudest] == ["2× pinion -> wheel", "1× pinion -> wheel"]
@@ -318,7 +318,7 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
 
 
 @pytest.mark.slow
-def test_a_line_of_the_sound_is_chosen(study: gw.Study) -> None:
+def test_a_line_of_the_sound_is_chosen(study: gw.CaseStudy) -> None:
     result = study.operating_point(line="sound@5133")
     assert [one["ranked"] for one in result.document["loudest_lines"]] == [True, False]
     (section,) = sections(result.document)

@@ -1,0 +1,94 @@
+"""Solution of a whole run of a case or a machine, with its labelled arrays and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from gearwhine.numerics.progress import Progress
+from gearwhine.output.dataset import LabelledArrays, Labels, labelled
+from gearwhine.results.gears import GEARS
+from gearwhine.results.housing import HOUSING
+from gearwhine.results.operating_point import LOAD
+from gearwhine.results.rotors import ROTORS
+from gearwhine.results.run import RUN_SIGNATURE, TRANSIENT, HistoryStream, TracedTransient
+from gearwhine.results.sound import SOUND
+from gearwhine.results.system import SYSTEM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.analyses.of_machine import MachineMotion
+    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
+    from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.run_up import RunSignature
+    from gearwhine.coupling.analyses.signature import SolvedSignature
+    from gearwhine.coupling.analyses.transient import SolvedTransient
+    from gearwhine.housing.correlation import Comparison
+    from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.sound.solution import SolvedSound
+
+
+@dataclass(frozen=True)
+class RunSolution:
+    """Solution of a whole run, None or empty where an analysis is not asked for."""
+
+    rotors: tuple[SolvedRotor, ...] = ()
+    pairs: tuple[PairAnalysis, ...] = ()
+    housing: SolvedHousing | None = None
+    comparison: Comparison | None = None
+    system: SolvedSystem | None = None
+    transient: SolvedTransient | None = None
+    signature: SolvedSignature | None = None
+    run_signature: RunSignature | None = None
+    load: SolvedLoad | None = None
+    sound: SolvedSound | None = None
+
+    def with_motion(self, motion: MachineMotion | None) -> Self:
+        """Return the solution with a motion over time and what is read off its record."""
+        if motion is None:
+            return self
+        return replace(self, transient=motion.transient, signature=motion.signature, run_signature=motion.run_signature)
+
+    def arrays(self, labels: Labels) -> LabelledArrays:
+        """Return the labelled arrays of the analyses that were made."""
+        streams = () if self.transient is None else (HistoryStream(self.transient),)
+        return labelled(
+            labels,
+            (HOUSING, self.housing),
+            (ROTORS, self.rotors),
+            (GEARS, self.pairs),
+            (LOAD, self.load),
+            (SYSTEM, self.system),
+            (TRANSIENT, None if self.transient is None else TracedTransient(self.transient, self.signature)),
+            (RUN_SIGNATURE, self.run_signature),
+            (SOUND, self.sound),
+            streams=streams,
+        )
+
+    def figures(self, title: str, progress: Progress) -> Iterator[tuple[str, Figure]]:
+        """Draw the figures of the analyses that were made, each with its name."""
+        from gearwhine import figures
+
+        if self.pairs:
+            yield from figures.draw_gear_pairs(self.pairs, progress)
+        if self.load is not None:
+            yield from figures.draw_load(self.load)
+        if self.system is not None:
+            progress("drawing the coupled system")
+            yield from figures.draw_system(self.system)
+        if self.transient is not None:
+            progress("drawing the motion")
+            parts_of_motion = self.transient, self.signature, self.housing, self.comparison
+            yield from figures.draw_transient(title, *parts_of_motion)
+        if self.transient is not None and self.run_signature is not None:
+            yield from figures.draw_run(title, self.transient, self.run_signature)
+        if self.sound is not None:
+            progress("drawing the sound")
+            yield from figures.draw_sound(title, self.sound)
+        if self.housing is not None and self.comparison is not None:
+            progress("drawing the comparison with measured modes")
+            yield from figures.draw_comparison_figures(title, self.comparison, self.housing.modes.frequencies)
