@@ -44,10 +44,10 @@ RESIDUAL_BOUND = 1e-9
 
 _ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its terms
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
-_FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
+_FREE_MOTION_STIFFNESS = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _TE_PHASES = 200
-_IDLE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
+_IDLE_PAIR_FORCE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
 
 
 def solve_operating_point(
@@ -286,9 +286,9 @@ class _StaticModel:
         # Without any connector, every rigid motion is free.
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
         # A spring as soft as the softest connector leaves the least rounding in the balance of forces.
-        spring = float(min(values[values > _FREE * stiff], default=stiff))
+        spring = float(min(values[values > _FREE_MOTION_STIFFNESS * stiff], default=stiff))
         # One row for each free motion; where several are free, rows are any mixture of them.
-        free = vectors.T[values <= _FREE * stiff]
+        free = vectors.T[values <= _FREE_MOTION_STIFFNESS * stiff]
         works = free @ motions.T @ self.load
         # Rounding leaves parts of other motions in a free one, which the loads drive as well.
         scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
@@ -522,7 +522,7 @@ class _StaticModel:
         force = force if force > RESIDUAL_BOUND * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
-        loading = force if force > 0.0 else _IDLE * pressed
+        loading = force if force > 0.0 else _IDLE_PAIR_FORCE * pressed
         mean = contact.under_force(loading, shape)
         fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)

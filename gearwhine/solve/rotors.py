@@ -70,7 +70,7 @@ _DEFLECTION_PLACES = 201  # places along a rotor at which its static deflection 
 _TWO_PI = 2.0 * np.pi
 _STEPS = 400  # frequencies, where the case gives none
 _MODES, _BEYOND = 3, 1.25  # number of the elastic mode that ends the frequencies, and factor on its frequency
-_RIGID = 1000.0 * _TWO_PI  # highest frequency for a rotor that has no elastic mode [rad/s]
+_RIGID_ROTOR_FREQUENCY = 1000.0 * _TWO_PI  # highest frequency for a rotor that has no elastic mode [rad/s]
 _TORQUE_PLACES = 201  # places along a rotor at which its torque is computed
 Bearings = tuple[Bearing, ...]
 Crossings = tuple[Crossing, ...] | str
@@ -325,7 +325,7 @@ def _frequencies(settings: TorsionalAnalysis, modes: TorsionalModes, *, damped: 
     if settings.frequency is not None:
         return _TWO_PI * np.array(settings.frequency.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
-    highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
+    highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID_ROTOR_FREQUENCY
     steps = highest * np.arange(1, _STEPS + 1) / _STEPS
     return np.union1d(steps, elastic) if damped else steps
 

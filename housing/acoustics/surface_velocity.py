@@ -44,7 +44,7 @@ _GRAZING = 1e-3  # cosine between skin and normal below which a line does not me
 _EDGEWISE = 1e-6  # part of a skin triangle by which a line may miss it at its edge
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
 _SAME_WAY = 0.7  # least cosine between their normals there
-_LARGE = 0.02  # part of the surface's area above which a flat face has a label of its own
+_LABELLED_FACE_AREA = 0.02  # part of the surface's area above which a flat face has a label of its own
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,10 @@ class SurfaceVelocity:
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
         faces = flat_face_names(self.mesh)
-        told = [face.is_surface or area[number] > _LARGE * self.surface.area for number, face in enumerate(faces)]
+        told = [
+            face.is_surface or area[number] > _LABELLED_FACE_AREA * self.surface.area
+            for number, face in enumerate(faces)
+        ]
         middle = self.facets[:, int(np.argmax(_WEIGHTS))]
         labels = []
         for e, facet in enumerate(middle.tolist()):

@@ -299,7 +299,7 @@ class Matrices:
 
 
 _FLOOR = 0.06  # part of a limit: its square is small beside the wanted eigenvalues
-_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
+_STIFFNESS_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
 _WORTH_A_THREAD = 2**16  # entries of the scalar mass: fewer are multiplied sooner than a thread starts
 
 
@@ -365,7 +365,7 @@ class FreeSystem:
         It is far above the rounding of K, and its root small beside a limit of circular frequencies [rad/s].
         """
         ratio = self.stiffness.diagonal() / self._matrices.mass_diagonal()[self.free]
-        return max(_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
+        return max(_STIFFNESS_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
 
     def expand(self, vectors: FloatArray) -> FloatArray:
         """Vectors on the free degrees of freedom, shape (n, m), as motions of all nodes, shape (m, n_nodes, 3)."""
