@@ -426,10 +426,10 @@ def _transports(
     See :mod:`gearwhine.coupling.machine.gear_bodies`.
     """
     connectors = []
-    for gear, mode, own in rotor.plates:
+    for gear, mode, indices in rotor.plates:
         if speed == 0.0:
             break
-        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[own]).T
+        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[indices]).T
         name = f"rotation of {gear}, {mode.name}"
         ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
         laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]

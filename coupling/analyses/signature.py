@@ -77,12 +77,12 @@ class TracedLine:
         return float(signature.decibels(abs(self.value)))
 
     @property
-    def told_modes(self) -> tuple[Contribution, ...]:
+    def listed_modes(self) -> tuple[Contribution, ...]:
         """The modes with most of the line."""
         return self.modes[:_MOST_REPORTED]
 
     @property
-    def told_bearings(self) -> tuple[Contribution, ...]:
+    def listed_bearings(self) -> tuple[Contribution, ...]:
         """The bearings with most of the line."""
         return self.bearings[:_MOST_REPORTED]
 

@@ -201,8 +201,8 @@ class RotorComponent(Component):
         if at not in self._sections:
             motions, m, t = self.modal.motions(at), self.modal.lateral.count, self.modal.torsional.count
             rows = np.zeros((6, self.size))
-            for modes, own in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
-                rows[:5, own] = motions[:, modes] @ self.plane_basis[:m]
+            for modes, plane in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
+                rows[:5, plane] = motions[:, modes] @ self.plane_basis[:m]
             rows[:5, self.axial] = motions[:, 2 * m + t :] @ self.axial_basis[: motions.shape[1] - 2 * m - t]
             rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
             self._sections[at] = rows

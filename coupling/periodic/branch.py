@@ -291,15 +291,15 @@ def lift(ready: Problem) -> FloatArray:
 
 def below(ready: Problem, states: FloatArray) -> FloatArray:
     """States relative to the reference's own response, from total motions, shape (K, 2 N)."""
-    return np.asarray(states @ lift(ready) - _own(ready))
+    return np.asarray(states @ lift(ready) - _linear_response(ready))
 
 
 def above(ready: Problem, starts: FloatArray) -> FloatArray:
     """Total motions from states relative to the reference, shape (K, 2 k)."""
-    return np.asarray((starts + _own(ready)) @ lift(ready).T)
+    return np.asarray((starts + _linear_response(ready)) @ lift(ready).T)
 
 
-def _own(ready: Problem) -> FloatArray:
+def _linear_response(ready: Problem) -> FloatArray:
     """Return the linear reference's response at the nodes among these states, shape (K, 2 N)."""
     still = np.zeros(len(ready.part.mean))
     return np.array([-ready.part.state(still, still, time) for time in ready.nodes])

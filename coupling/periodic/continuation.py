@@ -119,9 +119,9 @@ class ResponseCurve:
     @property
     def account(self) -> str:
         """Followed range and ending of the branch, in a sentence; speeds in the curve's own unit."""
-        return self.told()
+        return self.description()
 
-    def told(self, unit: float = 1.0, name: str = "") -> str:
+    def description(self, unit: float = 1.0, name: str = "") -> str:
         """Return the response curve with speeds divided by a named unit."""
         name = name and f" {name}"
         words = []

@@ -132,8 +132,13 @@ def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, Compl
     size = (np.abs(weights) * heights[1:3]).sum(axis=0)
     deviation = np.abs(heights - np.abs(lines) * size).max(axis=0, initial=0.0)
     lone = deviation <= _LONE * size
-    own = _own_lines(places)
+    on_lines = _own_lines(places)
     within = np.where(
         lone, np.maximum(_SLOPE * deviation / np.where(lone, size, 1.0), _LEAST_TONE_DISTANCE), 0.5 + 1e-6
     )
-    return np.where(lone, lower, own[0]), np.where(lone, offset, own[1]), np.where(lone, weights, own[2]), within
+    return (
+        np.where(lone, lower, on_lines[0]),
+        np.where(lone, offset, on_lines[1]),
+        np.where(lone, weights, on_lines[2]),
+        within,
+    )

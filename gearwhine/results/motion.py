@@ -184,8 +184,8 @@ def mechanism_words(row: Document) -> str:
     if not parts:
         return NOTHING
     largest = max(parts.values())
-    told = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
-    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in told)
+    leading = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
+    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in leading)
     amplitude, together = row.get("amplitude_m_per_s2"), row["parts_together_m_per_s2"]
     if amplitude is None or amplitude / _LARGEST_SUM_RATIO <= together <= amplitude * _LARGEST_SUM_RATIO:
         return words

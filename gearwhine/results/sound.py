@@ -227,8 +227,8 @@ def _mechanisms(row: Document) -> str:
     if not levels:
         return ""
     highest = max(levels.values())
-    told = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
-    first, *others = told
+    leading = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
+    first, *others = leading
     return ", ".join([MECHANISMS[first], *(f"{MECHANISMS[name]} {levels[name] - highest:.0f} dB" for name in others)])
 
 

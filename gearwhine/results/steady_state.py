@@ -338,7 +338,10 @@ CURVE = (
         _POINT,
         "rpm",
         "speed of the first driver",
-        attributes=lambda solved: {"ending": solved.curve.ending, "account": solved.curve.told(1.0 / RPM, "rpm")},
+        attributes=lambda solved: {
+            "ending": solved.curve.ending,
+            "account": solved.curve.description(1.0 / RPM, "rpm"),
+        },
     ),
     Quantity(
         "stable",
@@ -358,7 +361,7 @@ CURVE = (
         "number of the piece, from 1: between two pieces nothing is followed",
     ),
     Quantity("gaps_rpm", lambda solved: [[end * RPM for end in gap] for gap in solved.curve.gaps]),
-    Quantity("account", lambda solved: solved.curve.told(1.0 / RPM, "rpm")),
+    Quantity("account", lambda solved: solved.curve.description(1.0 / RPM, "rpm")),
     Quantity(
         "",
         lambda solved: [contact.name for contact in solved.machine.system.contacts] or None,

@@ -99,10 +99,12 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
         # A tone of the sensors between the lines, where there is one.
         near = listed[np.abs(listed - lines[place]) < 0.5 * spacing]
         chosen[place] = float(near[0]) if near.size else float(lines[place])
-    told = content["housing_acceleration_spectrum"].attrs
+    attributes = content["housing_acceleration_spectrum"].attrs
     named = [(chosen[place], _name(content, chosen[place], spacing)) for place in sorted(chosen)]
-    start = float(told.get("record_start_s", 0.0))
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, named)
+    start = float(attributes.get("record_start_s", 0.0))
+    return _run_lines(
+        spectrum[..., 0] + 1j * spectrum[..., 1], spacing, attributes.get("window", "uniform"), start, named
+    )
 
 
 def _run_lines(
@@ -181,10 +183,12 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     if not _same_shapes(shapes, positions, record):
         return []
     pairs = zip(listed.T.ravel().tolist(), map(str, names.T.ravel()), strict=True)
-    spacing, told = float(lines[1]), stored["housing_acceleration_spectrum"].attributes
+    spacing, attributes = float(lines[1]), stored["housing_acceleration_spectrum"].attributes
     chosen = _chosen(((hertz, name) for hertz, name in pairs if np.isfinite(hertz)), spacing, most)
-    start = float(told.get("record_start_s", 0.0))
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, chosen)
+    start = float(attributes.get("record_start_s", 0.0))
+    return _run_lines(
+        spectrum[..., 0] + 1j * spectrum[..., 1], spacing, attributes.get("window", "uniform"), start, chosen
+    )
 
 
 def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) -> bool:

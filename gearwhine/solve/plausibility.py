@@ -146,10 +146,10 @@ def beyond_limit_warnings(transient: SolvedTransient) -> list[dict[str, Any]]:
             parts[name] = 1.0 - (below / whole) ** 2
     if not parts:
         return []
-    told = ", ".join(f"{name} {100.0 * part:.3g} %" for name, part in parts.items())
+    listed = ", ".join(f"{name} {100.0 * part:.3g} %" for name, part in parts.items())
     message = (
         f"most of the power of the acceleration lies above {limit:.0f} Hz, where modes of the housing are missing "
-        f"({told}): rms, peaks and sounds are without it; raise housing.frequency_limit or housing.modes"
+        f"({listed}): rms, peaks and sounds are without it; raise housing.frequency_limit or housing.modes"
     )
     return [warning("power beyond the limit", message, trusted_below_hz=limit, parts=parts)]
 

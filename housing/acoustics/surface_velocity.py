@@ -210,7 +210,7 @@ class SurfaceVelocity:
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
         faces = flat_face_names(self.mesh)
-        told = [
+        labelled = [
             face.is_surface or area[number] > _LABELLED_FACE_AREA * self.surface.area
             for number, face in enumerate(faces)
         ]
@@ -219,7 +219,7 @@ class SurfaceVelocity:
         for e, facet in enumerate(middle.tolist()):
             axis = nearest_axis(self.surface.normals[e])
             number = numbers[facet]
-            label = faces[number].name if told[number] else f"other ({axis})"
+            label = faces[number].name if labelled[number] else f"other ({axis})"
             labels.append("cap" if self.caps[e] else label)
         return labels
 

@@ -189,7 +189,7 @@ class Matrices:
     @cached_property
     def scalar_mass(self) -> sparse.csr_array:
         """Scalar mass m of the solid alone [kg], shape (n_nodes, n_nodes)."""
-        pointer, neighbors, place, _ = self._whole
+        pointer, neighbors, place, _ = self._both_triangles
         return sparse.csr_array((self.node_mass[place], neighbors, pointer))
 
     @cached_property
@@ -276,7 +276,7 @@ class Matrices:
         return blocks.rows * self.n_nodes + blocks.columns
 
     @cached_property
-    def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    def _both_triangles(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """Return the pattern of both triangles.
 
         These are its pointer and neighbours, the place where each block is kept, and whether it is kept transposed.
@@ -291,7 +291,7 @@ class Matrices:
         return graph.indptr, graph.indices, graph.data - 1, below
 
     def _matrix(self, blocks: FloatArray) -> sparse.csr_array:
-        pointer, neighbors, place, below = self._whole
+        pointer, neighbors, place, below = self._both_triangles
         whole = blocks[place]
         whole[below] = whole[below].transpose(0, 2, 1)
         order = 3 * self.n_nodes

@@ -213,9 +213,12 @@ def _thickened(
         if isinstance(part, Segment):
             sections = [part.section((place - origin) / part.length) for place in (start, end)]
             outers = [section.outer_diameter for section in sections]
-            own = getattr(part.material, against.modulus)
+            modulus_of_part = getattr(part.material, against.modulus)
             thicker = [
-                [_as_stiff(bare, outer, 1.0 if modulus is None else modulus / own, against.power) for bare in outers]
+                [
+                    _as_stiff(bare, outer, 1.0 if modulus is None else modulus / modulus_of_part, against.power)
+                    for bare in outers
+                ]
                 for left, right, outer, modulus in bodies
                 if left < middle < right and outer > 0.5 * sum(outers)
             ]

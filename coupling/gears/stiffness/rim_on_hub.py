@@ -77,7 +77,7 @@ def rotation_shares(gear: Gear) -> RimShares:
     toothed = 0.25 * gear.face_width * ((gear.pitch_radius / root) ** 4 - 1.0)
     whole = coupling = rim = toothed
     before = 0.0
-    for ring, own in zip(rings, softness, strict=True):
+    for ring, ring_softness in zip(rings, softness, strict=True):
         a, b = ring.inner, ring.outer
         # s = p - q / r² on this ring.
         q = 1.0 / (ring.width * sum(softness))
@@ -86,7 +86,7 @@ def rotation_shares(gear: Gear) -> RimShares:
         whole += ring.width * fourth
         coupling += ring.width * (p * fourth - q * square)
         rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + q**2 * math.log(b / a))
-        before += own
+        before += ring_softness
     return RimShares(coupling / whole, rim / whole)
 
 
