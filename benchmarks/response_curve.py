@@ -67,7 +67,7 @@ def main() -> None:
         seconds, curve = processor_seconds(lambda case=case: curve_of(case, given.low, given.high, given.points))
         told = ", ".join(f"{seconds / taken:.1f} x {method}" for method, taken in transients.items())
         print(f"  curve of {len(curve.speeds)} points, {len(curve.bifurcations)} events: {seconds:8.2f} s   {told}")
-        print(f"  {curve.told(RPM, 'rpm')}")
+        print(f"  {curve.description(RPM, 'rpm')}")
         print(f"  a hundred points of it: {100 * seconds / len(curve.speeds):.2f} s")
 
 

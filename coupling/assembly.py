@@ -68,7 +68,7 @@ FloatArray = npt.NDArray[np.float64]
 _GREATEST_COMPRESSION = 0.25
 
 _ROUNDS = 12  # largest number of rounds in which mean forces and faces of meshes that share a torque settle
-_SETTLED = 1e-6  # change of the mean forces in the last round, over the largest
+_SETTLED_FORCE_CHANGE = 1e-6  # change of the mean forces in the last round, over the largest
 
 _PER_GAP = 16  # number of chords that replace a bearing's cubic between two speeds of its table
 
@@ -426,10 +426,10 @@ def _transports(
     See :mod:`gearwhine.coupling.machine.gear_bodies`.
     """
     connectors = []
-    for gear, mode, own in rotor.plates:
+    for gear, mode, indices in rotor.plates:
         if speed == 0.0:
             break
-        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[own]).T
+        directions = coordinates.rows(rotor.name, np.eye(rotor.size)[indices]).T
         name = f"rotation of {gear}, {mode.name}"
         ratios = np.linspace(*speed_range, 1 if speed_range[0] == speed_range[1] else _PER_GAP + 1)
         laws = [transport(mode, rotor.damping_ratio, ratio * speed) for ratio in ratios.tolist()]
@@ -577,7 +577,7 @@ def _face_states(
         means, motion = mean_equilibrium(_on_faces(system, states, slope_is_found=False))
         forces = {number: mean.force for number, (_, _, mean, _) in states.items()}
         changes = [abs(mean.force - forces[n]) for n, mean in enumerate(means) if mean is not None and n in faces]
-        if max(changes, default=0.0) <= _SETTLED * max(forces.values()):
+        if max(changes, default=0.0) <= _SETTLED_FORCE_CHANGE * max(forces.values()):
             break
     return {
         number: (face, tangent, mean, float(face.tilting[0] @ motion))

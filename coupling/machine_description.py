@@ -349,8 +349,8 @@ class Machine:
             if twisting == shifting == np.inf and outward is None:
                 continue
             shaft = self.shaft(mounted.shaft)
-            own = shaft.mode_limit
-            limit = own if len(of_gear) == 1 else np.inf
+            mode_limit = shaft.mode_limit
+            limit = mode_limit if len(of_gear) == 1 else np.inf
             mass, polar, _ = gear_inertia_on_shaft(mounted, shaft.rotor)
             twist = rim_spring(twisting, polar, rotation_shares(mounted.gear), limit)
             shift = None
@@ -358,7 +358,7 @@ class Machine:
                 shift = rim_spring(shifting, mass, shift_shares(mounted.gear, states[mounted.name]), limit)
             body = GearBody(mounted.name, mounted.at, twist, shift)
             if outward is not None and outward.kept:
-                body = replace(body, plates=outward.kept, limit=own)
+                body = replace(body, plates=outward.kept, limit=mode_limit)
             elif twist is None and shift is None:
                 continue
             bodies.append(body)

@@ -25,9 +25,9 @@ from gearwhine.meshes.mesh import Mesh
 
 BoolArray = npt.NDArray[np.bool_]
 
-SIDEWAYS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
-SLACK = 0.01  # corners of a bore may be off its circle by this part of its diameter
-_SHARPEST = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
+LARGEST_COSINE_TO_AXIS = 0.5  # largest cosine between the axis and a facet's normal: chords of coarse meshes are askew
+CIRCLE_TOLERANCE = 0.01  # corners of a bore may be off its circle by this part of its diameter
+_LEAST_FACET_TURN_COSINE = np.cos(np.radians(75.0))  # neighbours of a bore of five or more facets turn by less
 _LOCAL_FIT = 0.02  # corners of neighbours may be off their circle by this part of its radius
 _MOST_CIRCLES = 500
 _FEWEST_FACETS = 3  # facets that must propose a circle before it is tried
@@ -49,7 +49,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
     """
     boundary = mesh.boundary
     centers, normals = facet_centers(mesh.points, boundary), facet_normals(mesh.points, boundary)
-    sideways = np.abs(normals @ axis) < SIDEWAYS
+    sideways = np.abs(normals @ axis) < LARGEST_COSINE_TO_AXIS
     corners = np.concatenate([block.corners[:, [0, 1, 2, -1]] for block in boundary])
     pairs = _edge_neighbors(boundary)
     first_facet, second_facet = pairs[:, 0], pairs[:, 1]
@@ -59,7 +59,7 @@ def candidate_circles(mesh: Mesh, axis: FloatArray) -> list[tuple[FloatArray, fl
         np.einsum("pi,pi->p", normals[first_facet], step), -np.einsum("pi,pi->p", normals[second_facet], step)
     )
     turn = np.einsum("pi,pi->p", normals[first_facet], normals[second_facet])
-    linked = sideways[first_facet] & sideways[second_facet] & (turn > _SHARPEST)
+    linked = sideways[first_facet] & sideways[second_facet] & (turn > _LEAST_FACET_TURN_COSINE)
     linked &= hollow > -1e-6 * np.linalg.norm(step, axis=1)
     pairs = np.concatenate([pairs[linked], pairs[linked][:, ::-1]])
     if len(pairs) == 0:
@@ -88,7 +88,7 @@ def _most_proposed(
     if len(radii) == 0:
         return []
     size = np.exp(np.round(np.log(radii) / 0.05) * 0.05)  # bins of the same width for radii of the same size
-    bins = np.stack([places @ first / size, places @ second / size, radii / size], axis=1) / (2 * SLACK)
+    bins = np.stack([places @ first / size, places @ second / size, radii / size], axis=1) / (2 * CIRCLE_TOLERANCE)
     keys = np.column_stack([np.round(bins).astype(np.int64), np.round(np.log(size) / 0.05).astype(np.int64)])
     _, which, counts = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     order = [one for one in np.argsort(-counts, kind="stable")[:_MOST_CIRCLES] if counts[one] >= _FEWEST_FACETS]
@@ -146,10 +146,10 @@ def plane_axes(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, np.cross(axis, first)
 
 
-_FACING = 0.5  # least cosine between a facet's normal and the direction to the axis
+_LEAST_INWARD_COSINE = 0.5  # least cosine between a facet's normal and the direction to the axis
 _ARC_STEPS = 720
-_ROUND = 0.9  # part of the full circle above which a bore is whole
-_SMOOTH = 0.8  # cosine between a cylinder's normal and the next facet's above which the surface runs on
+_WHOLE_BORE_ROUNDNESS = 0.9  # part of the full circle above which a bore is whole
+_LEAST_SMOOTH_COSINE = 0.8  # cosine between a cylinder's normal and the next facet's above which the surface runs on
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ def find_bores(
     bores: list[CylindricalBore] = []
     assigned = np.zeros(sum(len(block) for block in mesh.boundary), dtype=bool)
     for center, radius in candidate_circles(mesh, direction):
-        on = fits_circle(mesh, center, radius, direction, 2 * SLACK * radius) & ~assigned
+        on = fits_circle(mesh, center, radius, direction, 2 * CIRCLE_TOLERANCE * radius) & ~assigned
         if not on.any():
             continue
         for bore in joined_by_span(mesh, pick_facets(mesh.boundary, on), center, direction):
@@ -216,7 +216,7 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
     At an end the neighbouring facet then looks towards the axis, as the cylinder itself does there; where a bore is
     split it looks along the arc.
     """
-    if bore.roundness >= _ROUND:
+    if bore.roundness >= _WHOLE_BORE_ROUNDNESS:
         return False
     normals = facet_normals(mesh.points, mesh.boundary)
     inside = np.zeros(len(mesh.points), dtype=bool)
@@ -228,11 +228,11 @@ def _runs_on(mesh: Mesh, bore: CylindricalBore, axis: FloatArray) -> bool:
         start += len(block)
         # Neighbours share an edge with the bore; a facet with all its corners there belongs to it.
         for facet in np.flatnonzero(
-            (on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(block_normals @ axis) < SIDEWAYS)
+            (on.sum(axis=1) >= 2) & ~on.all(axis=1) & (np.abs(block_normals @ axis) < LARGEST_COSINE_TO_AXIS)
         ):
             edge = mesh.points[block.corners[facet][on[facet]]].mean(axis=0)
             inward = -across(edge[None] - np.asarray(bore.center), axis)[0]
-            smooth.append(bool(block_normals[facet] @ inward > _SMOOTH * np.linalg.norm(inward)))
+            smooth.append(bool(block_normals[facet] @ inward > _LEAST_SMOOTH_COSINE * np.linalg.norm(inward)))
     return bool(smooth) and 2 * sum(smooth) > len(smooth)
 
 
@@ -258,8 +258,8 @@ def fits_circle(
     few = pick_facets(mesh.boundary, on)
     normals = facet_normals(mesh.points, few)
     inward = -across(facet_centers(mesh.points, few) - np.asarray(center), axis)
-    facing = np.einsum("fi,fi->f", normals, inward) > _FACING * np.linalg.norm(inward, axis=1)
-    on[on] = facing & (np.abs(normals @ axis) < SIDEWAYS)
+    facing = np.einsum("fi,fi->f", normals, inward) > _LEAST_INWARD_COSINE * np.linalg.norm(inward, axis=1)
+    on[on] = facing & (np.abs(normals @ axis) < LARGEST_COSINE_TO_AXIS)
     return on
 
 
@@ -381,6 +381,6 @@ def _same(bore: CylindricalBore, other: CylindricalBore, axis: FloatArray) -> bo
     """Whether two bores are one, found by two circles that both fit."""
     gap = np.subtract(bore.center, other.center)
     apart = float(np.linalg.norm(across(gap[None], axis)))
-    slack = 2 * SLACK * bore.diameter
+    slack = 2 * CIRCLE_TOLERANCE * bore.diameter
     overlap = (bore.length + other.length) / 2 - abs(float(gap @ axis))
     return apart < slack and abs(bore.diameter - other.diameter) < slack and overlap > 0.5 * bore.length

@@ -18,7 +18,7 @@ from gearwhine.meshes.mesh import Mesh, MeshDefect, Severity, mesh_defect, place
 from gearwhine.meshes.quality import edge_lengths, shape_numbers
 from gearwhine.meshes.shape_functions import determinants, jacobians, quadrature, shape_functions
 
-_NEAR = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
+_COINCIDENCE_DISTANCE = 1e-6  # part of a facet's longest side: nodes nearer than that coincide, or lie in its plane
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def touching_nodes(mesh: Mesh, body: IntArray, assembly: IntArray) -> Touching:
     places = mesh.points[triangles]
     middle = places.mean(axis=1)
     reach = np.linalg.norm(places - middle[:, None], axis=2).max(axis=1)
-    near = tree.query_ball_point(middle, reach * (1.0 + _NEAR))
+    near = tree.query_ball_point(middle, reach * (1.0 + _COINCIDENCE_DISTANCE))
     lengths = np.array([len(found) for found in near])
     which = np.repeat(np.arange(len(triangles)), lengths)
     node = corners[np.concatenate([np.asarray(found, dtype=np.int64) for found in near])]
@@ -124,7 +124,7 @@ def _places(points: FloatArray, nodes: IntArray) -> IntArray:
     if not len(nodes):
         return nodes
     extent = max(float(np.ptp(points[nodes], axis=0).max()), 1e-300)
-    _, first = np.unique(np.round(points[nodes] / (_NEAR * extent)), axis=0, return_index=True)
+    _, first = np.unique(np.round(points[nodes] / (_COINCIDENCE_DISTANCE * extent)), axis=0, return_index=True)
     return np.asarray(nodes[np.sort(first)])
 
 
@@ -140,12 +140,18 @@ def _within(triangles: FloatArray, points: FloatArray) -> tuple[npt.NDArray[np.b
     height = np.abs((arm * normal).sum(axis=1)) / safe
     u = (np.cross(arm, second) * normal).sum(axis=1) / safe**2
     v = (np.cross(first, arm) * normal).sum(axis=1) / safe**2
-    inside = ~flat & (u > -_NEAR) & (v > -_NEAR) & (u + v < 1.0 + _NEAR) & (height < _NEAR * size)
+    inside = (
+        ~flat
+        & (u > -_COINCIDENCE_DISTANCE)
+        & (v > -_COINCIDENCE_DISTANCE)
+        & (u + v < 1.0 + _COINCIDENCE_DISTANCE)
+        & (height < _COINCIDENCE_DISTANCE * size)
+    )
     apart = np.linalg.norm(triangles - points[:, None], axis=2).min(axis=1)
-    return inside, apart < _NEAR * size
+    return inside, apart < _COINCIDENCE_DISTANCE * size
 
 
-_LISTED = 5  # bodies that a message lists one by one
+_MOST_LISTED_BODIES = 5  # bodies that a message lists one by one
 
 
 def bodies(mesh: Mesh) -> IntArray:
@@ -244,12 +250,14 @@ def _bodies(mesh: Mesh, body: IntArray, which: str) -> Iterator[MeshDefect]:
     count = int(body.max()) + 1
     if count > 1:
         sizes = np.bincount(body, mesh.corner_volumes)
-        middles = [mesh.centers[body == number].mean(axis=0) for number in range(1, min(count, 1 + _LISTED))]
+        middles = [
+            mesh.centers[body == number].mean(axis=0) for number in range(1, min(count, 1 + _MOST_LISTED_BODIES))
+        ]
         listed = ", ".join(
             f"one of {100 * sizes[number] / sizes.sum():.3g} % of the volume around {place_text(middle)}"
             for number, middle in enumerate(middles, start=1)
         )
-        more = f" and {count - 1 - _LISTED} more" if count > 1 + _LISTED else ""
+        more = f" and {count - 1 - _MOST_LISTED_BODIES} more" if count > 1 + _MOST_LISTED_BODIES else ""
         finding = f"the mesh falls into {count} bodies that {which}: beside the largest {listed}{more}"
         yield MeshDefect("disconnected", "warning", f"{finding}; what joins them?", count, middles[0])
 
@@ -303,7 +311,8 @@ def _conformity(mesh: Mesh, body: IntArray, assembly: IntArray) -> Iterator[Mesh
 LEAST_SHAPE = 0.05
 """Shape number below which an element spoils the stresses around it."""
 
-_LIKELY = 0.5  # size of a housing [m]; of several possible units, the one that comes nearest to it is proposed
+# Size of a housing [m]; of several possible units, the one that comes nearest to it is proposed.
+_LIKELY_HOUSING_SIZE = 0.5
 _NO_VOLUME = 1e-9  # least volume, as a part of the cube of an element's longest edge
 
 
@@ -383,7 +392,7 @@ def _unit(mesh: Mesh, unit: float | None) -> Iterator[MeshDefect]:
     other = {other: length / unit * value for other, value in UNITS.items() if other != name}
     believed = sorted(
         (other for other, size in other.items() if plausible(size)),
-        key=lambda name: abs(np.log(other[name] / _LIKELY)),
+        key=lambda name: abs(np.log(other[name] / _LIKELY_HOUSING_SIZE)),
     )
     message = f"the part is {length_text(length)} long; is the unit {name!r}?"
     if believed:

@@ -123,13 +123,13 @@ _GMSH_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]])
 _TET10 = 11
 _WORST_JACOBIAN = 0.05  # least Jacobian of an element over its mean, below which it counts as folded
 _HALVINGS = 3
-_COARSE = 1.5  # size of the elements of a first mesh over the thickness of the walls
-_REGULAR = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
+_COARSE_SIZE_PER_WALL = 1.5  # size of the elements of a first mesh over the thickness of the walls
+_REGULAR_TETRAHEDRA_PER_VOLUME = 6.0 * np.sqrt(2.0)  # regular tetrahedra of unit edge in a unit of volume
 
 MOST_ELEMENTS = 3e6
 """Largest number of elements: about twelve million degrees of freedom, beyond the solvers."""
 
-_STRAIGHT = 1e-6  # an edge bent by less, as a part of its length, is straight
+_STRAIGHT_EDGE_BEND = 1e-6  # an edge bent by less, as a part of its length, is straight
 
 
 def check_mesh_request(mesh_size: float | None, order: int) -> None:
@@ -152,7 +152,7 @@ def expected_elements(volume: float, mesh_size: float) -> float:
     volume, mesh_size : float
         Volume [m³] and mesh size [m], or both in another unit of length.
     """
-    return float(_REGULAR * volume / mesh_size**3)
+    return float(_REGULAR_TETRAHEDRA_PER_VOLUME * volume / mesh_size**3)
 
 
 def check_mesh_size(volume: float, extent: float, mesh_size: float) -> None:
@@ -191,7 +191,7 @@ def coarse_size(volume: float, area: float, extent: float) -> float:
     volume, area, extent : float
         Volume and surface of the solid, and its longest side [m³, m², m].
     """
-    return min(_COARSE * 2.0 * volume / area, extent / 3.0)
+    return min(_COARSE_SIZE_PER_WALL * 2.0 * volume / area, extent / 3.0)
 
 
 def mesh_solids(gmsh: Any, mesh_size: float, order: int, *, smallest: float | None = None) -> None:
@@ -237,9 +237,9 @@ def _unfold(gmsh: Any) -> None:
         middle, ends = nodes[:, 4:].ravel(), nodes[:, _GMSH_EDGES].reshape(-1, 2)
         middle, first = np.unique(middle, return_index=True)
         straight = points[ends[first]].mean(axis=1)
-        bent = np.linalg.norm(points[middle] - straight, axis=1) > _STRAIGHT * np.ptp(points[ends[first]], axis=1).max(
-            axis=1, initial=0.0
-        )
+        bent = np.linalg.norm(points[middle] - straight, axis=1) > _STRAIGHT_EDGE_BEND * np.ptp(
+            points[ends[first]], axis=1
+        ).max(axis=1, initial=0.0)
         if not bent.any():
             return
         middle, straight = middle[bent], straight[bent]

@@ -75,7 +75,7 @@ def place_text(place: FloatArray) -> str:
     return f"({place[0]:.6g}, {place[1]:.6g}, {place[2]:.6g}) m"
 
 
-_ROUNDED = 1e-9  # largest deviation of a rotation from an orthogonal matrix
+_ROTATION_TOLERANCE = 1e-9  # largest deviation of a rotation from an orthogonal matrix
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,11 @@ class Mesh:
             Where it is no rotation.
         """
         turn = np.asarray(rotation, dtype=np.float64)
-        if turn.shape != (3, 3) or np.abs(turn @ turn.T - np.eye(3)).max() > _ROUNDED or np.linalg.det(turn) < 0.0:
+        if (
+            turn.shape != (3, 3)
+            or np.abs(turn @ turn.T - np.eye(3)).max() > _ROTATION_TOLERANCE
+            or np.linalg.det(turn) < 0.0
+        ):
             raise GeometryError(f"{turn.tolist()} is no rotation; expected an orthogonal matrix of determinant 1")
         return Mesh(self.points @ turn.T, self.blocks, self.surfaces, self.volumes)
 

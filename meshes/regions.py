@@ -12,10 +12,10 @@ from gearwhine.meshes.errors import GeometryError
 from gearwhine.meshes.mesh import Mesh
 
 _PLANE_SLACK = 1e-4  # part of the mesh's diagonal
-_NORMAL = 0.99  # least cosine between a facet's normal and that of the plane it lies on
+_LEAST_NORMAL_COSINE = 0.99  # least cosine between a facet's normal and that of the plane it lies on
 _CIRCLE_SLACK = 0.01  # part of the bore's diameter
 _LEAST_ROUND = 0.45  # part of the full circle: less than half a bore holds no bearing
-_LISTED = 5
+_MOST_LISTED_BORES = 5
 
 
 def box_facets(mesh: Mesh, low: Sequence[float], high: Sequence[float]) -> Facets:
@@ -62,7 +62,7 @@ def plane_facets(mesh: Mesh, point: Sequence[float], normal: Sequence[float]) ->
     level = float(np.dot(point, axis))
     heights = mesh.points @ axis
     slack = _PLANE_SLACK * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
-    along = np.abs(facet_normals(mesh.points, mesh.boundary) @ axis) > _NORMAL
+    along = np.abs(facet_normals(mesh.points, mesh.boundary) @ axis) > _LEAST_NORMAL_COSINE
     facets = pick_facets(mesh.boundary, _all_corners(mesh, np.abs(heights - level) <= slack) & along)
     if facets:
         return facets
@@ -106,7 +106,7 @@ def circle_facets(mesh: Mesh, center: Sequence[float], normal: Sequence[float], 
     offset = facet_centers(mesh.points, mesh.boundary) - np.asarray(center)
     height = offset @ axis
     beside = np.linalg.norm(offset - height[:, None] * axis, axis=1)
-    looks = facet_normals(mesh.points, mesh.boundary) @ axis > _NORMAL
+    looks = facet_normals(mesh.points, mesh.boundary) @ axis > _LEAST_NORMAL_COSINE
     chosen = looks & (beside <= diameter / 2.0) & (np.abs(height) <= diameter / 2.0)
     if not chosen.any():
         raise GeometryError(
@@ -202,7 +202,7 @@ def _no_bore(mesh: Mesh, center: FloatArray, diameter: float, axis: FloatArray) 
     def distance(bore: CylindricalBore) -> float:
         return float(np.linalg.norm(np.subtract(bore.center, center))) + abs(bore.diameter - diameter)
 
-    near = sorted(bores, key=distance)[:_LISTED]
+    near = sorted(bores, key=distance)[:_MOST_LISTED_BORES]
     more = f" and {len(bores) - len(near)} more" if len(bores) > len(near) else ""
     return f"{message}; bores found: {'; '.join(describe_bore(bore) for bore in near)}{more}"
 

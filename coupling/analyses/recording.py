@@ -67,7 +67,7 @@ _STRETCH_BYTES = 64 << 20
 _LONGEST_STRETCH = 1 << 18  # samples
 _BLOCK_BYTES = 32 << 20
 _LARGEST_BLOCK = 1 << 18  # samples
-_WHOLE = 1e-6  # tolerance of a whole number of periods: a line leaks as large a part of its height
+_WHOLE_PERIODS_TOLERANCE = 1e-6  # tolerance of a whole number of periods: a line leaks as large a part of its height
 _NEARLY_ALL = 0.9  # least part of a record under Hann's window that is cut to whole periods of the meshes
 _MOST_TURNS = 1000  # largest number of times that a period of the shafts is repeated until a driving frequency is whole
 
@@ -324,7 +324,7 @@ def _period(machine: CoupledMachine, orders: list[float]) -> int | None:
     for order in orders:
         periods = Fraction(whole * order).limit_denominator(_MOST_TURNS)
         whole *= periods.denominator
-        if abs(whole * order - round(whole * order)) > _WHOLE:
+        if abs(whole * order - round(whole * order)) > _WHOLE_PERIODS_TOLERANCE:
             return None
     return whole
 

@@ -26,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
 _SLOWEST = 0.1  # part of the highest speed below which samples are left out: a turn would take too many of them
-_LONGEST = 15  # part of the run that a window of the spectra takes at most
+_LEAST_WINDOWS_PER_RUN = 15  # part of the run that a window of the spectra takes at most
 _SPECTRUM_OVERLAP = 0.9  # part of a window of the spectra that the next one shares
 _MOST_WINDOWS = 400  # largest number of spectra and of order cuts along a run
 _FEWEST_SAMPLES = 60  # least number of samples in which the machine turns
@@ -220,7 +220,7 @@ def _window_length(solved: SolvedTransient, times: FloatArray) -> int:
     gain = turns_per_second * float(np.abs(solved.speed_profile.at(times)[2]).max())
     contacts = solved.machine.system.contacts
     order = max(abs(contact.mesh_frequency) for contact in contacts) / turns_per_second
-    interval, longest = float(times[1] - times[0]), len(times) // _LONGEST
+    interval, longest = float(times[1] - times[0]), len(times) // _LEAST_WINDOWS_PER_RUN
     shortest = 2.0 / math.sqrt(order * gain) / interval if gain > 0.0 else longest
     return 2 * max(round(0.5 * min(shortest, longest)), 2)
 

@@ -18,8 +18,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
 _HARMONICS = 3  # harmonics of each mesh whose sidebands are taken
-_LARGEST = 5  # number of modes, and of bearings, reported of each line
-_FAINT = 1e-6  # sidebands below this part of their carrier are rounding
+_MOST_REPORTED = 5  # number of modes, and of bearings, reported of each line
+_FAINT_SIDEBAND_RATIO = 1e-6  # sidebands below this part of their carrier are rounding
 
 
 @dataclass(frozen=True)
@@ -77,14 +77,14 @@ class TracedLine:
         return float(signature.decibels(abs(self.value)))
 
     @property
-    def told_modes(self) -> tuple[Contribution, ...]:
+    def listed_modes(self) -> tuple[Contribution, ...]:
         """The modes with most of the line."""
-        return self.modes[:_LARGEST]
+        return self.modes[:_MOST_REPORTED]
 
     @property
-    def told_bearings(self) -> tuple[Contribution, ...]:
+    def listed_bearings(self) -> tuple[Contribution, ...]:
         """The bearings with most of the line."""
-        return self.bearings[:_LARGEST]
+        return self.bearings[:_MOST_REPORTED]
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ class SolvedSignature:
             (of_shaft, pair)
             for of_shaft in sidebands
             for pair in of_shaft.pairs
-            if max(pair.lower, pair.upper) > _FAINT * pair.carrier_amplitude
+            if max(pair.lower, pair.upper) > _FAINT_SIDEBAND_RATIO * pair.carrier_amplitude
         ]
 
     def bearing_amplitudes(self, solved: SolvedTransient) -> dict[str, FloatArray]:

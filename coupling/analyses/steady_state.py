@@ -35,10 +35,10 @@ _OVERSAMPLING = 32.0  # sampling of a period over the highest frequency of inter
 _LEAST_SAMPLES = 512
 _HARMONICS = 4.0  # mesh harmonics of interest where no housing limits the model
 _LINES = 20  # reported lines of each signal
-_NAMED = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
-_DOUBTFUL = 0.1  # part of a mesh's varying force that may be neglected without a warning
+_NAMED_LINE_DISTANCE = 1e-3  # distance of a line from the excitation that it is named after, over the spacing of lines
+_DOUBTFUL_FORCE_SHARE = 0.1  # part of a mesh's varying force that may be neglected without a warning
 
-_NARROW = 0.01  # width over that of the whole range below which ranges are told together
+_NARROW_RANGE_SHARE = 0.01  # width over that of the whole range below which ranges are told together
 _WHY_NOT = (
     "the branch is lost there and no other start led to a motion; --points 400 takes shorter steps, a narrower [sweep] "
     "more of them, and `run` or `sweep` shows what the machine does there"
@@ -203,7 +203,7 @@ class SolvedSteady:
             return []
         low, high = sorted((abs(curve.begin), abs(curve.aim)))
         gaps = [tuple(sorted((_RPM * abs(first), _RPM * abs(last)))) for first, last in curve.gaps]
-        narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW * _RPM * (high - low)]
+        narrow = [gap for gap in gaps if gap[1] - gap[0] < _NARROW_RANGE_SHARE * _RPM * (high - low)]
         warnings = []
         for first, last in (gap for gap in gaps if gap not in narrow):
             message = (
@@ -230,7 +230,7 @@ class SolvedSteady:
             loss, part = float(sum_.contact_loss[number]), float(sum_.neglected_part[number])
             if contact.loaded and loss > 0.0:
                 text = f"its flanks are apart {100.0 * loss:.2g} % of the time under all excitations together"
-            elif contact.loaded and part > _DOUBTFUL:
+            elif contact.loaded and part > _DOUBTFUL_FORCE_SHARE:
                 text = f"the sum leaves out {100.0 * part:.2g} % of its varying force"
             elif not contact.loaded and loss < 1.0:
                 text = f"these flanks touch {100.0 * (1.0 - loss):.2g} % of the time under all excitations together"
@@ -342,7 +342,7 @@ def _loudest(machine: CoupledMachine, curve: ResponseCurve, rms: dict[str, Float
                 rms=float(rms[name][place]),
                 frequency=frequency,
                 amplitude=amplitude,
-                excitation=line_names(machine_there, [frequency], _NAMED * spectrum.spacing)[0].name,
+                excitation=line_names(machine_there, [frequency], _NAMED_LINE_DISTANCE * spectrum.spacing)[0].name,
                 mode=mode + 1,
                 mode_hz=float(np.sqrt(machine_there.housing.stiffness[mode, mode])) / (2.0 * np.pi),
                 share=float(shares[mode]),

@@ -12,7 +12,7 @@ from gearwhine.numerics.findings import Finding, Part, in_mm
 
 _BORE_ERROR = 1e-3
 """Offset of a seat below which it is one of manufacture [m]."""
-_ROUNDING = 1e-9
+_SPEED_ROUNDING = 1e-9
 """Relative rounding of printed speeds."""
 _RPM = 30.0 / math.pi
 
@@ -70,7 +70,9 @@ def table_findings_of_speeds(
     part: Part, rotor: str, speeds: Sequence[float], needed: Sequence[float]
 ) -> Iterator[Finding]:
     """Yield a bearing's table over speeds that does not hold all speeds at which its rotor turns [rad/s]."""
-    if needed and (min(needed) < speeds[0] * (1.0 - _ROUNDING) or max(needed) > speeds[-1] * (1.0 + _ROUNDING)):
+    if needed and (
+        min(needed) < speeds[0] * (1.0 - _SPEED_ROUNDING) or max(needed) > speeds[-1] * (1.0 + _SPEED_ROUNDING)
+    ):
         expected = (
             f'a table that holds the speeds of rotor "{rotor}", {min(needed) * _RPM:.6g} to '
             f"{max(needed) * _RPM:.6g} rpm (it goes from {speeds[0] * _RPM:.6g} to {speeds[-1] * _RPM:.6g} rpm)"

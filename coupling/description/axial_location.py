@@ -160,7 +160,7 @@ class AxialLocation:
             effect = "cancel and press no element" if left == 0.0 else f"leave {left:.4g} N, which presses one way only"
             return (
                 f"shaft {self.shaft!r}: the `preload` of {names} is a spring's force on the shaft each, and "
-                f"{forces} {effect}; {_RIGID}",
+                f"{forces} {effect}; {_RIGID_PRELOAD_ADVICE}",
             )
         warnings = []
         for bearing in sprung:
@@ -169,7 +169,7 @@ class AxialLocation:
                 warnings.append(
                     f"shaft {self.shaft!r}: the `preload` of {bearing.name!r} is a spring's force on the shaft, "
                     f"{abs(bearing.spring):.4g} N towards {_along(bearing.spring)}, which moves it in "
-                    f"{_listed(others)} as well: it does not press them against each other; {_RIGID}"
+                    f"{_listed(others)} as well: it does not press them against each other; {_RIGID_PRELOAD_ADVICE}"
                 )
         return tuple(warnings)
 
@@ -177,7 +177,7 @@ class AxialLocation:
 ARRANGEMENTS = {"O": "back to back", "X": "face to face"}
 """Names of the arrangements (ISO 5593)."""
 
-_RIGID = (
+_RIGID_PRELOAD_ADVICE = (
     "a rigid preload of rows against each other is `axial_offset`, how far an inner ring is moved along `carries` at "
     "assembly: `load` with a torque of 0 finds the force that follows"
 )

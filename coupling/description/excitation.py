@@ -34,7 +34,7 @@ FloatArray = npt.NDArray[np.float64]
 
 Run = SpeedRun | FreeRun
 
-_ROUNDING = 1e-9  # part of the largest torque below which a sum of torques is rounding
+_TORQUE_ROUNDING = 1e-9  # part of the largest torque below which a sum of torques is rounding
 _SLOPE_STEP = 1e-6  # part of the nominal speed to both sides of a corner of a torque line
 
 
@@ -193,7 +193,7 @@ def unbalanced_torque(machine: ExcitedMachine) -> float:
     net = sum(np.interp(times, one.times, one.values) * float(ratios[one.rotor]) / first for one in histories)
     size = max(float(np.abs(one.values).max() * abs(float(ratios[one.rotor]) / first)) for one in histories)
     largest = float(np.abs(net).max())
-    return largest if largest > _ROUNDING * size else 0.0
+    return largest if largest > _TORQUE_ROUNDING * size else 0.0
 
 
 def train_inertia(train: GearTrain, rotors: Sequence[RotorComponent], first: str) -> float:

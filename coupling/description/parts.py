@@ -317,9 +317,9 @@ def gear_inertia_on_shaft(gear: ShaftGear, rotor: Rotor) -> tuple[float, float, 
     Mass [kg], polar and diametral inertia [kg m²].
     """
     disc = gear_disc(gear, rotor)
-    own = (disc.mass, disc.polar_inertia, disc.diametral_inertia)
-    if any(own):
-        return own
+    inertias = (disc.mass, disc.polar_inertia, disc.diametral_inertia)
+    if any(inertias):
+        return inertias
     there = _discs_at(gear, rotor)
     return (
         sum(one.mass for one in there),

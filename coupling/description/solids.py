@@ -22,7 +22,7 @@ from gearwhine.rotors.rolling_bearings import BallRow, RollingBearing, Spherical
 _SLACK = 5e-5
 """Overlap of two parts up to which they just touch [m]."""
 _SAME_AXIS = 1e-6
-_SHORT = 0.9e-4
+_UNKNOWN_BEARING_WIDTH = 0.9e-4
 """Width of a bearing of unknown size, and height of its ring [m]: half of it is within the slack, so that a bearing at
 the end of a face touches it."""
 
@@ -121,7 +121,12 @@ def bearing_solid(
 ) -> PlacedSolid:
     """Return the ring of a bearing: its rolling elements, or a short one around the shaft."""
     radius = 0.5 * rotor.outer_diameter(at, at) if 0.0 <= at <= rotor.length else 0.0
-    left, right, inner, outer = -0.5 * _SHORT, 0.5 * _SHORT, radius, radius + _SHORT
+    left, right, inner, outer = (
+        -0.5 * _UNKNOWN_BEARING_WIDTH,
+        0.5 * _UNKNOWN_BEARING_WIDTH,
+        radius,
+        radius + _UNKNOWN_BEARING_WIDTH,
+    )
     if rolling is not None:
         left, right, inner, outer = rolling.envelope
     middle = start + at
@@ -194,7 +199,9 @@ def _foreign(
 
 
 def _is_short(*solids: PlacedSolid) -> bool:
-    return any(solid.part[0] == "bearing" and solid.right - solid.left <= 1.5 * _SHORT for solid in solids)
+    return any(
+        solid.part[0] == "bearing" and solid.right - solid.left <= 1.5 * _UNKNOWN_BEARING_WIDTH for solid in solids
+    )
 
 
 def _overlapping(first: PlacedSolid, second: PlacedSolid, length: float) -> Finding:
@@ -208,7 +215,7 @@ def _overlapping(first: PlacedSolid, second: PlacedSolid, length: float) -> Find
     low, high = max(at.left, other.left), min(at.right, other.right)
     middles = (
         f"they overlap over {in_mm(length)} from z = {in_mm(low)} to {in_mm(high)}"
-        if length > 1.5 * _SHORT
+        if length > 1.5 * _UNKNOWN_BEARING_WIDTH
         else f"both are at z = {in_mm(0.5 * (low + high))}"
     )
     apart = math.hypot(at.axis[0] - other.axis[0], at.axis[1] - other.axis[1])

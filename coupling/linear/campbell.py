@@ -41,8 +41,8 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
 Point = BranchPoint[ComplexArray]
 
-_ALIKE = 0.8  # likeness from which two modes are certainly the same
-_ONE = 1e-6  # relative distance of eigenvalues below which their modes are not distinguished
+_SURE_LIKENESS = 0.8  # likeness from which two modes are certainly the same
+_SAME_EIGENVALUE_DISTANCE = 1e-6  # relative distance of eigenvalues below which their modes are not distinguished
 _JUMP = 0.05  # relative step of an eigenvalue that costs as much as zero likeness
 _MOST_JUMPS = 4.0  # largest cost of a step, in steps of `_JUMP`
 _FARTHEST = 0.3  # relative step of a frequency beyond which a branch ends
@@ -112,14 +112,14 @@ def matched(
     alike = np.minimum(np.abs(products), 1.0)
     jump = np.abs(other.values[None, :] - modes.values[:, None]) / np.abs(modes.values)[:, None]
     partners = paired_modes(
-        jump, alike, jump_scale=_JUMP, most_jumps=_MOST_JUMPS, longest_jump=_FARTHEST, sure_likeness=_ALIKE
+        jump, alike, jump_scale=_JUMP, most_jumps=_MOST_JUMPS, longest_jump=_FARTHEST, sure_likeness=_SURE_LIKENESS
     )
     wanted = np.abs(modes.values) < limit
     # Modes with the same frequency at every speed, as of equal shafts, cannot be and need not be distinguished.
     gaps = np.abs(other.values[:, None] - other.values[None, :])
-    together = np.abs(products @ (gaps <= _ONE * np.abs(other.values)))
+    together = np.abs(products @ (gaps <= _SAME_EIGENVALUE_DISTANCE * np.abs(other.values)))
     surest = np.where(partners >= 0, together[np.arange(partners.size), partners], 0.0)
-    if halvings == 0 or not np.any(wanted & (surest < _ALIKE)):
+    if halvings == 0 or not np.any(wanted & (surest < _SURE_LIKENESS)):
         return partners
     middle = solve(0.5 * (modes.speed + other.speed))
     first = matched(modes, middle, solve, limit, halvings - 1)

@@ -35,7 +35,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 # Relative distance of eigenvalues within which rounding mixes their shapes: by the eigensolver's error over this.
 # Forward and backward whirl of a round shaft that hardly turns are further apart.
-_SAME = 1e-8
+_SAME_EIGENVALUE_DISTANCE = 1e-8
 _INDEPENDENT = 1e-6  # part of the largest singular value of a group's shapes above which a direction is one of theirs
 _NOTHING = 1e-12  # strain or total energy below this part of the kinetic one is none
 
@@ -123,7 +123,7 @@ def mode_shares(
 def _groups(eigenvalues: ComplexArray) -> list[slice]:
     """Group modes, ascending in frequency, whose eigenvalues agree to rounding; rigid motions stand alone."""
     size = np.abs(eigenvalues)
-    apart = np.abs(np.diff(eigenvalues)) > _SAME * np.minimum(size[1:], size[:-1])
+    apart = np.abs(np.diff(eigenvalues)) > _SAME_EIGENVALUE_DISTANCE * np.minimum(size[1:], size[:-1])
     edges = [0, *(np.flatnonzero(apart | (size[1:] == 0.0) | (size[:-1] == 0.0)) + 1).tolist(), len(eigenvalues)]
     return [slice(begin, end) for begin, end in pairwise(edges) if end > begin]
 
@@ -371,7 +371,7 @@ def _largest(values: FloatArray) -> int:
 
 
 _NEUTRAL = 1e-9  # damping ratios below this are rounding
-_ROUNDING = 1e-12  # eigenvalues below this part of the largest are rounding
+_EIGENVALUE_ROUNDING = 1e-12  # eigenvalues below this part of the largest are rounding
 
 
 @dataclass(frozen=True)
@@ -440,7 +440,7 @@ def stability(modes: CoupledModes, tolerance: float = _NEUTRAL) -> Stability:
     """
     ratios = modes.damping_ratios
     # The damping ratio of a rigid-body motion is ±1 however small its eigenvalue.
-    still = np.abs(modes.eigenvalues) <= _ROUNDING * np.abs(modes.eigenvalues).max(initial=0.0)
+    still = np.abs(modes.eigenvalues) <= _EIGENVALUE_ROUNDING * np.abs(modes.eigenvalues).max(initial=0.0)
     growing = [_growing(modes, int(i)) for i in np.flatnonzero((ratios < -tolerance) & ~still)]
     swinging = np.flatnonzero(modes.eigenvalues.imag > 0.0)
     return Stability(

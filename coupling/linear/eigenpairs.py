@@ -33,7 +33,7 @@ from gearwhine.coupling.errors import ModesError
 FloatArray = npt.NDArray[np.float64]
 
 _RANK = 1e-11  # singular values of a damping matrix below this part of its largest terms are rounding
-_ROUNDING = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
+_ROUNDINGS_PER_ENTRY = 32.0  # roundings in an entry of a stiffness, one for each connector that adds to it
 _PRECISION = float(np.finfo(np.float64).eps)
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -125,7 +125,7 @@ def null_space(matrix: FloatArray) -> FloatArray:
     size = np.where(size > 1e-3 * largest, size, largest)
     scale = 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
     _, singular, vectors = np.linalg.svd(scale[:, None] * matrix * scale)
-    bound = _ROUNDING * len(matrix) * _PRECISION * max(float(singular.max(initial=0.0)), 1e-300)
+    bound = _ROUNDINGS_PER_ENTRY * len(matrix) * _PRECISION * max(float(singular.max(initial=0.0)), 1e-300)
     vectors = scale[:, None] * vectors[singular <= bound].T
     return np.asarray(np.linalg.qr(vectors)[0])
 

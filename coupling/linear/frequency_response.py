@@ -415,8 +415,8 @@ def _named(
 
 _NEIGHBOURHOOD = np.linspace(-0.015, 0.015, 7)  # relative frequencies at which the two bases are compared
 _SAFETY = 2.0
-_LEAST = 0.005
-_HIGHEST = 10.0  # errors beyond ten times the line carry no information
+_LEAST_LINE_ERROR = 0.005
+_LARGEST_LINE_ERROR = 10.0  # errors beyond ten times the line carry no information
 
 
 @dataclass(frozen=True)
@@ -465,7 +465,9 @@ class BasisError:
             size = np.linalg.norm(motion, axis=1)
             apart = np.linalg.norm(motion - others[name], axis=1)
             part = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
-            errors[name] = np.clip(_SAFETY * part.reshape(requested.size, -1).max(axis=1), _LEAST, _HIGHEST)
+            errors[name] = np.clip(
+                _SAFETY * part.reshape(requested.size, -1).max(axis=1), _LEAST_LINE_ERROR, _LARGEST_LINE_ERROR
+            )
         return errors
 
     @cached_property

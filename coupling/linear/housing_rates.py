@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-_EQUAL = 1e-6  # relative difference of eigenvalues below which they count as one in a divided difference
+# Relative difference of eigenvalues below which they count as one in a divided difference.
+_EQUAL_EIGENVALUE_DIFFERENCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,7 @@ class HousingRates:
         omega, ratios = self.frequencies, self.ratios
         values, gains = omega**2, 2.0 * ratios * omega
         apart = values[:, None] - values[None, :]
-        alike = np.abs(apart) <= _EQUAL * np.maximum(values[:, None], values[None, :])
+        alike = np.abs(apart) <= _EQUAL_EIGENVALUE_DIFFERENCE * np.maximum(values[:, None], values[None, :])
         distance = np.where(alike, 1.0, apart)
         total = omega[:, None] + omega[None, :]
         equal = (ratios[:, None] + ratios[None, :]) / np.where(total > 0.0, total, np.inf)

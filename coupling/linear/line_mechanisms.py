@@ -58,8 +58,8 @@ MECHANISMS = (
 """Mechanisms in the order in which they are told; ``load`` is a harmonic load of another kind."""
 
 _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
-_SAME = 1e-6  # relative difference of frequencies that are one
-_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
+_SAME_FREQUENCY_DIFFERENCE = 1e-6  # relative difference of frequencies that are one
+_TRANSMISSION_ERROR_ROUNDING = 1e-12  # part of the largest transmission error that is rounding
 _BESIDE = 1e-9  # distance of a phase from a step [mesh periods]
 
 
@@ -136,11 +136,11 @@ class LineMechanisms:
             Frequency of the excitation [rad/s], and f of each of its mechanisms with their phases at t = 0.
         """
         together: list[tuple[float, dict[str, ComplexArray]]] = []
-        reach = max(within, _SAME * frequency)
+        reach = max(within, _SAME_FREQUENCY_DIFFERENCE * frequency)
         for at, mechanism, load in self._sources(frequency, reach):
             if not np.any(load):
                 continue
-            place = next((known for w, known in together if abs(w - at) <= _SAME * at), None)
+            place = next((known for w, known in together if abs(w - at) <= _SAME_FREQUENCY_DIFFERENCE * at), None)
             if place is None:
                 place = {}
                 together.append((at, place))
@@ -209,7 +209,7 @@ class LineMechanisms:
         alike, friction = self._alike[number]
         if order > 0 and abs(order * rate - frequency) <= reach:
             error = _at_time_zero(polygon_phasors(alike.phases, alike.transmission_error, [order]), contact, order)
-            if abs(error[0]) > _ROUNDING * np.abs(alike.transmission_error).max():
+            if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(alike.transmission_error).max():
                 yield order * rate, "transmission_error", stiffness * error[0] * contact.direction
             if friction is not None and contact.sliding is not None:
                 shares = _at_time_zero(polygon_phasors(alike.phases, friction, [order]), contact, order)
@@ -226,7 +226,7 @@ class LineMechanisms:
             if order % periods == 0:
                 error = error - polygon_phasors(same.phases, same.transmission_error, [at])
             error = _at_time_zero(error, contact, at)
-            if abs(error[0]) > _ROUNDING * np.abs(every.transmission_error).max():
+            if abs(error[0]) > _TRANSMISSION_ERROR_ROUNDING * np.abs(every.transmission_error).max():
                 yield at * rate, "pitch_errors", stiffness * error[0] * contact.direction
 
     def _runout(self, number: int, contact: ContactConnector) -> Iterator[tuple[float, ComplexArray]]:

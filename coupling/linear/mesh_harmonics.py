@@ -35,7 +35,7 @@ ComplexArray = npt.NDArray[np.complex128]
 HARMONICS = 12
 """Largest number of harmonics of a mesh."""
 _POINTS = 200  # number of phases of a mesh period, as in the mean mesh
-_SAME = 1e-9  # relative difference below which frequencies are equal
+_SAME_FREQUENCY_DIFFERENCE = 1e-9  # relative difference below which frequencies are equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,9 +186,9 @@ class MeshHarmonicModel:
             for h in range(1, HARMONICS + 1)
         ]
         for w, cause in sorted(every):
-            if w > limit * (1.0 + _SAME):
+            if w > limit * (1.0 + _SAME_FREQUENCY_DIFFERENCE):
                 break
-            if harmonics and w <= harmonics[-1][0] * (1.0 + _SAME):
+            if harmonics and w <= harmonics[-1][0] * (1.0 + _SAME_FREQUENCY_DIFFERENCE):
                 harmonics[-1] = (harmonics[-1][0], (*harmonics[-1][1], cause))
             else:
                 harmonics.append((w, (cause,)))

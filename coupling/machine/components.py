@@ -32,7 +32,8 @@ from gearwhine.rotors.modes.torsional_and_axial import AxialModes
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-10  # tolerance of a symmetric, positive semidefinite damping matrix, relative to its largest entry
+# Tolerance of a symmetric, positive semidefinite damping matrix, relative to its largest entry.
+_DAMPING_MATRIX_ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
@@ -200,8 +201,8 @@ class RotorComponent(Component):
         if at not in self._sections:
             motions, m, t = self.modal.motions(at), self.modal.lateral.count, self.modal.torsional.count
             rows = np.zeros((6, self.size))
-            for modes, own in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
-                rows[:5, own] = motions[:, modes] @ self.plane_basis[:m]
+            for modes, plane in zip((slice(0, m), slice(m, 2 * m)), self._planes, strict=True):
+                rows[:5, plane] = motions[:, modes] @ self.plane_basis[:m]
             rows[:5, self.axial] = motions[:, 2 * m + t :] @ self.axial_basis[: motions.shape[1] - 2 * m - t]
             rows[5, self._torsion] = self.modal.rotation(at)[2 * m : 2 * m + t] @ self.torsion_basis[:t]
             self._sections[at] = rows
@@ -329,13 +330,13 @@ def _component_findings(component: HousingComponent) -> Iterator[Finding]:
     for attribute in ("stiffness", "damping"):
         matrix = getattr(component, attribute)
         scale = float(np.abs(matrix).max(initial=0.0))
-        if np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+        if np.abs(matrix - matrix.T).max(initial=0.0) > _DAMPING_MATRIX_ROUNDING * scale:
             yield Finding(part, attribute, matrix, "a symmetric matrix")
-        elif n and (least := float(np.linalg.eigvalsh(matrix)[0])) < -_ROUNDING * n * scale:
+        elif n and (least := float(np.linalg.eigvalsh(matrix)[0])) < -_DAMPING_MATRIX_ROUNDING * n * scale:
             expected = f"a matrix without negative eigenvalues, as of any housing; the least one is {least:.4g}"
             yield Finding(part, attribute, matrix, expected)
     skew = component.gyroscopic
-    if np.abs(skew + skew.T).max(initial=0.0) > _ROUNDING * np.abs(skew).max(initial=0.0):
+    if np.abs(skew + skew.T).max(initial=0.0) > _DAMPING_MATRIX_ROUNDING * np.abs(skew).max(initial=0.0):
         yield Finding(part, "gyroscopic", skew, "a skew matrix")
 
 
@@ -462,9 +463,9 @@ def _check_damping(matrix: FloatArray, n: int) -> None:
     if matrix.shape != (n, n):
         raise CouplingError(f"damping matrix of shape {matrix.shape} for {n} housing modes; expected ({n}, {n})")
     scale = float(np.abs(matrix).max(initial=0.0))
-    if not np.isfinite(scale) or np.abs(matrix - matrix.T).max(initial=0.0) > _ROUNDING * scale:
+    if not np.isfinite(scale) or np.abs(matrix - matrix.T).max(initial=0.0) > _DAMPING_MATRIX_ROUNDING * scale:
         raise CouplingError("the damping matrix of the housing modes is not symmetric, or not finite")
-    if n and np.linalg.eigvalsh(matrix)[0] < -_ROUNDING * n * scale:
+    if n and np.linalg.eigvalsh(matrix)[0] < -_DAMPING_MATRIX_ROUNDING * n * scale:
         raise CouplingError("the damping matrix of the housing modes has a negative eigenvalue: it feeds energy in")
 
 
@@ -564,12 +565,16 @@ def rotor_component(
     )
 
 
-_ROUNDED = 1.0 + 1e-9  # by which a frequency may exceed the highest of the shaft and be one of its own
+_HIGHEST_SHAFT_FREQUENCY_RATIO = (
+    1.0 + 1e-9
+)  # by which a frequency may exceed the highest of the shaft and be one of its own
 
 
 def _kinds(kind: str, frequencies: FloatArray, highest: float) -> tuple[str, ...]:
     """Kinds of coordinates by their frequencies: above the highest mode of the shaft they are residual."""
-    return tuple(kind if one <= _ROUNDED * highest else "residual" for one in frequencies.tolist())
+    return tuple(
+        kind if one <= _HIGHEST_SHAFT_FREQUENCY_RATIO * highest else "residual" for one in frequencies.tolist()
+    )
 
 
 def _torsion_with_rims(modal: ModalRotor, bodies: Sequence[GearBody]) -> tuple[FloatArray, FloatArray]:

@@ -15,7 +15,7 @@ from gearwhine.coupling.machine.connectors import ContactConnector, LinearConnec
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_RIGID = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
+_RIGID_MOTION_STIFFNESS = 1e-12  # stiffness below this part of the largest is a motion that nothing resists
 
 
 @dataclass(frozen=True)
@@ -222,7 +222,7 @@ class CoupledSystem:
         Teeth and nonlinear bearings count with their linear stiffness.
         """
         values, vectors = np.linalg.eigh(0.5 * (self.mean_stiffness + self.mean_stiffness.T))
-        return vectors[:, np.abs(values) < _RIGID * max(abs(values[-1]), 1e-300)], float(values[-1])
+        return vectors[:, np.abs(values) < _RIGID_MOTION_STIFFNESS * max(abs(values[-1]), 1e-300)], float(values[-1])
 
     def _blocks(self, matrices: Sequence[FloatArray]) -> FloatArray:
         total = np.zeros((self.size, self.size))

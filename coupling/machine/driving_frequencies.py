@@ -22,7 +22,7 @@ from gearwhine.rotors.rolling_bearings import characteristic_frequencies
 FloatArray = npt.NDArray[np.float64]
 
 _TWO_PI = 2.0 * np.pi
-_ALIKE = 12  # digits of the frequencies of rows that are alike
+_ALIKE_FREQUENCY_DIGITS = 12  # digits of the frequencies of rows that are alike
 _SAMPLES_PER_CYCLE = 8.0  # of a harmonic excitation: its third harmonic is below half the sampling rate
 _SAMPLES_PER_MESH = 32.0  # of a mesh, whose force has many harmonics
 _FOLDED = 0.01  # largest line of a table over time above half the sampling rate, over the table's range
@@ -56,7 +56,9 @@ def element_passes(system: CoupledSystem) -> dict[str, tuple[float, ...]]:
         if isinstance(connector.law, RollingLaw) and connector.speed != 0.0:
             rows = connector.law.state.bearing.rows
             frequencies = [characteristic_frequencies(row, connector.speed).outer_pass / _TWO_PI for row in rows]
-            passes[connector.name] = tuple(sorted({round(frequency, _ALIKE) for frequency in frequencies}))
+            passes[connector.name] = tuple(
+                sorted({round(frequency, _ALIKE_FREQUENCY_DIGITS) for frequency in frequencies})
+            )
     return passes
 
 

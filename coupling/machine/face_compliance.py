@@ -63,7 +63,7 @@ def face_compliance(
         Ends of the length that moves with the gear's body [m].
     """
     stations = face_stations(face_width)
-    mean, slope = mean_and_slope(stations, stations[-1] * _EVEN)
+    mean, slope = mean_and_slope(stations, stations[-1] * _EVEN_FACE_PLACES)
     carriers = np.clip(at + stations, *carried)
     supports = [bearing.mean_support for bearing in modal.bearings]
     shaft = static_shaft(rotor, [at, *carriers.tolist(), *(support.at for support in supports)])
@@ -95,14 +95,14 @@ def face_compliance(
     rows = [6 * node + 5 for node in range(count)]
     elastic = torsional.frequencies > 0.0
     turning = shaft.stiffness[np.ix_(rows, rows)]
-    flexibility = np.asarray(np.linalg.pinv(turning, rcond=_RIGID, hermitian=True), dtype=np.float64)
+    flexibility = np.asarray(np.linalg.pinv(turning, rcond=_RIGID_ROTATION_STIFFNESS, hermitian=True), dtype=np.float64)
     shapes = torsional.evaluate(shaft.places)[elastic]
     twisting = _missing(flexibility, shapes, torsional.frequencies[elastic], torques)
     return FaceCompliance(bending, twisting)
 
 
-_EVEN = 2.0 * (np.arange(DEFAULT_SLICES) + 0.5) / DEFAULT_SLICES - 1.0  # places over half the face
-_RIGID = 1e-12  # stiffness below this part of the largest is the rotation as a whole
+_EVEN_FACE_PLACES = 2.0 * (np.arange(DEFAULT_SLICES) + 0.5) / DEFAULT_SLICES - 1.0  # places over half the face
+_RIGID_ROTATION_STIFFNESS = 1e-12  # stiffness below this part of the largest is the rotation as a whole
 
 
 def _missing(flexibility: FloatArray, shapes: FloatArray, frequencies: FloatArray, loads: FloatArray) -> FloatArray:

@@ -36,7 +36,7 @@ FloatArray = npt.NDArray[np.float64]
 _POINTS = 128  # number of phases of a mesh period
 _PERIODS = 128  # largest number of mesh periods that are solved for the mean over the hunting period
 _HARMONICS = 6  # largest number of mesh harmonics
-_SMALL = 0.01  # part of the greatest harmonic below which the last ones are left out
+_SMALL_HARMONIC_SHARE = 0.01  # part of the greatest harmonic below which the last ones are left out
 _NO_ARM = 1e-9  # part of the face width that is rounding
 
 
@@ -148,7 +148,7 @@ def shuttling_loads(
         amplitudes = amplitudes.conj()
     amplitudes = amplitudes * np.exp(2j * np.pi * np.sign(mesh_frequency) * orders * phase)[:, None]
     size = np.abs(amplitudes).sum(axis=1)
-    heard = size > max(_SMALL * size.max(initial=0.0), _NO_ARM * contact.faces.face_width)
+    heard = size > max(_SMALL_HARMONIC_SHARE * size.max(initial=0.0), _NO_ARM * contact.faces.face_width)
     # The load on the coordinates is minus the force times the compression's gradient.
     harmonics = [
         HarmonicLoad(2.0 * np.pi * order * abs(mesh_frequency), -force * amplitude @ rows, "turning", "load_shuttling")

@@ -20,11 +20,11 @@ from gearwhine.coupling.periodic.shooting import Problem, problem, response_of
 FloatArray = npt.NDArray[np.float64]
 
 _CORRECTIONS = 8
-_CLOSED = 1e-10  # closure relative to the motion
-_HIGHEST = 4  # largest number of halvings of the elements beyond that at the branch's start
+_CLOSED_MOTION_ERROR = 1e-10  # closure relative to the motion
+_MOST_HALVINGS = 4  # largest number of halvings of the elements beyond that at the branch's start
 # Number of points after which coarser elements are tried again; it doubles after each failure.
 _PATIENCE, _LONGEST_PATIENCE = 3, 48
-_LOWEST = 1  # least number of halvings: with fewer, multipliers err by more than the states
+_LEAST_HALVINGS = 1  # least number of halvings: with fewer, multipliers err by more than the states
 _TOO_GOOD = 3e-3  # part of the tolerance: elements twice as large err tens to hundreds of times as much
 _DIFFERENCE = 1e-7  # step of the derivative by speed over the speed range, short as flanks may begin to graze
 
@@ -93,7 +93,7 @@ class Branch:
     ) -> None:
         self.system_at, self.periods, self.span = system_at, periods, span
         self.level, self.tolerance, self.unit = level, tolerance, unit
-        self.lowest, self.highest = min(level, _LOWEST), level + _HIGHEST
+        self.lowest, self.highest = min(level, _LEAST_HALVINGS), level + _MOST_HALVINGS
         self.calm, self.patience = 0, _PATIENCE
 
     def _raise(self) -> None:
@@ -173,7 +173,7 @@ class Branch:
         for turn in range(_CORRECTIONS):
             # After the first correction the same pieces serve once more, and the last ones are exact.
             motion = integrate_period(ready.part, ready.contacts, elements, starts, varied=turn != 1)
-            closed = motion.missing <= _CLOSED * ready.scale(motion.start)
+            closed = motion.missing <= _CLOSED_MOTION_ERROR * ready.scale(motion.start)
             if closed and turn == 1:
                 motion = integrate_period(ready.part, ready.contacts, elements, starts)
             if closed:
@@ -217,7 +217,7 @@ class Branch:
                 by_speed = self.by_speed(ready, states, speed, motion, self.level) @ lift(ready).T
             behind = float(np.sum(along * (states - point.states))) / (count * self.unit)
             behind += pace * (speed - point.speed) / self.span - ds
-            if turn > 0 and abs(behind) < 1e-9 and motion.missing <= _CLOSED * ready.scale(motion.start):
+            if turn > 0 and abs(behind) < 1e-9 and motion.missing <= _CLOSED_MOTION_ERROR * ready.scale(motion.start):
                 return self._proved(
                     ready, states, speed, motion, turn, predicted, (along, pace), by_speed @ lift(ready)
                 )
@@ -291,15 +291,15 @@ def lift(ready: Problem) -> FloatArray:
 
 def below(ready: Problem, states: FloatArray) -> FloatArray:
     """States relative to the reference's own response, from total motions, shape (K, 2 N)."""
-    return np.asarray(states @ lift(ready) - _own(ready))
+    return np.asarray(states @ lift(ready) - _linear_response(ready))
 
 
 def above(ready: Problem, starts: FloatArray) -> FloatArray:
     """Total motions from states relative to the reference, shape (K, 2 k)."""
-    return np.asarray((starts + _own(ready)) @ lift(ready).T)
+    return np.asarray((starts + _linear_response(ready)) @ lift(ready).T)
 
 
-def _own(ready: Problem) -> FloatArray:
+def _linear_response(ready: Problem) -> FloatArray:
     """Return the linear reference's response at the nodes among these states, shape (K, 2 N)."""
     still = np.zeros(len(ready.part.mean))
     return np.array([-ready.part.state(still, still, time) for time in ready.nodes])

@@ -119,9 +119,9 @@ class ResponseCurve:
     @property
     def account(self) -> str:
         """Followed range and ending of the branch, in a sentence; speeds in the curve's own unit."""
-        return self.told()
+        return self.description()
 
-    def told(self, unit: float = 1.0, name: str = "") -> str:
+    def description(self, unit: float = 1.0, name: str = "") -> str:
         """Return the response curve with speeds divided by a named unit."""
         name = name and f" {name}"
         words = []
@@ -248,24 +248,24 @@ _MISSED = 3e-3  # target error of a prediction, relative to a motion
 _ASIDE = 1.2e-2  # largest error of a prediction, beyond which it leads to another branch
 _FARTHEST = 0.3  # largest relative change of a motion by a step along the branch
 _SHARPEST_TURN = 0.9  # least cosine between tangents of neighbouring points along the branch
-_SMOOTH = 0.97  # cosine beyond which the next step is longer
-_STRAIGHT = 0.999  # cosine beyond which it is twice as long
-_FEW = 4  # largest number of corrections with which the next step is longer
+_LONGER_STEP_COSINE = 0.97  # cosine beyond which the next step is longer
+_DOUBLE_STEP_COSINE = 0.999  # cosine beyond which it is twice as long
+_MOST_CORRECTIONS_OF_A_LONGER_STEP = 4  # largest number of corrections with which the next step is longer
 _FAILURES = 3  # failed steps at given speed, each half as long, before pseudo-arclength steps
-_SMALL = 0.05  # part of the largest step below which pseudo-arclength steps begin
-_SHORTEST = 1e-4  # part of the largest step below which the branch is lost
+_ARCLENGTH_STEP_SHARE = 0.05  # part of the largest step below which pseudo-arclength steps begin
+_SHORTEST_STEP_SHARE = 1e-4  # part of the largest step below which the branch is lost
 _MIRRORED = (2.0, 4.0, 8.0)  # distances of a step over a resonance, over that before it
 _BESIDE = 0.1  # largest relative change of a motion by such a step
 # Distance of such multipliers from the unit circle over their angle, below which nothing damps them: the inverse of the
 # height of the resonance over what the motion has of it already.
-_UNDAMPED = 3e-3
+_RESONANCE_DAMPING = 3e-3
 _NEAR_ONE = 1.0  # largest of these angles [rad]
 _SAME_ANGLE = 4  # digits of angles that are the same: planes of one shaft
-_NEAREST = 1e-3  # part of the largest step down to which steps at given speed come near a resonance
+_RESONANCE_STEP_SHARE = 1e-3  # part of the largest step down to which steps at given speed come near a resonance
 _STANDING = 1e-2  # change of speed over the largest step below which the branch stands at one speed
 _CLIMBED = 0.3  # relative change of a motion at one speed beyond which it climbs without a top
 _FEWEST_CLIMBING = 6  # number of points along the branch before that is said
-_BENT = 0.05  # part of the way between two points that the branch may bend aside
+_LARGEST_BEND_SHARE = 0.05  # part of the way between two points that the branch may bend aside
 _SKIPS = (0.1, 0.3, 1.0, 3.0)  # widths beyond which a lost branch is looked for again, in largest steps
 _INSIDE = (0.5, 0.25, 0.75)  # parts of a gap at which a motion is looked for
 _MOST_PIECES = 80
@@ -327,7 +327,7 @@ class _Follower:
                 return "points"
             if self.tries >= most_tries:
                 return "tries"
-            if self.by_arclength and self.ds < _SHORTEST * self.largest:
+            if self.by_arclength and self.ds < _SHORTEST_STEP_SHARE * self.largest:
                 return "lost"
             if self.climbed > _CLIMBED and len(self.pending) > _FEWEST_CLIMBING:
                 return "steep"
@@ -399,7 +399,9 @@ class _Follower:
         last = self.recent[-1]
         # Steps at given speed come near a resonance that nothing damps; along the branch they climb it.
         rises = bool(_undamped_angles(last))
-        if self.stride < (_NEAREST if rises else _SMALL) * self.largest or (not rises and self.failures == _FAILURES):
+        if self.stride < (_RESONANCE_STEP_SHARE if rises else _ARCLENGTH_STEP_SHARE) * self.largest or (
+            not rises and self.failures == _FAILURES
+        ):
             try:
                 pace = abs(last.tangent[1])
             except (PeriodicError, np.linalg.LinAlgError):
@@ -428,10 +430,10 @@ class _Follower:
                 return None
         gone = abs(self.position(point.speed) - self.position(last.speed))
         is_fold = self._accept(point, True)
-        if turn > _SMOOTH and point.corrections <= _FEW:
-            self.ds *= 2.0 if turn > _STRAIGHT else 1.5
+        if turn > _LONGER_STEP_COSINE and point.corrections <= _MOST_CORRECTIONS_OF_A_LONGER_STEP:
+            self.ds *= 2.0 if turn > _DOUBLE_STEP_COSINE else 1.5
         self.ds = min(self.ds, _FARTHEST * self._motion(point))
-        if not is_fold and gone > max(self.stride, _SMALL * self.largest) and len(self.recent) > 2:
+        if not is_fold and gone > max(self.stride, _ARCLENGTH_STEP_SHARE * self.largest) and len(self.recent) > 2:
             self.by_arclength, self.order = False, 1
             self.stride = min(gone, self.largest)
         return point
@@ -495,7 +497,7 @@ class _Follower:
             )
             part = away[i] / (away[i] - away[i + 1]) if away[i] != away[i + 1] else 0.0
             aside = np.linalg.norm(before + part * (after - before) - here)
-            if aside < _ASIDE * size + _BENT * np.linalg.norm(after - before):
+            if aside < _ASIDE * size + _LARGEST_BEND_SHARE * np.linalg.norm(after - before):
                 return True
         return False
 
@@ -792,7 +794,7 @@ def _undamped_angles(point: Point) -> list[float]:
     """Angles of undamped pairs of multipliers e^{±iα} near 1, ascending and each once [rad]."""
     values = point.response.floquet.values
     angles = np.angle(values)
-    near = angles[(angles > 0.0) & (angles < _NEAR_ONE) & (np.abs(np.abs(values) - 1.0) < _UNDAMPED * angles)]
+    near = angles[(angles > 0.0) & (angles < _NEAR_ONE) & (np.abs(np.abs(values) - 1.0) < _RESONANCE_DAMPING * angles)]
     return sorted(set(np.round(near, _SAME_ANGLE).tolist()))
 
 

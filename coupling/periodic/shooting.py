@@ -33,15 +33,15 @@ from gearwhine.coupling.periodic.response import BranchMotion, PeriodicResponse,
 from gearwhine.coupling.time.condensation import Condensed, condensed
 from gearwhine.coupling.time.step_matrices import contact_arrays
 
-_SAME = 1e-9  # relative tolerance of a frequency ratio
+_FREQUENCY_RATIO_TOLERANCE = 1e-9  # relative tolerance of a frequency ratio
 _LARGEST_NUMBER = 2000  # largest number in a frequency ratio: no gear has more teeth
-_WHOLE = 1e-6  # tolerance of a whole number of cycles in a given period
+_WHOLE_CYCLES_TOLERANCE = 1e-6  # tolerance of a whole number of cycles in a given period
 FloatArray = npt.NDArray[np.float64]
 
 _NEWTON_STEPS = 25
 _SHORTEST_STEP = 1.0 / 64.0
 _MOST_SEGMENTS = 32
-_ROUNDING = 1e-11  # closure error of a closed motion, relative
+_CLOSURE_ROUNDING = 1e-11  # closure error of a closed motion, relative
 _FINEST = 12  # largest number of halvings of the coarsest element
 _FINER = 3  # number of halvings of the elements that the search tries
 _ROUNDS = 6  # rounds of time integration before the search fails
@@ -49,7 +49,7 @@ _FIRST_ROUNDS = 2  # number of them before finer elements, and the search from d
 _PERIODS = 8  # periods of the first round, doubled in every further one
 _TURNED, _WATCHED = 16, 32  # periods before and while the growth of a disturbance is measured
 _CHAOTIC = 1.02  # growth in a period beyond which a motion is called chaotic
-_DAMPED = 64.0  # largest damping of the teeth over their own
+_LARGEST_DAMPING_FACTOR = 64.0  # largest damping of the teeth over their own
 _LOSS_FACTOR = 1e-3  # least loss factor, at the fastest mesh frequency, that takes the place of the teeth's own
 _LONGEST_STRIDE, _SHORTEST_STRIDE = 0.7, 0.02  # largest and least change of the damping's logarithm in one step
 
@@ -74,7 +74,7 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
             raise CouplingError(f"a period of {period} s; expected a positive number")
         for source, frequency in frequencies.items():
             cycles = frequency * period
-            if round(cycles) < 1 or abs(cycles - round(cycles)) > _WHOLE:
+            if round(cycles) < 1 or abs(cycles - round(cycles)) > _WHOLE_CYCLES_TOLERANCE:
                 raise CouplingError(
                     f"{source} at {frequency:.9g} Hz makes {cycles:.9g} cycles in the period of {period:.9g} s; "
                     "expected a whole number"
@@ -90,7 +90,11 @@ def common_period(system: CoupledSystem, period: float | None = None) -> float:
     for source, frequency in frequencies.items():
         exact = frequency / frequencies[first]
         ratio = Fraction(exact).limit_denominator(_LARGEST_NUMBER)
-        if ratio == 0 or abs(float(ratio) / exact - 1.0) > _SAME or ratio.numerator > _LARGEST_NUMBER**2:
+        if (
+            ratio == 0
+            or abs(float(ratio) / exact - 1.0) > _FREQUENCY_RATIO_TOLERANCE
+            or ratio.numerator > _LARGEST_NUMBER**2
+        ):
             raise CouplingError(
                 f"{source} at {frequency:.9g} Hz and {first} at {frequencies[first]:.9g} Hz have no common period: "
                 f"their ratio {exact:.12g} is no fraction of whole numbers up to {_LARGEST_NUMBER}; the motion does "
@@ -335,7 +339,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Period
     motion = integrate_period(ready.part, ready.contacts, elements, state)
     best = motion.missing
     for step in range(_NEWTON_STEPS):
-        if best <= _ROUNDING * ready.scale(motion.start):
+        if best <= _CLOSURE_ROUNDING * ready.scale(motion.start):
             return motion, step
         move = motion.correction(least=True)
         part = 1.0
@@ -347,7 +351,7 @@ def close(ready: Problem, elements: Elements, state: FloatArray) -> tuple[Period
             part *= 0.5
             if part < _SHORTEST_STEP:
                 # The rest may be rounding, which no step removes.
-                return (motion, step) if best <= 1e3 * _ROUNDING * ready.scale(motion.start) else None
+                return (motion, step) if best <= 1e3 * _CLOSURE_ROUNDING * ready.scale(motion.start) else None
         motion, best = trial, missing
     return None
 
@@ -448,7 +452,7 @@ def _from_damped_teeth(ready: Problem, level: int, state: FloatArray) -> DampedM
     fastest = 2.0 * np.pi * max([abs(one.mesh_frequency) for one in ready.system.contacts], default=0.0)
     # Teeth without damping of their own have none to multiply.
     least = ready.part.reference.stiffness * (_LOSS_FACTOR / fastest if fastest else 0.0)
-    way = last = math.log(_DAMPED)
+    way = last = math.log(_LARGEST_DAMPING_FACTOR)
     stride, steps, starts = _LONGEST_STRIDE, 0, state
     found: DampedMotion | None = None
     while True:

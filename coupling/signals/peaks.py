@@ -21,8 +21,8 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 _LONE = 0.1  # largest deviation of a tone's four lines from those of one tone, over its height
-_EXACT = 0.02  # distance that the frequency of an exact line is known within, over the spacing of lines
-_SHARPEST = 0.05  # least distance that a tone's frequency is known within, over the spacing of lines
+_EXACT_LINE_DISTANCE = 0.02  # distance that the frequency of an exact line is known within, over the spacing of lines
+_LEAST_TONE_DISTANCE = 0.05  # least distance that a tone's frequency is known within, over the spacing of lines
 # Change of a tone's place by that of its two lines over its height: at most 2, and what fits its lines by chance.
 _SLOPE = 3.0
 
@@ -97,7 +97,9 @@ def spectral_peaks(
     places = inner[(a[inner] >= a[inner - 1]) & (a[inner] > a[inner + 1]) & (f[inner] > above) & (f[inner] <= limit)]
     places = places[a[places] > floor * a[places].max(initial=0.0)]
     lower, offset, weights, known = (
-        (*_own_lines(places), np.full(len(places), _EXACT)) if spectrum.window == "uniform" else _tones(a, places)
+        (*_own_lines(places), np.full(len(places), _EXACT_LINE_DISTANCE))
+        if spectrum.window == "uniform"
+        else _tones(a, places)
     )
     sizes = np.abs(weights)
     amplitudes = sizes[0] * a[lower] + sizes[1] * a[lower + 1]
@@ -130,6 +132,13 @@ def _tones(a: FloatArray, places: IntArray) -> tuple[IntArray, FloatArray, Compl
     size = (np.abs(weights) * heights[1:3]).sum(axis=0)
     deviation = np.abs(heights - np.abs(lines) * size).max(axis=0, initial=0.0)
     lone = deviation <= _LONE * size
-    own = _own_lines(places)
-    within = np.where(lone, np.maximum(_SLOPE * deviation / np.where(lone, size, 1.0), _SHARPEST), 0.5 + 1e-6)
-    return np.where(lone, lower, own[0]), np.where(lone, offset, own[1]), np.where(lone, weights, own[2]), within
+    on_lines = _own_lines(places)
+    within = np.where(
+        lone, np.maximum(_SLOPE * deviation / np.where(lone, size, 1.0), _LEAST_TONE_DISTANCE), 0.5 + 1e-6
+    )
+    return (
+        np.where(lone, lower, on_lines[0]),
+        np.where(lone, offset, on_lines[1]),
+        np.where(lone, weights, on_lines[2]),
+        within,
+    )

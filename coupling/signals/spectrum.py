@@ -27,7 +27,7 @@ ACCELERATION_REFERENCE = 1e-6
 ComplexArray = npt.NDArray[np.complex128]
 Window = Literal["uniform", "hann"]
 
-_WHOLE = 1e-6  # tolerance of a whole number of cycles: a line leaks as large a part of its height
+_WHOLE_CYCLES_TOLERANCE = 1e-6  # tolerance of a whole number of cycles: a line leaks as large a part of its height
 _NOISE_BANDWIDTH = {"uniform": 1.0, "hann": 1.5}  # bandwidth of the window over the spacing of lines
 
 
@@ -191,7 +191,7 @@ def whole_period_samples(
     counts = np.arange(count, max(math.ceil(least * count), 1) - 1, -1)
     for frequency in frequencies:
         cycles = counts * (interval * frequency)
-        counts = counts[np.abs(cycles - np.rint(cycles)) < _WHOLE]
+        counts = counts[np.abs(cycles - np.rint(cycles)) < _WHOLE_CYCLES_TOLERANCE]
     return int(counts[0]) if counts.size else None
 
 

@@ -36,7 +36,8 @@ _TOLERANCE = 1e-12
 _NEWTON_STEPS = 30
 _HALVINGS = 6
 _REFINEMENTS = 2
-_ROUNDED = 1e-11  # error over the deflections below which steps are not halved, and end where it hardly falls
+# Error over the deflections below which steps are not halved, and end where it hardly falls.
+_ROUNDED_DEFLECTION_ERROR = 1e-11
 _ROUNDINGS = 4.0  # error over the deflections, in units of rounding, that is that of the deflections themselves
 _FALLS = 0.5  # largest part of the error that a step leaves, unless the error is rounding
 _NO_COMPLIANCE = 1e-13  # part of the largest eigenvalue of the compliance below which one is rounding
@@ -213,7 +214,7 @@ class ConnectedStructure:
             if before <= _ROUNDINGS * np.finfo(np.float64).eps * size:
                 break
             step = self._size * np.linalg.lstsq(imbalance.slope, imbalance.difference, rcond=None)[0]
-            rounded = before <= _ROUNDED * size
+            rounded = before <= _ROUNDED_DEFLECTION_ERROR * size
             for halving in range(1 if rounded else _HALVINGS):
                 nearer = z - 0.5**halving * step
                 trial = self._imbalance(nearer)

@@ -23,9 +23,9 @@ from gearwhine.coupling.statics.static_equilibrium import load_balances, static_
 FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 200  # number of phases of a mesh period, in addition to its events
-_CONVERGED = 1e-7  # change of the force in a step of the iteration, relative to the largest force
-_ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
-_LOOSE = 1e-12  # part of the largest stiffness below which a stiffness is zero
+_CONVERGED_FORCE_CHANGE = 1e-7  # change of the force in a step of the iteration, relative to the largest force
+_FORCE_ROUNDING = 1e-9  # part of the contact force by each coordinate below which a force is rounding
+_ZERO_STIFFNESS_SHARE = 1e-12  # part of the largest stiffness below which a stiffness is zero
 _ITERATIONS = 30
 
 
@@ -51,7 +51,7 @@ class MeanMesh:
     secant: float
 
 
-_PARTED = MeanMesh(0.0, 0.0, 0.0, 0.0)
+_PARTED_MESH = MeanMesh(0.0, 0.0, 0.0, 0.0)
 
 
 def mean_mesh(contact: ToothContact, force: float) -> MeanMesh:
@@ -107,20 +107,20 @@ def mean_equilibrium(system: CoupledSystem) -> tuple[list[MeanMesh | None], Floa
     meshes: list[MeanMesh | None] = [None] * len(driving)
     for _ in range(_ITERATIONS):
         matrix = stiffness_held + (directions * (stiffness * loaded)) @ directions.T
-        if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _LOOSE * stiffest:
+        if not np.all(loaded) and np.linalg.svd(matrix, compute_uv=False)[-1] < _ZERO_STIFFNESS_SHARE * stiffest:
             # The mean load opens flanks, and nothing else holds the train.
             return without_force, np.zeros(system.size)
         q = np.linalg.solve(matrix, load + directions @ (stiffness * loaded * offset))
         force = stiffness * (directions.T @ q - offset)
-        rounding = _ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
-        converged = np.abs(force - before) <= _CONVERGED * np.abs(force * loaded).max() + rounding
+        rounding = _FORCE_ROUNDING * stiffness * (np.abs(directions.T) @ np.abs(q))
+        converged = np.abs(force - before) <= _CONVERGED_FORCE_CHANGE * np.abs(force * loaded).max() + rounding
         parted = force < -rounding
         if np.all(converged | parted) and np.array_equal(parted, ~loaded):
             break
         before, loaded = force, ~parted
         for number, law in enumerate(laws):
             if force[number] <= rounding[number]:
-                meshes[number] = _PARTED if parted[number] else None
+                meshes[number] = _PARTED_MESH if parted[number] else None
                 continue
             try:
                 mean = mean_mesh(law, float(force[number]))

@@ -44,10 +44,10 @@ RESIDUAL_BOUND = 1e-9
 
 _ROUNDINGS = 8.0  # rounding of an elastic force, in units of rounding of its terms
 _LARGEST_ROUNDING = 1e-6  # part of the largest load out of balance that may be rounding
-_FREE = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
+_FREE_MOTION_STIFFNESS = 1e-10  # part of the largest stiffness of a rigid motion below which nothing holds it
 _CARRIED = 1e-7  # part of the loads' work in a free motion that is rounding
 _TE_PHASES = 200
-_IDLE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
+_IDLE_PAIR_FORCE = 1e-3  # part of the largest mesh force, under which the face of an idle pair is looked at
 
 
 def solve_operating_point(
@@ -157,7 +157,7 @@ class _StaticModel:
         plates = [(rim.gear, mode) for rim in rims for mode in rim.plates]
         ends = size + len(springs) + np.cumsum([0, *(mode.size for _, mode in plates)])
         self.plates = [
-            (gear, mode, slice(*own)) for (gear, mode), own in zip(plates, pairwise(ends.tolist()), strict=True)
+            (gear, mode, slice(*indices)) for (gear, mode), indices in zip(plates, pairwise(ends.tolist()), strict=True)
         ]
         self.rims_first, self.size = size, int(ends[-1])
         self.stiffness = self._linear_stiffness()
@@ -165,8 +165,8 @@ class _StaticModel:
         for number, (gear, axis, stiffness) in enumerate(springs, size):
             self.stiffness[number, number] = stiffness
             self.rims[gear][axis, number] = 1.0
-        for _, mode, own in self.plates:
-            self.stiffness[own, own] = mode.frequency**2 * np.eye(mode.size)
+        for _, mode, indices in self.plates:
+            self.stiffness[indices, indices] = mode.frequency**2 * np.eye(mode.size)
         self.load = self._loads(torques, forces)
         self.directions = [self._bearing_directions(bearing.mounted) for bearing in bearings]
         approaches = [self._pair_directions(pair) for pair in pairs]
@@ -187,7 +187,7 @@ class _StaticModel:
     def _linear_stiffness(self) -> FloatArray:
         whole = np.zeros((self.size, self.size))
         for part in self.shafts:
-            rows = self._own(part.name)
+            rows = self._indices_of(part.name)
             whole[rows, rows] = part.shaft.stiffness
         if self.housing is not None:
             rows = slice(self.housing_first, self.housing_first + self.housing.size)
@@ -204,7 +204,7 @@ class _StaticModel:
         if self.gravity is None:
             return load
         for part in self.shafts:
-            load[self._own(part.name)] += part.shaft.weight(self.gravity)
+            load[self._indices_of(part.name)] += part.shaft.weight(self.gravity)
         if self.housing is not None:
             if self.housing.participation is None:
                 raise CouplingError(f"{self.housing.name}: expected its participation in rigid motions, for its weight")
@@ -220,7 +220,7 @@ class _StaticModel:
     def _part(self, shaft: str) -> StaticShaftPart:
         return next(part for part in self.shafts if part.name == shaft)
 
-    def _own(self, shaft: str) -> slice:
+    def _indices_of(self, shaft: str) -> slice:
         first = self.first[shaft]
         return slice(first, first + 6 * self._part(shaft).shaft.places.size)
 
@@ -286,9 +286,9 @@ class _StaticModel:
         # Without any connector, every rigid motion is free.
         stiff = float(values[-1]) if values.size and values[-1] > 0.0 else 1.0
         # A spring as soft as the softest connector leaves the least rounding in the balance of forces.
-        spring = float(min(values[values > _FREE * stiff], default=stiff))
+        spring = float(min(values[values > _FREE_MOTION_STIFFNESS * stiff], default=stiff))
         # One row for each free motion; where several are free, rows are any mixture of them.
-        free = vectors.T[values <= _FREE * stiff]
+        free = vectors.T[values <= _FREE_MOTION_STIFFNESS * stiff]
         works = free @ motions.T @ self.load
         # Rounding leaves parts of other motions in a free one, which the loads drive as well.
         scale = float(np.abs(motions).max(axis=1) @ np.abs(self.load))
@@ -319,7 +319,7 @@ class _StaticModel:
             rigid[:, 0, 4] = places / length
             for number, name in enumerate(names):
                 column = np.zeros(self.size)
-                column[self._own(part.name)] = rigid[:, :, number].ravel()
+                column[self._indices_of(part.name)] = rigid[:, :, number].ravel()
                 columns.append(column)
                 words.append(f"the {name} of shaft {part.name!r}")
         if self.housing is not None:
@@ -373,13 +373,13 @@ class _StaticModel:
             self.stiffness
             + extra
             + sum(rows @ slope @ rows.T for rows, (_, _, slope) in zip(self.directions, states, strict=True)),
-            {part.name: self._own(part.name) for part in self.shafts},
+            {part.name: self._indices_of(part.name) for part in self.shafts},
             housing_rows,
             {bearing.mounted.bearing.name: rows for bearing, rows in zip(self.bearings, self.directions, strict=False)},
             tuple(self.directions[of_pairs]),
         )
         return OperatingPoint(
-            tuple(ShaftDeflection(part, x[self._own(part.name)], self.gravity) for part in self.shafts),
+            tuple(ShaftDeflection(part, x[self._indices_of(part.name)], self.gravity) for part in self.shafts),
             bearings,
             self._pair_loads(x, deflections[of_pairs], [loads for _, loads, _ in states[of_pairs]], bearings),
             None if self.housing is None else x[housing_rows],
@@ -448,15 +448,15 @@ class _StaticModel:
         longest = max(float(np.ptp(part.shaft.places)) for part in self.shafts) or 1.0
         largest = max(least, 1e-300)
         for part in self.shafts:
-            load = self.load[self._own(part.name)].reshape(-1, 6)
+            load = self.load[self._indices_of(part.name)].reshape(-1, 6)
             largest = max(largest, float(np.abs(load[:, :3]).max()), float(np.abs(load[:, 3:]).max()) / longest)
         for rows, force in zip(self.directions, forces, strict=True):
             for part in self.shafts:
-                on_shaft = (rows @ force)[self._own(part.name)].reshape(-1, 6)
+                on_shaft = (rows @ force)[self._indices_of(part.name)].reshape(-1, 6)
                 largest = max(largest, float(np.abs(on_shaft[:, :3]).max()))
         imbalances = []
         for part in self.shafts:
-            left = residual[self._own(part.name)].reshape(-1, 6)
+            left = residual[self._indices_of(part.name)].reshape(-1, 6)
             moment = float(np.abs(left[:, 3:]).max()) / longest
             imbalances.append((max(float(np.abs(left[:, :3]).max()), moment), f"shaft {part.name!r}"))
         if self.housing is not None:
@@ -479,7 +479,7 @@ class _StaticModel:
         parts = {cause: np.zeros(self.size) for cause in ("shafts", "bearings", "housing", "bodies")}
         parts["bodies"][self.rims_first :] = x[self.rims_first :]
         for part in self.shafts:
-            columns = self._own(part.name)
+            columns = self._indices_of(part.name)
             places = part.shaft.places
             bearings_of_shaft = [bearing for bearing in bearings if bearing.mounted.rotor == part.name]
             rigid_by = {"bearings": np.zeros(5), "housing": np.zeros(5)}
@@ -522,7 +522,7 @@ class _StaticModel:
         force = force if force > RESIDUAL_BOUND * pressed else 0.0
         shape = touched - contact.uniform * float(contact.face_mean @ touched)
         # An idle pair is solved under a small force, which moves nothing else.
-        loading = force if force > 0.0 else _IDLE * pressed
+        loading = force if force > 0.0 else _IDLE_PAIR_FORCE * pressed
         mean = contact.under_force(loading, shape)
         fine = contact.under_force(loading, shape, np.arange(_TE_PHASES) / _TE_PHASES)
         return PairLoad(pair, force, approach, float(slope @ approach), by_cause, mean, fine)

@@ -20,7 +20,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
+_LOAD_ROUNDING = 1e-12  # part of the loads that is rounding of the rigid-body motions
 _PUSHED = 1e-9  # part of a load below which its share in a rigid-body motion is rounding
 _STEPS = 60
 _HALVINGS = 12  # largest number of halvings of a Newton step that increases the residual
@@ -112,7 +112,7 @@ def load_balances(system: CoupledSystem) -> bool:
     rigid, _ = system.rigid_body_motions
     driven = rigid.T @ system.load
     # Relative to the load's entries, and beside the rounding of the motions themselves.
-    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _ROUNDING * np.linalg.norm(system.load)
+    scale = 1e-6 * np.abs(rigid.T) @ np.abs(system.load) + _LOAD_ROUNDING * np.linalg.norm(system.load)
     return not np.any(np.abs(driven) > scale)
 
 

@@ -25,7 +25,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
+_SINGULAR_VALUE_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
 
 
 def common_span(matrices: list[FloatArray]) -> tuple[FloatArray, list[FloatArray]]:
@@ -45,7 +45,7 @@ def common_span(matrices: list[FloatArray]) -> tuple[FloatArray, list[FloatArray
     among = np.ix_(touched, touched)
     beside = np.hstack([part for m in scaled for part in (m[among], m[among].T)])
     left, sizes, _ = np.linalg.svd(beside, full_matrices=False)
-    count = int(np.count_nonzero(sizes > _ROUNDING * sizes[0]))
+    count = int(np.count_nonzero(sizes > _SINGULAR_VALUE_ROUNDING * sizes[0]))
     directions = np.zeros((n, count))
     directions[touched] = left[:, :count]
     return directions, [directions.T @ matrix @ directions for matrix in matrices]

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 ENERGY_BOUND = 1e-2
-_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
+_ENERGY_ROUNDING = 1e-9  # part of the stored energy that is rounding in a balance
 
 
 def fingerprint(*parts: object) -> str:
@@ -317,7 +317,7 @@ def transient_figures(settings: TransientSettings, end: Checkpoint) -> Transient
         Where the energies do not balance.
     """
     # The rounding of the stored energy is no error of the balance.
-    stored = max(end.highest - end.lowest, _ROUNDING * max(abs(end.highest), abs(end.lowest)))
+    stored = max(end.highest - end.lowest, _ENERGY_ROUNDING * max(abs(end.highest), abs(end.lowest)))
     balance = _balance(end.energy - end.start_energy, end.totals, stored)
     if balance.error > ENERGY_BOUND or end.unsettled > 0.01 * end.steps:
         unsettled = (

@@ -42,7 +42,7 @@ Six = tuple[float, float, float, float, float, float]
 Tensor = tuple[Point, Point, Point]
 
 _LEAST_SINE = 1e-6  # least sine of the angle between two axes
-_ROUNDING = 1e-9  # relative rounding of typed moments of inertia, which matters for a thin body
+_INERTIA_ROUNDING = 1e-9  # relative rounding of typed moments of inertia, which matters for a thin body
 
 
 class Springs(Table):
@@ -302,7 +302,7 @@ class InertiaTensor(Table):
         pairs = (a * b - d * d, a * c - e * e, b * c - f * f)
         determinant = a * (b * c - f * f) - d * (d * c - e * f) + e * (d * f - b * e)
         least = (min(a, b, c) / scale, min(pairs) / scale**2, determinant / scale**3) if scale else (0.0,)
-        if min(least) < -_ROUNDING or (not scale and (d or e or f)):
+        if min(least) < -_INERTIA_ROUNDING or (not scale and (d or e or f)):
             raise wrong("an inertia that a body can have: no principal moment above the sum of the two others")
         return self
 

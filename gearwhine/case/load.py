@@ -179,8 +179,8 @@ def _describe(meaning: tuple[Any, ...], location: Location) -> str:
 DEEPEST = 32
 """Tables and lists within each other beyond which a case is refused."""
 
-_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"[ \t]*+|'[^'\n]*+'[ \t]*+)\.(?:[ \t]*+(?=["']))?"""
-_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}){{{DEEPEST}}}", re.MULTILINE)
+_DOTTED_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"[ \t]*+|'[^'\n]*+'[ \t]*+)\.(?:[ \t]*+(?=["']))?"""
+_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_DOTTED_PART}){{{DEEPEST}}}", re.MULTILINE)
 """A dotted key of more tables within each other than any case has."""
 
 LARGEST_FILE = 20_000_000

@@ -442,7 +442,7 @@ class Rotor(Table):
         return BuiltBow(*array([(point.at, point.amplitude, point.phase) for point in self.bow]).T)
 
 
-_ROUNDING = 1e-9  # part of a shaft's length within which a station stands at the end of a segment
+_STATION_ROUNDING = 1e-9  # part of a shaft's length within which a station stands at the end of a segment
 
 
 def _shaft_material(shaft: BuiltRotor, at: float) -> Material | None:
@@ -450,7 +450,7 @@ def _shaft_material(shaft: BuiltRotor, at: float) -> Material | None:
     from gearwhine.case.housing import Material
     from gearwhine.rotors import Segment as BuiltSegment
 
-    ends, rounding = shaft.joints.tolist(), _ROUNDING * shaft.length
+    ends, rounding = shaft.joints.tolist(), _STATION_ROUNDING * shaft.length
     touched = {
         segment.material
         for segment, left, right in zip(shaft.segments, ends, ends[1:], strict=False)

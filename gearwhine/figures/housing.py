@@ -57,8 +57,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _BAND = 0.05  # error within which the source's model is (TM-104434, Table II)
 _PLANE, _BETWEEN, _ERRORS = 92.0, 8.0, 34.0  # heights of the panels and the gap between them [mm of paper]
-_LARGEST = 60.0  # area of the circle of MAC 1 [points²]
-_FAINT = 0.05  # MACs below it are not drawn
+_AREA_OF_MAC_ONE = 60.0  # area of the circle of MAC 1 [points²]
+_LEAST_DRAWN_MAC = 0.05  # MACs below it are not drawn
 _TICK = 0.018  # length of an unpaired mode's mark, as a part of the panel
 IntArray = npt.NDArray[np.int64]
 
@@ -68,13 +68,13 @@ _BELOW = 11.0  # height of the columns' upright names [mm]
 _CELL, _LEAST_CELL, _TALLEST = 9.0, 2.6, 190.0  # largest and least height of a cell, and largest of all [mm]
 _FITS = (4.2, 2.8)  # least width and height of a cell with a number of two digits [mm]
 _NOTHING = 0.05  # values below it are left blank
-_DARK = 0.5  # values above it are written in white
+_LEAST_VALUE_IN_WHITE = 0.5  # values above it are written in white
 _CRITERIA_HEIGHT, _CRITERIA_GAP = 40.0, 5.0  # height of a panel, and gap between panels [mm of paper]
-_NAMED = 6  # largest number of degrees of freedom that are named
+_MOST_NAMED_DOFS = 6  # largest number of degrees of freedom that are named
 _STANDS_OUT = 2.0  # enhanced criterion over its median from which a degree of freedom is named
 _MARGIN, _GAP, _CAPTION = 4.0, 3.0, 9.0  # margin beside the panels, gap between pairs, and height of a caption [mm]
 _IN_A_ROW = 2  # pairs in a row
-_LONGEST = 56  # length of the longest caption [letters]
+_MOST_LETTERS = 56  # length of the longest caption [letters]
 _REACH = 0.09  # largest displacement drawn, as a part of the survey's diagonal
 _FAINTEST = 0.3  # opacity of the farthest lines
 
@@ -106,7 +106,7 @@ def draw_comparison(title: str, comparison: Comparison, model_frequencies: Float
     if comparison.shapes is not None:
         _draw_macs(plane, comparison, highest)
         handles.append(_dot("other MACs, by area", GREY, filled=False))
-    sizes = [_LARGEST * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
+    sizes = [_AREA_OF_MAC_ONE * (1.0 if pair.mac is None else pair.mac) for pair in comparison.pairs]
     at = np.array([[pair.measured, pair.model] for pair in comparison.pairs]).reshape(-1, 2).T / HERTZ
     plane.scatter(at[0], at[1], s=sizes, color=BLUE, edgecolors="white", linewidths=0.5, zorder=5, label="pairs")
     handles.append(_dot("pairs", BLUE))
@@ -148,11 +148,11 @@ def _draw_macs(axes: Axes, comparison: Comparison, highest: float) -> None:
     values = shapes.mac.copy()
     for pair in comparison.pairs:
         values[pair.mode - 1, pair.measured_mode - 1] = 0.0
-    i, j = np.nonzero((values >= _FAINT) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
+    i, j = np.nonzero((values >= _LEAST_DRAWN_MAC) & (shapes.model_frequencies[:, None] <= HERTZ * highest))
     axes.scatter(
         shapes.measured_frequencies[j] / HERTZ,
         shapes.model_frequencies[i] / HERTZ,
-        s=_LARGEST * values[i, j],
+        s=_AREA_OF_MAC_ONE * values[i, j],
         facecolors="none",
         edgecolors=GREY,
         linewidths=0.6,
@@ -246,7 +246,7 @@ def draw_mac_matrix(
     if wide >= _FITS[0] and high >= _FITS[1]:
         for (row, column), value in np.ndenumerate(values):
             if value >= _NOTHING:
-                color, size = "white" if value > _DARK else INK, min(1.05 * wide, 5.5)
+                color, size = "white" if value > _LEAST_VALUE_IN_WHITE else INK, min(1.05 * wide, 5.5)
                 text = f"{value:.2f}"
                 axes.text(column + 0.5, row + 0.5, text, ha="center", va="center", size=size, color=color)
     _name(axes.xaxis, columns, wide, upright=True)
@@ -291,7 +291,7 @@ def draw_coordinate_criteria(title: str, comac: FloatArray, enhanced: FloatArray
     if comac.shape != (count,) or enhanced.shape != (count,) or count == 0:
         raise ValueError(f"criteria of shapes {comac.shape} and {enhanced.shape} for {count} degrees of freedom")
     finite = np.flatnonzero(np.isfinite(enhanced))
-    largest_dofs = finite[np.argsort(-enhanced[finite], kind="stable")][:_NAMED]
+    largest_dofs = finite[np.argsort(-enhanced[finite], kind="stable")][:_MOST_NAMED_DOFS]
     largest_dofs = (
         largest_dofs[enhanced[largest_dofs] > _STANDS_OUT * np.median(enhanced[finite])]
         if finite.size
@@ -460,7 +460,7 @@ def draw_measured_shapes(
         left = _MARGIN + column * (2.0 * width + _GAP)
         up = height - HEAD - (row + 1) * (tall + _CAPTION)
         figure.text(
-            left / SHEET_WIDTH, (up + tall + 4.0) / whole, shortened(pair.heading, _LONGEST), fontsize=NOTE + 0.5,
+            left / SHEET_WIDTH, (up + tall + 4.0) / whole, shortened(pair.heading, _MOST_LETTERS), fontsize=NOTE + 0.5,
             color=INK, parse_math=False,
         )  # fmt: skip
         largest = max(float(np.linalg.norm(shape, axis=1).max()) for shape in (pair.measured, pair.model)) or 1.0

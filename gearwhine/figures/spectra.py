@@ -46,7 +46,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
 
 _ROW_DECADES = 4.0  # decades that a row shows below the highest line of all
-_OVERLAP = 1.7  # height of a row over the distance to the next
+_ROW_HEIGHT_RATIO = 1.7  # height of a row over the distance to the next
 _MOST_HARMONICS = 12
 _MOST_ROWS = 40  # largest number of legible rows
 _LEVELS = 60.0  # decibels below the highest level that a map shows
@@ -145,7 +145,7 @@ def draw_waterfall(
     )
     figure = sheet(HEAD + row.height + 2.0 + tall + FOOT, title, "; ".join(remarks))
     axes = panel(figure, FOOT, tall, width=width)
-    axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_OVERLAP + 0.2) * spacing))
+    axes.set(xlim=(0.0, limit), ylim=(at[rows[0]] - 0.35 * spacing, at[rows[-1]] + (_ROW_HEIGHT_RATIO + 0.2) * spacing))
     axes.set(xlabel="frequency [Hz]", ylabel=value_name)
     axes.grid(visible=False, axis="y")
 
@@ -323,7 +323,7 @@ def _draw_row(
     """Draw one spectrum on its base line; it hides rows behind it."""
     is_known = np.isfinite(heights) & (lines > 0.0)
     decades = np.log10(np.maximum(heights[is_known], 1e-300) / highest) + _ROW_DECADES
-    tops = base + _OVERLAP * spacing * np.clip(decades, 0.0, None) / _ROW_DECADES
+    tops = base + _ROW_HEIGHT_RATIO * spacing * np.clip(decades, 0.0, None) / _ROW_DECADES
     axes.fill_between(lines[is_known], base, tops, color="white", lw=0.0, zorder=zorder)
     axes.plot(lines[is_known], tops, color=BLUE, lw=0.6, zorder=zorder + 0.001)
 

@@ -50,7 +50,7 @@ _GAP = 2.0  # gap between neighbouring labels [mm]
 _RISE = 4.0  # rise of a leader between the drawing and the row [mm]
 _LEAD, _ASIDE = 1.6, 2.2  # end of a leader and begin of its label beside a panel [mm]
 _PANEL_TITLE = 48  # letters of a title over half a sheet
-_NEAR = 0.3  # gap between labels one above the other [mm]
+_LEAST_LABEL_GAP = 0.3  # gap between labels one above the other [mm]
 _RIGHT_ANGLE = 90.0  # degrees
 _MILLION = 1e6
 _FEW_DECADES = 60.0  # ratio of the ends of a logarithmic axis below which powers of ten are too few marks
@@ -388,7 +388,7 @@ def draw_column(axes: Axes, labels: Sequence[Label]) -> None:
     heights = [float(paper.inverted().transform(axes.transData.transform((label.x, label.y)))[1]) for label in labels]
     order = np.argsort(heights, kind="stable")
     sizes = np.array([_size(labels[index].text)[1] for index in order])
-    places = spread(np.array(heights)[order], sizes, 0.0, height, _NEAR)
+    places = spread(np.array(heights)[order], sizes, 0.0, height, _LEAST_LABEL_GAP)
     for index, place in zip(order.tolist(), places.tolist(), strict=True):
         label = labels[index]
         ends = [(width, heights[index]), (width + _LEAD, place)]

@@ -39,7 +39,7 @@ from gearwhine.meshes.box.morph import MorphError
 from gearwhine.numerics.progress import Progress, silent
 
 _SPREAD = 1.0 / 3.0  # default spread over the larger distance from the nominal value to an end of the range
-_SAME = 1e-9  # relative difference of numbers written in different units
+_SAME_NUMBER_DIFFERENCE = 1e-9  # relative difference of numbers written in different units
 FloatArray = npt.NDArray[np.float64]
 
 RATE_STEP = 1e-4
@@ -193,9 +193,11 @@ def _number(
     problems: list[Problem],
 ) -> FittedNumber | None:
     low, high = entry.bounds
-    if not entry.factor and not np.allclose(values, values[0], rtol=_SAME, atol=0.0):
+    if not entry.factor and not np.allclose(values, values[0], rtol=_SAME_NUMBER_DIFFERENCE, atol=0.0):
         other = next(
-            place for place, value in enumerate(values) if not np.isclose(value, values[0], rtol=_SAME, atol=0.0)
+            place
+            for place, value in enumerate(values)
+            if not np.isclose(value, values[0], rtol=_SAME_NUMBER_DIFFERENCE, atol=0.0)
         )
         shown = " and ".join(f"{key_of(places[place])} is {values[place]:g}" for place in (0, other))
         expected = f"keys with one number in the case, or 'factor = true'; {shown} (SI)"

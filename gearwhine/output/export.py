@@ -53,7 +53,7 @@ _RATIO_LIMIT = 10_000  # largest term of a resampling ratio: the pitch is right 
 _HALF_LENGTH = 32  # zero crossings of the interpolating sinc on either side
 _ATTENUATION = 100.0  # attenuation of aliases, and of what is cut off [dB]
 _TRANSITION = 0.1  # width of the cut, as a part of its frequency
-_LISTED = re.compile(r"\w+(?:, \w+)+(?=$| \[)")  # names of components in a heading, before its unit
+_LISTED_COMPONENTS = re.compile(r"\w+(?:, \w+)+(?=$| \[)")  # names of components in a heading, before its unit
 _LIMITS = ("trusted_below_hz", "complete_below_hz")  # attributes with the frequency below which a signal is complete
 _MEASURED = ("sensor", "microphone")  # dimensions of quantities that are measured on real machines
 _KINDS: dict[str, Literal["time response", "spectrum"]] = {"s": "time response", "Hz": "spectrum"}
@@ -146,7 +146,7 @@ def _components(heading: str, values: Sequence[Any]) -> Iterator[tuple[str, list
     """
     found = [dict(_numbers(value)) for value in values]
     places = list(dict.fromkeys(place for numbers in found for place in numbers))
-    listed = _LISTED.search(heading)
+    listed = _LISTED_COMPONENTS.search(heading)
     names = listed[0].split(", ") if listed else []
     named = places == [(str(number),) for number in range(1, len(names) + 1)]
     for number, place in enumerate(places):

@@ -141,7 +141,7 @@ ADDING = ("render",)
 _STAGING, _COMPLETE = ".partial-", ".complete-"  # beginnings of the names of folders of staged files
 _DRAWN = (".png", ".glb", ".vtu")
 _JSON_LINE = 160  # letters of a document's line that holds a whole list or object
-_LONGEST = 60  # length of the longest name in a file's name [characters]
+_LONGEST_FILE_NAME = 60  # length of the longest name in a file's name [characters]
 
 
 @contextmanager
@@ -338,7 +338,7 @@ def file_stems(names: Sequence[str], prefix: str = "") -> list[str]:
     stems: list[str] = []
     taken: set[str] = set()  # in small letters: some file systems take capitals for the same
     for number, name in enumerate(names, start=1):
-        plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST]
+        plain = re.sub(r"[^A-Za-z0-9._+-]+", "-", name).strip("-.")[:_LONGEST_FILE_NAME]
         stem = f"{prefix}{plain or number}"
         # Another name may already end in this one's number.
         while stem.lower() in taken:

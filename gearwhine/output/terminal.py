@@ -14,7 +14,7 @@ from rich.text import Text
 from gearwhine.output.sections import Document, Section, Table, is_number
 
 _WIDTH = 120
-_LISTED = 12  # largest number of files that are named
+_MOST_LISTED_FILES = 12  # largest number of files that are named
 _BETWEEN = 3  # columns between the cells of a table
 _NARROWEST = 20  # least number of columns of a wrapped text
 
@@ -90,7 +90,7 @@ def show_written(console: Console, document: Document) -> None:
     read = document["modes_read_from"].rpartition("/")[2] if document.get("reused") else None
     written = [name for name in document.get("files", ()) if name != read]
     if written:
-        listed = ", ".join(written) if len(written) <= _LISTED else f"{len(written)} files"
+        listed = ", ".join(written) if len(written) <= _MOST_LISTED_FILES else f"{len(written)} files"
         console.print(f"Written to {document['folder']}: {listed}")
     if moved := document.get("moved"):
         console.print(f"Earlier results of {moved['command']} in this folder are now in {moved['to']}")

@@ -44,8 +44,8 @@ _LINES = 3  # lines of each sensor
 _OPPOSED = 0.1  # least share of a line against it that is named
 _LOUDEST = 5  # lines of the sound
 _MOST_ERROR = 1e-2  # largest error of the energy balance that passes
-_SURE = 0.03  # largest error of a line by the modal basis that passes
-_BALANCED = 1e-6  # largest residual of the equilibrium that passes, as a part of the largest load
+_LARGEST_ERROR = 0.03  # largest error of a line by the modal basis that passes
+_LARGEST_RESIDUAL = 1e-6  # largest residual of the equilibrium that passes, as a part of the largest load
 _SAME_POWER = 0.5  # difference of a line's sound power levels by two ways that passes [dB]
 _LEAK = 0.1  # pressure inside the radiating surface over that on it that passes
 _SOURCE_OFF = 10.0 ** (2.0 / 20.0) - 1.0  # error of a known source's pressure that passes: 2 dB
@@ -314,8 +314,8 @@ def _proofs(document: Document) -> Iterator[Finding]:
         yield Finding(f"Stability: {statement}.", passed=bool(stability["stable"]), link=("section Coupled system",))
     if (residual := _load_of(document).get("residual")) is not None:
         yield Finding(
-            f"Operating point: forces balance to {residual:.0e} of the largest load (bound: {_BALANCED:.0e}).",
-            passed=residual < _BALANCED,
+            f"Operating point: forces balance to {residual:.0e} of the largest load (bound: {_LARGEST_RESIDUAL:.0e}).",
+            passed=residual < _LARGEST_RESIDUAL,
             link=("section Operating point",),
         )
     if (error := document.get("energy_error")) is not None:
@@ -355,8 +355,8 @@ def _point_proofs(document: Document) -> Iterator[Finding]:
         residual, worst = max(residuals, key=lambda balance: float(balance[0]))
         yield Finding(
             f"Sweep: at the operating points forces balance to {residual:.0e} of the largest load or better; worst at "
-            f"{_settings(worst)} (bound: {_BALANCED:.0e}).",
-            passed=residual < _BALANCED,
+            f"{_settings(worst)} (bound: {_LARGEST_RESIDUAL:.0e}).",
+            passed=residual < _LARGEST_RESIDUAL,
             link=("section Sweep",),
         )
 
@@ -404,8 +404,9 @@ def _basis(document: Document) -> Iterator[Finding]:
     errors = [line["uncertainty"] for line in lines if "uncertainty" in line]
     if errors and math.isfinite(largest := max(errors)):
         yield Finding(
-            f"Modal basis: the highest lines are known to {percent(largest)} or better (bound: {percent(_SURE)}).",
-            passed=largest < _SURE,
+            f"Modal basis: the highest lines are known to {percent(largest)} or better "
+            f"(bound: {percent(_LARGEST_ERROR)}).",
+            passed=largest < _LARGEST_ERROR,
             link=("section Motion",),
         )
 

@@ -506,7 +506,7 @@ def _warnings(pair: "PairAnalysis") -> Iterator[dict[str, str]]:
 
 
 _HARMONICS = 4  # harmonics of the transmission error that a line lists
-_ALONE = "of transmission error alone: load shuttling excites too, which the aim at a sensor counts"
+_TRANSMISSION_ERROR_ALONE = "of transmission error alone: load shuttling excites too, which the aim at a sensor counts"
 _WORTH_IT = 0.9  # a relief with less than this part of the given one's error is worth naming as better
 OVERVIEW = (
     *columns_of(PAIR),
@@ -697,7 +697,7 @@ def _best_relief(pair: Document) -> list[str]:
             "the best"
         )
         if aim["kind"] == "harmonics":
-            lines.append(f"  {_ALONE}")
+            lines.append(f"  {_TRANSMISSION_ERROR_ALONE}")
         return [*lines, f"Best {best['shape']} relief: {text} peak to peak"]
     close = least > _WORTH_IT * as_given
     return [*lines, f"Hardly better would be {text}" if close else f"Best {best['shape']} relief: {text}"]

@@ -255,7 +255,7 @@ def write_shapes(path: Path, housing: "SolvedHousing") -> None:
     meshio.write(path, content, file_format="vtu", compression=None)
 
 
-_SHORT = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
+_SHORT_DIRECTION_NAMES = {"rotation_x": "rot x", "rotation_y": "rot y", "rotation_z": "rot z"}
 _SHOWN = 1e-3  # smallest share of the effective mass that is shown
 
 
@@ -430,7 +430,7 @@ def _effective_mass(document: Document) -> tuple[Table, ...]:
         Column("mode", "mode"),
         Column("frequency [Hz]", "frequency"),
         *(
-            Column(_SHORT.get(name, name), f"parts.{place}", shown=partial(_percent, "parts", place))
+            Column(_SHORT_DIRECTION_NAMES.get(name, name), f"parts.{place}", shown=partial(_percent, "parts", place))
             for place, name in enumerate(mass["directions"])
         ),
     )
@@ -451,7 +451,7 @@ def _supports(supports: list[Document], directions: list[str]) -> tuple[Table, .
         Column("support", "name"),
         Column("fixes", "fixes", shown=lambda support: f"{support['fixes']} of 6" if support["fixes"] else ""),
         *(
-            Column(_SHORT.get(name, name), f"share.{name}", shown=partial(_percent, "share", name))
+            Column(_SHORT_DIRECTION_NAMES.get(name, name), f"share.{name}", shown=partial(_percent, "share", name))
             for name in directions
         ),
     )

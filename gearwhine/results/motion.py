@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _LEAST_ERROR = 0.03  # smallest error of a line that is shown
 _LINES_OF_A_SENSOR = 6  # lines of a sensor in the report
-_HIGHEST = 5  # lines of a sensor on the terminal
+_MOST_SHOWN_LINES = 5  # lines of a sensor on the terminal
 
 
 class MeshFigures(NamedTuple):
@@ -68,11 +68,11 @@ SENSOR_COLUMNS = (
     Column("rms [m/s²]", "rms_m_per_s2", ".3g"),
     Column(
         "highest lines: Hz (m/s², peak)",
-        lambda row: "  ".join(_line(line) for line in row.get("peaks", row.get("lines", ()))[:_HIGHEST]),
+        lambda row: "  ".join(_line(line) for line in row.get("peaks", row.get("lines", ()))[:_MOST_SHOWN_LINES]),
         numbers=tuple(
             f"{rows}.{place}.{key}"
             for rows in ("peaks", "lines")
-            for place in range(_HIGHEST)
+            for place in range(_MOST_SHOWN_LINES)
             for key in ("frequency_hz", "amplitude_m_per_s2")
         ),
     ),
@@ -136,7 +136,7 @@ def gear_body_lines(document: Document) -> list[str]:
     return lines
 
 
-_TIGHT = 0.5  # width of a band [dB] below which a line is shown with a digit more
+_NARROW_BAND = 0.5  # width of a band [dB] below which a line is shown with a digit more
 
 
 def band_words(row: Document) -> str:
@@ -157,7 +157,7 @@ def amplitude_words(row: Document) -> str:
     One digit, all that a wide band leaves, would hide what a change of the machine does to the line.
     """
     width = _width(row)
-    digits = 3 if width < _TIGHT else 2
+    digits = 3 if width < _NARROW_BAND else 2
     amplitude = row.get("amplitude_m_per_s2")
     return NOTHING if amplitude is None else plain(amplitude, digits)
 
@@ -165,7 +165,7 @@ def amplitude_words(row: Document) -> str:
 def level_words(row: Document) -> str:
     """Return a line's level [dB], with tenths where its band by damping is narrow."""
     level = row.get("level_db")
-    return NOTHING if level is None else format(level, ".1f" if _width(row) < _TIGHT else ".0f")
+    return NOTHING if level is None else format(level, ".1f" if _width(row) < _NARROW_BAND else ".0f")
 
 
 def plain(value: float, digits: int) -> str:
@@ -175,7 +175,7 @@ def plain(value: float, digits: int) -> str:
 
 
 _MINOR = 0.1  # part of a line's largest mechanism below which another one is not shown
-_FAR = 2.0  # factor between a line and the sum of its parts from which that is told
+_LARGEST_SUM_RATIO = 2.0  # factor between a line and the sum of its parts from which that is told
 
 
 def mechanism_words(row: Document) -> str:
@@ -184,10 +184,10 @@ def mechanism_words(row: Document) -> str:
     if not parts:
         return NOTHING
     largest = max(parts.values())
-    told = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
-    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in told)
+    leading = sorted((name for name in parts if parts[name] >= _MINOR * largest), key=lambda name: -parts[name])
+    words = ", ".join(f"{MECHANISMS[name]} {plain(parts[name], 2)}" for name in leading)
     amplitude, together = row.get("amplitude_m_per_s2"), row["parts_together_m_per_s2"]
-    if amplitude is None or amplitude / _FAR <= together <= amplitude * _FAR:
+    if amplitude is None or amplitude / _LARGEST_SUM_RATIO <= together <= amplitude * _LARGEST_SUM_RATIO:
         return words
     return f"{words}; by the linear model {plain(together, 2)} in all"
 

@@ -645,14 +645,14 @@ def rotors_document(solved: tuple["SolvedRotor", ...]) -> dict[str, Any]:
     return document_of(ROTORS, solved) | {"warnings": warnings}
 
 
-_MOST = 12  # rows of a table
+_MOST_TABLE_ROWS = 12  # rows of a table
 _MAP_ROWS = 5  # rows of the critical-speed map
 _REACH = 2.0  # multiple of the speed of operation above which critical speeds are only counted
 _MOSTLY_AXIAL, _PARTLY_AXIAL = 0.9, 0.05  # axial share of kinetic energy from which a motion is axial, or partly so
 _PLANAR = 1e-3  # a whirl direction this near to zero is a line, neither forward nor backward
 _NEUTRAL = 1e-9  # a damping ratio this near to zero neither grows nor decays
-_ROUNDING = 1e-9  # part of the largest torque up to which a torque counts as zero
-_SAME = 1e-9  # relative difference up to which two frequencies are one of both planes
+_TORQUE_ROUNDING = 1e-9  # part of the largest torque up to which a torque counts as zero
+_SAME_FREQUENCY_DIFFERENCE = 1e-9  # relative difference up to which two frequencies are one of both planes
 
 
 def report(document: Document) -> Section:
@@ -701,7 +701,7 @@ def _content(rotor: Document) -> Iterator[str | Table]:
     )
     yield from _weight(rotor["static"])
     if response := rotor["unbalance_response"]:
-        yield from table_of(_PROBES, response["probes"][:_MOST], "Response to unbalance and bow")
+        yield from table_of(_PROBES, response["probes"][:_MOST_TABLE_ROWS], "Response to unbalance and bow")
     if response := rotor["torsional_response"]:
         yield from _torsion(response)
     if speed_map := rotor["stiffness_map"]:
@@ -724,7 +724,7 @@ def _at_rest(rotor: Document) -> tuple[Table, ...]:
     by_frequency = sorted([*bending, *torsion, *axial], key=lambda row: row[0])
     rows = [{"frequency_hz": hertz, "kind": kind} for hertz, kind in by_frequency if hertz <= highest]
     columns = (Column("frequency [Hz]", "frequency_hz", ".5g"), Column("kind", "kind"))
-    return table_of(columns, rows[:_MOST], f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}")
+    return table_of(columns, rows[:_MOST_TABLE_ROWS], f"At rest{_with_bearings_at(rotor['rest_bearings_at_rpm'])}")
 
 
 def _with_bearings_at(speed: float | None) -> str:
@@ -736,7 +736,10 @@ def _bending(frequencies: Sequence[float], axial_shares: Sequence[float]) -> Ite
     place = 0
     while place < len(frequencies):
         frequency = frequencies[place]
-        double = place + 1 < len(frequencies) and frequencies[place + 1] - frequency <= _SAME * frequencies[place + 1]
+        double = (
+            place + 1 < len(frequencies)
+            and frequencies[place + 1] - frequency <= _SAME_FREQUENCY_DIFFERENCE * frequencies[place + 1]
+        )
         kind = "bending" if frequency > 0.0 else "moves freely"
         planes = "both planes" if double else "one plane"
         yield frequency, f"{kind}, {planes}{_with_axial(axial_shares[place])}"
@@ -770,7 +773,7 @@ def _whirl(rotor: Document) -> tuple[Table, ...]:
     keys = ("frequency_hz", "direction", "axial_share", "log_decrement", "damping_ratio")
     values = zip(*(whirl[key] for key in (*keys, "most_strained")), strict=True)
     rows = [{"speed_rpm": whirl["speed_rpm"]} | dict(zip((*keys, "strained"), row, strict=True)) for row in values]
-    return table_of(_WHIRL_COLUMNS, rows[:_MOST], f"Turning at {whirl['speed_rpm']:.6g} rpm")
+    return table_of(_WHIRL_COLUMNS, rows[:_MOST_TABLE_ROWS], f"Turning at {whirl['speed_rpm']:.6g} rpm")
 
 
 def _state(row: Document) -> str:
@@ -807,7 +810,7 @@ def _critical_speeds(rotor: Document) -> Iterator[str | Table]:
         rows = [
             crossing | {"way": _turning(campbell) * crossing["direction"]} for crossing in campbell["critical_speeds"]
         ]
-        yield from table_of(_CRITICAL_COLUMNS, rows[:_MOST], f"Critical speeds from {_span(campbell)}")
+        yield from table_of(_CRITICAL_COLUMNS, rows[:_MOST_TABLE_ROWS], f"Critical speeds from {_span(campbell)}")
         if not rows:
             undamped = rotor["critical_speeds_rpm"]
             lowest = f"; undamped, the lowest is {undamped[0]:.5g} rpm" if undamped else ""
@@ -829,7 +832,7 @@ def _undamped(rotor: Document) -> Iterator[str | Table]:
     )
     rows = [dict(zip(("speed_rpm", "way", "axial_share", "margin"), row, strict=True)) for row in values]
     reach = len(rows) if margins is None else sum(margin <= _REACH - 1.0 for margin in margins) + 1
-    yield from table_of(_CRITICAL_COLUMNS, rows[: min(reach, _MOST)], "Undamped critical speeds")
+    yield from table_of(_CRITICAL_COLUMNS, rows[: min(reach, _MOST_TABLE_ROWS)], "Undamped critical speeds")
     yield from _nearest(rows)
 
 
@@ -854,7 +857,7 @@ def _orders(campbell: Document) -> Iterator[str | Table]:
             whirl = _whirl_name(_turning(campbell) * crossing["direction"], crossing)
             rows.append({"order": order, "speed": f"{abs(crossing['speed_rpm']):.5g}", "whirl": whirl})
     columns = (Column("order", "order"), Column("speed [rpm]", "speed"), Column("whirl", "whirl"))
-    yield from table_of(columns, rows[: 2 * _MOST], f"Other orders from {_span(campbell)}")
+    yield from table_of(columns, rows[: 2 * _MOST_TABLE_ROWS], f"Other orders from {_span(campbell)}")
     if not rows:
         yield f"None of the other orders meets a whirl frequency from {_span(campbell)}"
 
@@ -900,7 +903,7 @@ _PROBES = (
 
 def _torsion(response: Document) -> Iterator[str | Table]:
     """Yield the largest angle and torque at each probe, and the largest torque of the whole shaft."""
-    nothing = _ROUNDING * response["largest_torque_n_m"]
+    nothing = _TORQUE_ROUNDING * response["largest_torque_n_m"]
     columns = (
         Column("probe", lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm", numbers=("at_m",)),
         Column(
@@ -922,7 +925,7 @@ def _torsion(response: Document) -> Iterator[str | Table]:
         ),
     )
     title = f"Response to torques from {response['from_hz']:.5g} to {response['to_hz']:.5g} Hz"
-    yield from table_of(columns, response["probes"][:_MOST], title)
+    yield from table_of(columns, response["probes"][:_MOST_TABLE_ROWS], title)
     yield (
         f"The shaft carries most at {1e3 * response['largest_torque_at_m']:.5g} mm: "
         f"{response['largest_torque_n_m']:.4g} N m at {response['largest_torque_at_hz']:.5g} Hz"

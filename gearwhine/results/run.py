@@ -148,8 +148,8 @@ TRACED = (
         "contributions",
         lambda row: row.line,
         (
-            Rows("housing_modes", lambda line: line.told_modes, CONTRIBUTION),
-            Rows("bearings", lambda line: line.told_bearings, CONTRIBUTION),
+            Rows("housing_modes", lambda line: line.listed_modes, CONTRIBUTION),
+            Rows("bearings", lambda line: line.listed_bearings, CONTRIBUTION),
             Part("free_vibration", lambda line: line.free, CONTRIBUTION),
         ),
     ),

@@ -31,7 +31,7 @@ _METHODS = {
     "rayleigh": "Rayleigh's integral over flat faces in baffles",
     "erp": "equivalent radiated power, an estimate",
 }
-_LISTED = 3  # faces, lines or microphones that a sentence lists, and lines listed for each microphone
+_MOST_LISTED = 3  # faces, lines or microphones that a sentence lists, and lines listed for each microphone
 _TERMINAL_LINES = 12  # lines in the table of the terminal
 _BRIEF_LINES = 5  # lines in that table beside another analysis
 _LEAST_LEFT_OUT = 1e-3  # part of the power from which lines left out are mentioned
@@ -227,8 +227,8 @@ def _mechanisms(row: Document) -> str:
     if not levels:
         return ""
     highest = max(levels.values())
-    told = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
-    first, *others = told
+    leading = sorted((name for name in levels if levels[name] > highest - _WEAKER), key=lambda name: -levels[name])
+    first, *others = leading
     return ", ".join([MECHANISMS[first], *(f"{MECHANISMS[name]} {levels[name] - highest:.0f} dB" for name in others)])
 
 
@@ -387,7 +387,7 @@ def _heard(document: Document) -> list[Document]:
     rows = []
     for microphone in document["microphones"]:
         name = microphone["name"]
-        loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_LISTED]
+        loudest = sorted(document["lines"], key=lambda line: -float(line["microphones_db"][name]))[:_MOST_LISTED]
         rows += [line | {"microphone": name, "level_db": line["microphones_db"][name]} for line in loudest]
     return rows
 
@@ -512,7 +512,7 @@ def sound_document(solved: "SolvedSound") -> dict[str, Any]:
 
 def _parts(faces: Document) -> str:
     """Return parts of a power in words, the largest first."""
-    ordered = sorted(faces.items(), key=lambda face: -face[1])[:_LISTED]
+    ordered = sorted(faces.items(), key=lambda face: -face[1])[:_MOST_LISTED]
     return ", ".join(f"{face} {100.0 * part:.0f} %" for face, part in ordered)
 
 
@@ -576,9 +576,9 @@ def _named(lines: list[Document], *, shares: bool = False) -> str:
     names = [
         f"{arrowed(str(line['name']))} at {line['frequency_hz']:.0f} Hz"
         + (f" ({percent(line['share'])})" if shares else "")
-        for line in lines[:_LISTED]
+        for line in lines[:_MOST_LISTED]
     ]
-    return ", ".join(names) + (f" and {len(lines) - _LISTED} more" if len(lines) > _LISTED else "")
+    return ", ".join(names) + (f" and {len(lines) - _MOST_LISTED} more" if len(lines) > _MOST_LISTED else "")
 
 
 def brief(document: Document) -> Iterator[str | Table]:
@@ -590,7 +590,9 @@ def brief(document: Document) -> Iterator[str | Table]:
         yield from table_of(LOUDEST_COLUMNS, loudest_lines(document)[:_BRIEF_LINES], "Loudest lines of the sound")
     if document["microphone_error"] is not None:
         names = [str(microphone["name"]) for microphone in document["microphones"]]
-        listed = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+        listed = ", ".join(names[:_MOST_LISTED]) + (
+            f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+        )
         yield f"Sound pressure over time at {counted(len(names), 'microphone')} ({listed}): gearwhine export --wav"
 
 

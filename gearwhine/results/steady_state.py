@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.periodic.superposition import SuperposedResponse
 
 _TILTS = ("about x", "about y")
-_EXACT = 0.02  # distance of a line from the frequency of its cause, over the spacing of lines
+_EXACT_LINE_DISTANCE = 0.02  # distance of a line from the frequency of its cause, over the spacing of lines
 _LINES_SHOWN = 3  # highest lines of each sensor on the terminal, with what excites them
 
 PROOF = (
@@ -125,7 +125,7 @@ def _lines(
     )[: motions[0].reported_lines]
     if not found:
         return []
-    within = np.array([_EXACT / motion.response.period for *_, motion in found])
+    within = np.array([_EXACT_LINE_DISTANCE / motion.response.period for *_, motion in found])
     names = line_names(machine, [frequency for frequency, *_ in found], within)
     return [
         {"frequency_hz": frequency, key: amplitude, "phase_rad": phase, "name": name.name, "order": name.order}
@@ -338,7 +338,10 @@ CURVE = (
         _POINT,
         "rpm",
         "speed of the first driver",
-        attributes=lambda solved: {"ending": solved.curve.ending, "account": solved.curve.told(1.0 / RPM, "rpm")},
+        attributes=lambda solved: {
+            "ending": solved.curve.ending,
+            "account": solved.curve.description(1.0 / RPM, "rpm"),
+        },
     ),
     Quantity(
         "stable",
@@ -358,7 +361,7 @@ CURVE = (
         "number of the piece, from 1: between two pieces nothing is followed",
     ),
     Quantity("gaps_rpm", lambda solved: [[end * RPM for end in gap] for gap in solved.curve.gaps]),
-    Quantity("account", lambda solved: solved.curve.told(1.0 / RPM, "rpm")),
+    Quantity("account", lambda solved: solved.curve.description(1.0 / RPM, "rpm")),
     Quantity(
         "",
         lambda solved: [contact.name for contact in solved.machine.system.contacts] or None,

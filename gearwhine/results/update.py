@@ -280,7 +280,7 @@ def update_arrays(case: "Case", solved: "SolvedUpdate") -> LabelledArrays:
     return LabelledArrays(variables, {"unit": variables.pop("unit")}, file_attributes(labels_of(case)))
 
 
-_FEW = 0.05  # part of random sets fitted as well, above which the errors alone show little
+_FEW_RANDOM_SETS = 0.05  # part of random sets fitted as well, above which the errors alone show little
 
 
 def report(document: Document) -> Section:
@@ -360,7 +360,7 @@ def _content(document: Document) -> Iterator[str | Table]:
     yield from table_of(_PREDICTED, document.get("held_back", ()))
     if "null" in document:
         yield from _null(document["null"])
-        if document["null"]["as_good_in_rms"] > _FEW:
+        if document["null"]["as_good_in_rms"] > _FEW_RANDOM_SETS:
             yield "So the errors alone say little of this housing: it is a plausible one, calibrated."
     else:
         by_shapes = document["pairs"][0]["mac"] is not None

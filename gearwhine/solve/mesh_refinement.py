@@ -17,7 +17,8 @@ _MOST_STEPS = 8
 _ORDER, _ORDERS = 2.0, (0.7, 4.0)  # assumed order of the errors, and bounds of an observed one
 _AIM = 0.85  # part of the accuracy that a step aims at
 _FINER = (0.4, 0.85)  # bounds of one size over the one before
-_FORESEEN = 4.0  # unknowns foreseen of the last mesh over the most, from which the first ones are not worth their time
+# Unknowns foreseen of the last mesh over the most, from which the first ones are not worth their time.
+_LARGEST_FORESEEN_RATIO = 4.0
 _GROWTH = 2.5  # unknowns grow with 1 / h to this power: 2 in walls of one layer, 3 in solids
 
 
@@ -64,7 +65,7 @@ def next_size(steps: list[RefinementStep], accuracy: float) -> float:
     needed: float = (_AIM * accuracy / last.largest_error) ** (1.0 / order)
     factor: float = min(max(needed, _FINER[0]), _FINER[1])
     unknowns, in_all = last.dofs * factor**-_GROWTH, last.dofs * needed**-_GROWTH
-    too_many = unknowns > MOST_UNKNOWNS or in_all > _FORESEEN * MOST_UNKNOWNS
+    too_many = unknowns > MOST_UNKNOWNS or in_all > _LARGEST_FORESEEN_RATIO * MOST_UNKNOWNS
     if too_many or len(steps) >= _MOST_STEPS:
         reached = math.ceil(1e3 * last.largest_error) / 10.0
         size = length_text(last.mesh_size_m)

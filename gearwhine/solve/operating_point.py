@@ -37,10 +37,11 @@ TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
 """Parts of the torque of operation at which the equilibrium is found over torque."""
 
 _PLACES = 201  # places along a shaft at which its deflection is given
-_ROUNDED = 1e-15  # deflection up to which it counts as zero [m]
-_DIFFERENCE = 0.1  # difference of two numbers up to which no warning is given, as a part of the larger one
-_ALIGNED = 0.1  # difference of misalignments over the face up to which no warning is given, of the teeth's deflection
-_UNEVEN = 2.0  # K_Hβ above which a face carries unevenly
+_ZERO_DEFLECTION = 1e-15  # deflection up to which it counts as zero [m]
+_UNWARNED_DIFFERENCE = 0.1  # difference of two numbers up to which no warning is given, as a part of the larger one
+# Difference of misalignments over the face up to which no warning is given, of the teeth's deflection.
+_UNWARNED_MISALIGNMENT = 0.1
+_UNEVEN_FACE_LOAD_FACTOR = 2.0  # K_Hβ above which a face carries unevenly
 _SHORT_LIFE = 1000.0  # life below which a warning is given [h]
 _WRONG_SIDE = 1e-3  # part of a bearing's force that balls in angular contact may carry against their angle
 _ARC_MINUTE = math.radians(1.0 / 60.0)
@@ -180,7 +181,7 @@ class DeflectedShaft:
         """Largest displacement across the axis [m], and its place from the left end [m]; zeros where it is rounding."""
         across = np.hypot(self.motion[0], self.motion[1])
         place = int(across.argmax())
-        return (float(across[place]), float(self.at[place])) if across[place] > _ROUNDED else (0.0, 0.0)
+        return (float(across[place]), float(self.at[place])) if across[place] > _ZERO_DEFLECTION else (0.0, 0.0)
 
     @property
     def twist(self) -> float:
@@ -382,9 +383,9 @@ def _stiffness_warnings(solved: SolvedLoad, warned: set[str]) -> Iterator[dict[s
             continue
         assumed = np.diag(mounted.bearing.at_speed(solved.machine.speeds[mounted.rotor]).spatial_stiffness)[:3]
         tangent = np.diag(bearing.load.stiffness)[:3]
-        apart = np.abs(assumed - tangent) > _DIFFERENCE * np.maximum(assumed, tangent)
+        apart = np.abs(assumed - tangent) > _UNWARNED_DIFFERENCE * np.maximum(assumed, tangent)
         # A direction in which the bearing is soft beside the others holds nothing there.
-        apart &= np.maximum(assumed, tangent) > _DIFFERENCE * max(assumed.max(), tangent.max())
+        apart &= np.maximum(assumed, tangent) > _UNWARNED_DIFFERENCE * max(assumed.max(), tangent.max())
         if apart.any():
             texts = [", ".join(f"{1e-6 * value:.4g}" for value in values.tolist()) for values in (assumed, tangent)]
             yield warning(
@@ -401,7 +402,7 @@ def _face_warnings(load: PairLoad) -> Iterator[dict[str, Any]]:
     label = load.pair.label
     if load.force == 0.0:
         return
-    if load.k_h_beta > _UNEVEN:
+    if load.k_h_beta > _UNEVEN_FACE_LOAD_FACTOR:
         yield warning(
             "uneven face",
             f"{label}: the face carries unevenly, K_Hβ = {load.k_h_beta:.3g}; its flanks are "
@@ -431,7 +432,7 @@ def _misalignment_warnings(solved: SolvedLoad) -> Iterator[dict[str, Any]]:
         if pair.misalignment.origin == "operating point" or taken is None or load.force == 0.0:
             continue
         apart = abs(taken - at_equilibrium) * load.pair.geometry.face_width
-        if apart <= _ALIGNED * load.tooth_deflection:
+        if apart <= _UNWARNED_MISALIGNMENT * load.tooth_deflection:
             continue
         driver, driven = load.names
         said = f"the case gives a misalignment of {1e6 * taken:.4g} µrad, which the motion takes"

@@ -32,7 +32,8 @@ RESULTS_FILE = "results.nc"
 _TWO_PI = 2.0 * np.pi
 _MICRO = 1e6
 _LISTED_MODES = 2  # modes in a picture
-_NEAR = 0.1  # part by which shapes at the nodes nearest to survey points may differ from those at the points
+# Part by which shapes at the nodes nearest to survey points may differ from those at the points.
+_LARGEST_SHAPE_DIFFERENCE = 0.1
 _OF_LINES = (
     "housing_line",
     "housing_acceleration_spectrum",
@@ -41,7 +42,7 @@ _OF_LINES = (
     "survey_shape",
     "survey_position",
 )  # arrays of a results file that its operating shapes follow from
-_SAME = 1e-9  # relative difference of frequencies and shapes up to which a run's housing is this one
+_SAME_HOUSING_DIFFERENCE = 1e-9  # relative difference of frequencies and shapes up to which a run's housing is this one
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
     survey = solved.survey.matrix @ solved.modes.shapes.reshape(len(solved.modes.shapes), -1).T
     stored = content["survey_shape"].values.reshape(len(content["housing_mode"]), -1).T
     # Signs count too: amplitudes are those of these very shapes.
-    if stored.shape != survey.shape or np.abs(stored - survey).max() > _SAME * np.abs(survey).max():
+    if stored.shape != survey.shape or np.abs(stored - survey).max() > _SAME_HOUSING_DIFFERENCE * np.abs(survey).max():
         raise _missing(folder, "a run with this housing; these results are another's: 'gearwhine run' again")
     lines = content["housing_line"].values
     spacing = float(lines[1] - lines[0])
@@ -98,10 +99,12 @@ def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: Solv
         # A tone of the sensors between the lines, where there is one.
         near = listed[np.abs(listed - lines[place]) < 0.5 * spacing]
         chosen[place] = float(near[0]) if near.size else float(lines[place])
-    told = content["housing_acceleration_spectrum"].attrs
+    attributes = content["housing_acceleration_spectrum"].attrs
     named = [(chosen[place], _name(content, chosen[place], spacing)) for place in sorted(chosen)]
-    start = float(told.get("record_start_s", 0.0))
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, named)
+    start = float(attributes.get("record_start_s", 0.0))
+    return _run_lines(
+        spectrum[..., 0] + 1j * spectrum[..., 1], spacing, attributes.get("window", "uniform"), start, named
+    )
 
 
 def _run_lines(
@@ -180,10 +183,12 @@ def stored_lines(folder: Path, record: ModeRecord, most: int) -> list[RunLine]:
     if not _same_shapes(shapes, positions, record):
         return []
     pairs = zip(listed.T.ravel().tolist(), map(str, names.T.ravel()), strict=True)
-    spacing, told = float(lines[1]), stored["housing_acceleration_spectrum"].attributes
+    spacing, attributes = float(lines[1]), stored["housing_acceleration_spectrum"].attributes
     chosen = _chosen(((hertz, name) for hertz, name in pairs if np.isfinite(hertz)), spacing, most)
-    start = float(told.get("record_start_s", 0.0))
-    return _run_lines(spectrum[..., 0] + 1j * spectrum[..., 1], spacing, told.get("window", "uniform"), start, chosen)
+    start = float(attributes.get("record_start_s", 0.0))
+    return _run_lines(
+        spectrum[..., 0] + 1j * spectrum[..., 1], spacing, attributes.get("window", "uniform"), start, chosen
+    )
 
 
 def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) -> bool:
@@ -193,7 +198,7 @@ def _same_shapes(stored: FloatArray, positions: FloatArray, record: ModeRecord) 
     if stored.shape != shapes.shape:
         return False
     alike = np.sum(stored * shapes, axis=(1, 2)) / np.maximum(np.sum(shapes**2, axis=(1, 2)), np.finfo(float).tiny)
-    return bool(np.all(np.abs(alike - 1.0) < _NEAR))
+    return bool(np.all(np.abs(alike - 1.0) < _LARGEST_SHAPE_DIFFERENCE))
 
 
 def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing) -> DrawnShape:

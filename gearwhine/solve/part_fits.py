@@ -18,8 +18,8 @@ from gearwhine.numerics.findings import in_mm
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor, Segment
 
-_FIT = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]
-_TOUCHING = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
+_FIT_TOLERANCE = 1e-4  # difference up to which two diameters, or a place and an end, fit [m]
+_TOUCHING_OVERLAP = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
 
 
 def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
@@ -53,7 +53,7 @@ def _of_bearing(
     seat = next((candidate for candidate in seats if candidate.name == bearing.seat), None)
     if seat is None:
         return
-    if outside is not None and abs(outside - seat.diameter) > _FIT:
+    if outside is not None and abs(outside - seat.diameter) > _FIT_TOLERANCE:
         yield warning(
             "bearing seat",
             f"{label}: its outside diameter of {in_mm(outside)} is not the {in_mm(seat.diameter)} of the bore of seat "
@@ -74,7 +74,7 @@ def _of_bearing(
         )
         if not half:
             return
-    if off > _FIT:
+    if off > _FIT_TOLERANCE:
         yield warning(
             "bearing place",
             f'{label}: its middle at z = {in_mm(z)} lies {in_mm(off)} beyond {where}, of seat "{seat.name}"; the seat '
@@ -107,7 +107,7 @@ def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[flo
     for bore in bores:
         apart = max(abs(bore.center[axis] - seat.center[axis]) for axis in range(2))
         ends = bore.center[2] - 0.5 * bore.length, bore.center[2] + 0.5 * bore.length
-        alike = apart <= 10 * _FIT and abs(bore.diameter - seat.diameter) <= 0.02 * seat.diameter
+        alike = apart <= 10 * _FIT_TOLERANCE and abs(bore.diameter - seat.diameter) <= 0.02 * seat.diameter
         if alike and ends[0] - seat.diameter <= seat.center[2] <= ends[1] + seat.diameter:
             return ends
     return None
@@ -132,7 +132,7 @@ def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
         else:
             common = min(end for _, end in ends) - max(start for start, _ in ends)
             whole = min(end - start for start, end in ends)
-            if whole - common > _FIT:
+            if whole - common > _FIT_TOLERANCE:
                 ranges = " and ".join(f"{in_mm(start)} to {in_mm(end)}" for start, end in ends)
                 yield warning(
                     "gear faces",
@@ -148,10 +148,12 @@ def _on_shaft(label: str, bore: float, rotor: Rotor, at: float, width: float) ->
     left, right = at - 0.5 * width, at + 0.5 * width
     segment_ends = []
     for part, start, end in zip(rotor.segments, rotor.joints, rotor.joints[1:], strict=False):
-        overlaps = min(end, right) - max(start, left) > _TOUCHING or start <= left == right <= end
+        overlaps = min(end, right) - max(start, left) > _TOUCHING_OVERLAP or start <= left == right <= end
         if isinstance(part, Segment) and overlaps:
             segment_ends.append(tuple(outer for outer, _ in part.end_diameters))
-    if not segment_ends or any(min(ends) - _FIT <= bore <= max(ends) + _FIT for ends in segment_ends):
+    if not segment_ends or any(
+        min(ends) - _FIT_TOLERANCE <= bore <= max(ends) + _FIT_TOLERANCE for ends in segment_ends
+    ):
         return
     diameters = list(dict.fromkeys(diameter for ends in segment_ends for diameter in ends))
     listed = " and ".join(in_mm(diameter) for diameter in diameters)

@@ -30,13 +30,15 @@ from gearwhine.rotors.rolling_bearings import RollingBearing
 
 FloatArray = npt.NDArray[np.float64]
 
-_DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
-_ROUNDING = 1e-6  # part of the load below which a component counts as zero
-_MOST = 0.5  # part of the power of an acceleration above the limit without a warning
-_SETTLED = 0.02  # free vibration at the begin of a record, as a part of that at the start, without a warning
-_PARTED = 1e-3  # part of the time in which flanks are apart without a warning
-_HELD = 0.1  # part of the resistance to a tilt of the face that flanks may have without that warning
-_HIGHEST = 5  # lines of a sensor that are looked at
+_UNWARNED_DIFFERENCE = 0.1  # difference of both forces up to which no warning is given, as a part of the larger one
+_LOAD_ROUNDING = 1e-6  # part of the load below which a component counts as zero
+_UNWARNED_POWER_ABOVE_LIMIT = 0.5  # part of the power of an acceleration above the limit without a warning
+# Free vibration at the begin of a record, as a part of that at the start, without a warning.
+_SETTLED_SHARE = 0.02
+_UNWARNED_TIME_APART = 1e-3  # part of the time in which flanks are apart without a warning
+# Part of the resistance to a tilt of the face that flanks may have without that warning.
+_UNWARNED_TILT_RESISTANCE = 0.1
+_MOST_CHECKED_LINES = 5  # lines of a sensor that are looked at
 _OFF_LINE = 0.05  # difference of a line from the torque of operation without a warning, as a part of the larger torque
 
 
@@ -73,10 +75,10 @@ def bearing_load_warnings(
         scale = max(float(np.linalg.norm(assumed)), float(np.linalg.norm(actual)))
         radial = float(np.hypot(*(actual - assumed)[:2]))
         axial = abs(float(actual[2] - assumed[2]))
-        if max(radial, axial) <= _DIFFERENCE * scale:
+        if max(radial, axial) <= _UNWARNED_DIFFERENCE * scale:
             continue
         # The message proposes a load for the case, which must be free of rounding errors.
-        actual = np.where(np.abs(actual) > _ROUNDING * scale, actual, 0.0)
+        actual = np.where(np.abs(actual) > _LOAD_ROUNDING * scale, actual, 0.0)
         sizes = [(float(np.hypot(*force[:2])), float(force[2])) for force in (assumed, actual)]
         warnings.append(
             warning(
@@ -106,21 +108,21 @@ def settling_warnings(transient: SolvedTransient, signature: SolvedSignature) ->
     begin = transient.record.sampling.settings.record_from
     near: dict[int, TracedLine] = {}
     for lines in signature.lines.values():
-        for line in lines[:_HIGHEST]:
+        for line in lines[:_MOST_CHECKED_LINES]:
             if line.named.mode is not None and line.named.kind != "mode":
                 near.setdefault(line.named.mode, line)
     warnings = []
     for mode, line in sorted(near.items()):
         decay = -float(signature.modes.eigenvalues[mode].real)
         left = float(np.exp(-decay * begin))
-        if decay <= 0.0 or left <= _SETTLED:
+        if decay <= 0.0 or left <= _SETTLED_SHARE:
             continue
-        turns = int(np.ceil(np.log(1.0 / _SETTLED) / decay * abs(transient.speed) / (2.0 * np.pi)))
+        turns = int(np.ceil(np.log(1.0 / _SETTLED_SHARE) / decay * abs(transient.speed) / (2.0 * np.pi)))
         hertz = float(signature.modes.frequencies_hz[mode])
         message = (
             f"{line.named.name} at {line.frequency:.5g} Hz stands near a coupled mode of {hertz:.5g} Hz whose free "
             f"vibration has fallen to {100.0 * left:.2g} % of its start when the record begins, so the line may be "
-            f"off: take transient.discard = {turns} revolutions for {100.0 * _SETTLED:.0f} %, or `steady`"
+            f"off: take transient.discard = {turns} revolutions for {100.0 * _SETTLED_SHARE:.0f} %, or `steady`"
         )
         warnings.append(warning("settling", message, frequency_hz=line.frequency, mode_hz=hertz, left=left))
     return warnings
@@ -140,14 +142,14 @@ def beyond_limit_warnings(transient: SolvedTransient) -> list[dict[str, Any]]:
     parts: dict[str, float] = {}
     for name, spectrum in transient.sensor_spectra.items():
         below, whole = (float(spectrum.rms(end)) for end in (limit, np.inf))
-        if whole > 0.0 and 1.0 - (below / whole) ** 2 > _MOST:
+        if whole > 0.0 and 1.0 - (below / whole) ** 2 > _UNWARNED_POWER_ABOVE_LIMIT:
             parts[name] = 1.0 - (below / whole) ** 2
     if not parts:
         return []
-    told = ", ".join(f"{name} {100.0 * part:.3g} %" for name, part in parts.items())
+    listed = ", ".join(f"{name} {100.0 * part:.3g} %" for name, part in parts.items())
     message = (
         f"most of the power of the acceleration lies above {limit:.0f} Hz, where modes of the housing are missing "
-        f"({told}): rms, peaks and sounds are without it; raise housing.frequency_limit or housing.modes"
+        f"({listed}): rms, peaks and sounds are without it; raise housing.frequency_limit or housing.modes"
     )
     return [warning("power beyond the limit", message, trusted_below_hz=limit, parts=parts)]
 
@@ -162,7 +164,7 @@ def operation_warnings(machine: Machine) -> list[dict[str, Any]]:
     warnings = []
     torques = np.abs(machine.pair_torques)
     for pair, torque in zip(machine.gear_pairs, torques, strict=True):
-        if not machine.outputs and torques.max() > 0.0 and torque <= _ROUNDING * torques.max():
+        if not machine.outputs and torques.max() > 0.0 and torque <= _LOAD_ROUNDING * torques.max():
             message = (
                 f"{pair.label} carries no torque, as nothing is taken off behind it: are its driver and driven "
                 "exchanged, or does an [[operation.output]] lack?"
@@ -209,7 +211,7 @@ def constant_speed_warnings(machine: Machine) -> list[dict[str, Any]]:
     return [warning("loads over time", message, keys=[f"operation.{key}" for key in left_out])]
 
 
-FAST = 5e5
+FASTEST = 5e5
 """Speed factor n d_m of a rolling bearing [mm/min] beyond which the centrifugal force of its elements is warned of.
 
 At it a ball of a 6308 (65 mm, 15 mm) is thrown outwards with 44 N, which is 3 % of the load of the most loaded one
@@ -234,7 +236,7 @@ def centrifugal_warnings(
         row = max(bearing.rows, key=lambda candidate: candidate.pitch_diameter)
         rpm = abs(speed) * 60.0 / _TWO_PI
         factor = rpm * 1e3 * row.pitch_diameter
-        if factor <= FAST:
+        if factor <= FASTEST:
             continue
         force, load = row.centrifugal_force(speed), (largest or {}).get(name)
         beside = "" if load is None else f", beside {load:.3g} N on the most loaded one"
@@ -242,9 +244,9 @@ def centrifugal_warnings(
             warning(
                 "bearing speed",
                 f'bearing "{name}": n·d_m = {factor:.3g} mm/min ({rpm:.5g} rpm, pitch circle '
-                f"{1e3 * row.pitch_diameter:.4g} mm), above {FAST:.0f}: its elements are thrown on the outer ring with "
-                f"{force:.3g} N each{beside}; the equilibrium leaves that out, so pressure and life of the outer ring "
-                "are too favourable, and contact angles and stiffness are those at low speed",
+                f"{1e3 * row.pitch_diameter:.4g} mm), above {FASTEST:.0f}: its elements are thrown on the outer ring "
+                f"with {force:.3g} N each{beside}; the equilibrium leaves that out, so pressure and life of the outer "
+                "ring are too favourable, and contact angles and stiffness are those at low speed",
                 bearing=name,
                 speed_factor_mm_per_min=factor,
                 centrifugal_force_n=force,
@@ -307,7 +309,11 @@ def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> 
     """
     system = machine.system
     rigid, stiffest = system.rigid_body_motions
-    tilts = [one for one in system.linear if one.of_contact is not None and contact_loss[one.of_contact] > _PARTED]
+    tilts = [
+        one
+        for one in system.linear
+        if one.of_contact is not None and contact_loss[one.of_contact] > _UNWARNED_TIME_APART
+    ]
     if not tilts:
         return []
     held = system.mean_stiffness + stiffest * rigid @ rigid.T
@@ -318,7 +324,7 @@ def parted_flank_warnings(machine: CoupledMachine, contact_loss: FloatArray) -> 
         # Part of a moment on the slope of the face that its flanks resist, and not the shafts.
         part = float((tilt.stiffness @ yielding)[0, 0])
         name, loss = system.contacts[tilt.of_contact].name, float(contact_loss[tilt.of_contact])
-        if part > _HELD:
+        if part > _UNWARNED_TILT_RESISTANCE:
             message = (
                 f"{name}: flanks are apart {100.0 * loss:.2g} % of the time, in which they resist no tilt of the "
                 f"shafts; the motion keeps that resistance, {100.0 * part:.2g} % of all against a tilt of the face, "

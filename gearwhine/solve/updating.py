@@ -76,7 +76,7 @@ from gearwhine.solve.comparison import map_measured, read_measured
 _TWO_PI = 2.0 * np.pi
 FloatArray = npt.NDArray[np.float64]
 
-_EXPLAINED = 2.0  # standard deviations of a frequency that its noise explains
+_EXPLAINED_DEVIATIONS = 2.0  # standard deviations of a frequency that its noise explains
 _MARGIN = 1.0 / 3.0  # least gap of the two other measures, as a part of that of the measure that decides
 
 Observer = Callable[[Mesh], sparse.csr_array]
@@ -163,7 +163,7 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
     return Measurement(with_shapes, observer, measured.shapes.shape[1] - len(shared))
 
 
-_CLEAR = 0.1  # gap of dominance from which the choice of modes is a clear one
+_CLEAR_DOMINANCE_GAP = 0.1  # gap of dominance from which the choice of modes is a clear one
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class NullTest:
         """Part of the random sets fitted within an error, if asked for with a clear choice of modes."""
         return self._part(
             fit.max_percent <= percent
-            and (not clear or (fit.gap is not None and fit.gap >= _CLEAR and bool(fit.measures_agree)))
+            and (not clear or (fit.gap is not None and fit.gap >= _CLEAR_DOMINANCE_GAP and bool(fit.measures_agree)))
             for fit in self.fits
         )
 
@@ -381,7 +381,7 @@ def noise_warnings(misfit: Misfit, noise: FloatArray) -> list[dict[str, Any]]:
     """
     counted_in = (misfit.pairs != UNPAIRED) & np.isfinite(noise)
     errors = np.abs(misfit.errors[counted_in])
-    beyond = errors > _EXPLAINED * noise[counted_in]
+    beyond = errors > _EXPLAINED_DEVIATIONS * noise[counted_in]
     if not beyond.any():
         return []
     worst = int(np.argmax(errors / noise[counted_in]))

@@ -86,11 +86,13 @@ def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, .
             require(case, "rotor", "operation", "transient", command="sweep")
             refusal = ""
         except CaseError as error:
-            told = [_of_the_sweep(problem, overrides) for problem in error.problems]
-            wrong = wrong or any(one.source != before.source for one, before in zip(told, error.problems, strict=True))
-            problems |= dict.fromkeys(told)
+            problems_of_sweep = [_of_the_sweep(problem, overrides) for problem in error.problems]
+            wrong = wrong or any(
+                one.source != before.source for one, before in zip(problems_of_sweep, error.problems, strict=True)
+            )
+            problems |= dict.fromkeys(problems_of_sweep)
             # Stands for the refused case where a point must have one.
-            case, refusal = source.changed([]).case, "; ".join(map(str, told))
+            case, refusal = source.changed([]).case, "; ".join(map(str, problems_of_sweep))
         texts = tuple(key.texts[index] for key, index in zip(keys, place, strict=True))
         points.append(replace(_point(place, texts, case, stem), refusal=refusal))
     if wrong or all(point.refusal for point in points):

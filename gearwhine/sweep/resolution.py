@@ -24,16 +24,18 @@ from gearwhine.case import SPEED_KEY, SweptKey
 from gearwhine.case.units import to_rpm
 from gearwhine.coupling.signals.spectrum import Spectrum, decibels, line_height, peak_of_rms
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.sweep.resonances import NEAR, SOUND, Resonances
+from gearwhine.sweep.resonances import PLACES_ABOUT_MODE, SOUND, Resonances
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import PointResult
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_SAME = 1e-6  # relative difference of two orders that are one
-_NEAR = 0.5 + 1e-6  # largest distance of a line from its order, over the spacing of a record's lines, with rounding
-_ONE = 0.5  # distance up to which two speeds to be added are one, over the half-power half-width
+_SAME_ORDER_DIFFERENCE = 1e-6  # relative difference of two orders that are one
+_LARGEST_LINE_DISTANCE = (
+    0.5 + 1e-6
+)  # largest distance of a line from its order, over the spacing of a record's lines, with rounding
+_SAME_SPEED_DISTANCE = 0.5  # distance up to which two speeds to be added are one, over the half-power half-width
 _LOWEST_DB = -1000.0  # level of silence
 _OTHER_CAUSE = 20.0  # level over that of the linear response by which a line has another cause than this response
 _SAME_MODE = 0.1  # relative difference of frequencies up to which modes of one name at two points may be the same
@@ -132,7 +134,7 @@ def speeds_to_add(peaks: Sequence[MissedPeak]) -> list[float]:
     """Return the speeds of peaks [rpm], ascending, without those within half a half-width of a higher peak's."""
     chosen: list[float] = []
     for peak in peaks:
-        if all(abs(speed - peak.speed_rpm) > _ONE * peak.half_width_rpm for speed in chosen):
+        if all(abs(speed - peak.speed_rpm) > _SAME_SPEED_DISTANCE * peak.half_width_rpm for speed in chosen):
             # To a tenth of the half-width, which changes the level by 0.04 dB.
             places = int(np.ceil(-np.log10(0.1 * peak.half_width_rpm)))
             chosen.append(round(peak.speed_rpm, places))
@@ -187,7 +189,7 @@ class _End:
 
     def line(self, order: float) -> int | None:
         """Return the number of the line of an order; None where it is above the limit at this speed."""
-        same = np.flatnonzero(np.abs(self.resonances.line_orders - order) <= _SAME * order)
+        same = np.flatnonzero(np.abs(self.resonances.line_orders - order) <= _SAME_ORDER_DIFFERENCE * order)
         return int(same[0]) if same.size else None
 
     def total(self, output: str) -> float:
@@ -220,27 +222,31 @@ class _End:
         return over if abs(over) <= _OTHER_CAUSE else None
 
     def near(self, output: str, line: int, mode: int) -> FloatArray:
-        """Levels of a line by the linear response about a mode, at the places `NEAR`, shape (p,)."""
+        """Levels of a line by the linear response about a mode, at the places `PLACES_ABOUT_MODE`, shape (p,)."""
         resonances = self.resonances
         levels: FloatArray = resonances.levels_near[resonances.outputs.index(output), line, mode]
         rates = resonances.mode_rates[line, mode]
         if output != SOUND or self.radiated is None or not np.any(rates):
             return levels
         # Even walls have the shape of the peak, the walls as they are its height.
-        return np.asarray(levels - levels[len(NEAR) // 2] + self.radiated(float(resonances.frequencies[mode]), rates))
+        return np.asarray(
+            levels - levels[len(PLACES_ABOUT_MODE) // 2] + self.radiated(float(resonances.frequencies[mode]), rates)
+        )
 
     def _found(self, output: str, order: float) -> float | None:
         """Level of a line in the motion."""
         if output == SOUND:
             lines = self.result.document["sound"]["lines"]
-            levels = (line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME * order)
+            levels = (
+                line["sound_power_db"] for line in lines if abs(line["order"] - order) <= _SAME_ORDER_DIFFERENCE * order
+            )
             return next(levels, None)
         orders = self.result.orders
         place = int(np.argmin(np.abs(orders - order)))
         if len(orders) < 2:
             return None
         spacing = orders[1] - orders[0]
-        if abs(orders[place] - order) > _NEAR * spacing:
+        if abs(orders[place] - order) > _LARGEST_LINE_DISTANCE * spacing:
             return None
         # The line nearest to a tone between lines is lower than the tone: under Hann's window by up to 1.4 dB.
         height = float(line_height((orders[place] - order) / spacing, self.result.window))
@@ -355,5 +361,5 @@ def _peaks(low: _End, high: _End, outputs: Sequence[str], line: int) -> Iterator
             levels = weights @ np.array([near for _, near, _ in known]) + over
             top = int(np.argmax(levels))
             # A mode on the flank of a higher peak has no peak of its own.
-            if 0 < top < len(NEAR) - 1:
-                yield _Peak(output, mode, middle + half * float(NEAR[top]), half, float(levels[top]), over)
+            if 0 < top < len(PLACES_ABOUT_MODE) - 1:
+                yield _Peak(output, mode, middle + half * float(PLACES_ABOUT_MODE[top]), half, float(levels[top]), over)

@@ -29,7 +29,7 @@ ComplexArray = npt.NDArray[np.complex128]
 SOUND = "sound"
 """Name of the output of the sound power, beside those of the sensors."""
 
-NEAR = np.concatenate([[-2.0], np.linspace(-1.0, 1.0, 21), [2.0]])
+PLACES_ABOUT_MODE = np.concatenate([[-2.0], np.linspace(-1.0, 1.0, 21), [2.0]])
 """Places about a mode at which the lines are solved, in half-power half-widths; the first and the last are outside."""
 
 _TWO_PI = 2.0 * np.pi
@@ -60,7 +60,7 @@ class Resonances:
         the sound, up to a constant, the square of the housing's velocity times the radiation efficiency of a pulsating
         sphere.
     levels_near : ndarray, shape (o, l, m, p)
-        Levels that each line would have at the frequencies of the places `NEAR` about each mode.
+        Levels that each line would have at the frequencies of the places `PLACES_ABOUT_MODE` about each mode.
     line_rates : ndarray of complex, shape (l, n)
         Rates of the housing's coordinates in each line at this speed; n is 0 where the housing does not radiate.
     mode_rates : ndarray of complex, shape (l, m, n)
@@ -146,7 +146,7 @@ def _solve_line(
     heard = case.acoustics is not None
     coordinates = machine.rows(housing.name, np.eye(housing.size)) if heard else sensors[:0]
     # Two half-widths below a mode that is nearly overdamped may be below zero.
-    near = np.maximum(damped[:, None] + widths[:, None] * NEAR, _TWO_PI)
+    near = np.maximum(damped[:, None] + widths[:, None] * PLACES_ABOUT_MODE, _TWO_PI)
     omega = np.concatenate([[line.frequency], near.ravel()])
     moved = superposed(modes.pairs, line.load[None, None], omega, np.concatenate([sensors, coordinates]))[:, 0]
     levels = decibels(omega[:, None] ** 2 * np.abs(moved[:, : len(sensors)]))
@@ -158,7 +158,7 @@ def _solve_line(
             sound = 10.0 * np.log10((np.abs(rates) ** 2).sum(axis=1) * efficiency)
         levels = np.column_stack([levels, sound])
     levels = np.maximum(levels, _LOWEST_DB)
-    at_modes = rates[1:].reshape(*near.shape, len(coordinates))[:, len(NEAR) // 2]
+    at_modes = rates[1:].reshape(*near.shape, len(coordinates))[:, len(PLACES_ABOUT_MODE) // 2]
     return _Line(levels[0], levels[1:].T.reshape(levels.shape[1], *near.shape), rates[0], at_modes)
 
 

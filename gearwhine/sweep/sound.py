@@ -49,8 +49,8 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_SURE = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
-_FAINT = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
+_LARGEST_INTERPOLATION_ERROR = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
+_FAINT_LINE_RATIO = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
 _UNPROVED: dict[str, Any] = {"known_source_error": None, "known_source_rms": None}
 
 
@@ -118,7 +118,7 @@ def add_sound(
         estimate = radiation.equivalent_power(rates.T) * pulsating_efficiency(
             frequencies, radiation.area, radiation.medium.speed_of_sound
         )
-        for place in np.flatnonzero(estimate > _FAINT * estimate.max()).tolist():
+        for place in np.flatnonzero(estimate > _FAINT_LINE_RATIO * estimate.max()).tolist():
             jobs.append((number, place, float(frequencies[place]), rates[place][:, None]))
 
     table = None
@@ -176,7 +176,7 @@ def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: 
     """Sound power level of rates of the housing's coordinates without a solution [dB]."""
     from gearwhine.solve.sound.motion_lines import pulsating_efficiency
 
-    if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _SURE:
+    if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _LARGEST_INTERPOLATION_ERROR:
         return float(power_level(table.power(hertz, rates)[0]))
     sphere = pulsating_efficiency(np.array([hertz]), radiation.area, radiation.medium.speed_of_sound)
     return float(power_level(radiation.equivalent_power(rates[:, None])[0] * sphere[0]))
@@ -269,7 +269,10 @@ def _interpolated(
         table.around(hertz, values)
         for values in (table.interior_residual, table.source_error, table.source_rms, table.point_source_error)
     )
-    if max(error, table.pressure_error) > _SURE or abs(surface_power / power - 1.0) > POWERS_AGREE:
+    if (
+        max(error, table.pressure_error) > _LARGEST_INTERPOLATION_ERROR
+        or abs(surface_power / power - 1.0) > POWERS_AGREE
+    ):
         return None
     if leak > LEAK or off > SOURCE_OFF or heard_off > SOURCE_HEARD:
         return None

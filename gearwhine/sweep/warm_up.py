@@ -11,7 +11,7 @@ from distributed import Worker, WorkerPlugin
 from gearwhine.case import Case, load_case
 from gearwhine.sweep.points import code_digest
 
-_BRIEF = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance=1e-2")
+_BRIEF_TRANSIENT = ("transient.revolutions=1", "transient.discard=0", "transient.tolerance=1e-2")
 
 
 class WarmUp(WorkerPlugin):
@@ -20,7 +20,7 @@ class WarmUp(WorkerPlugin):
     name = "rehearsal"
 
     def __init__(self) -> None:
-        self.case = load_case("spur-pair", _BRIEF).case
+        self.case = load_case("spur-pair", _BRIEF_TRANSIENT).case
 
     def setup(self, worker: Worker) -> None:
         """Queue the warm-up where points are solved: they wait for it, but the worker's communication does not."""

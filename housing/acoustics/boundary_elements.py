@@ -56,9 +56,10 @@ _TWO_PI = 2.0 * np.pi
 _INNER_WEIGHT = 5.0  # weight of a CHIEF equation against one of a vertex: the box's errors are least from 3 to 10
 _CHECK_POINTS = 12
 _FEWEST_INNER = 30
-_VAIN = 50  # rounds of 64 trials without a point inside after which the search ends
-_NEAR = 0.01  # longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001
-_SMOOTH = np.cos(
+_VAIN_ROUNDS = 50  # rounds of 64 trials without a point inside after which the search ends
+# Longest edges from a triangle below which the quadrature fails: 0.3 % at 0.003 edges, 10 % at 0.001.
+_NEAREST_DISTANCE = 0.01
+_LEAST_SMOOTH_COSINE = np.cos(
     np.deg2rad(15.0)
 )  # least cosine between a triangle's normal and the mean one of a vertex that is on no edge
 _MOST_CURVATURE = 0.35
@@ -282,12 +283,14 @@ class BoundaryElements:
             if not self.uncovered.all():
                 self.surface = surface.part(self.uncovered)
             # The image of a vertex is twice as far from it as the plane.
-            narrow = (of_triangles > surface.rounding) & (of_triangles < 0.5 * _NEAR * surface.lengths[:, None])
+            narrow = (of_triangles > surface.rounding) & (
+                of_triangles < 0.5 * _NEAREST_DISTANCE * surface.lengths[:, None]
+            )
             if narrow.any():
                 raise HousingError(
                     f"the radiating surface leaves a gap of {1e3 * of_triangles[narrow].min():.3g} mm above the hard "
-                    f"plane; expected none, or at least {500.0 * _NEAR * surface.lengths.max():.3g} mm, a "
-                    f"{2.0 / _NEAR:.0f}th of its longest edge"
+                    f"plane; expected none, or at least {500.0 * _NEAREST_DISTANCE * surface.lengths.max():.3g} mm, a "
+                    f"{2.0 / _NEAREST_DISTANCE:.0f}th of its longest edge"
                 )
 
     def highest_frequency(self, elements: float = 6.0) -> float:
@@ -346,7 +349,7 @@ class BoundaryElements:
             trial = np.einsum("ti,tij->tj", generator.dirichlet(np.ones(4), size=64), self.surface.points[chosen])
             trial = trial[(np.linalg.norm(trial[:, None] - centers, axis=2) > reach).all(axis=1)]
             inner += list(trial[_inside(self.surface, self.plane, trial) > 0.99])
-            if len(inner) >= most or (trials >= _VAIN and not inner):
+            if len(inner) >= most or (trials >= _VAIN_ROUNDS and not inner):
                 break
         return np.array(inner[:most]).reshape(-1, 3)
 
@@ -480,7 +483,7 @@ def _curvature_correction(surface: RadiatingSurface) -> sparse.coo_array:
     opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)  # edge that lies opposite to each corner
     stiffness = np.einsum("eaj,ebj->eab", opposite, opposite) / (4.0 * surface.areas)[:, None, None]
     values = (opposite**2).sum(axis=(1, 2))[:, None, None] / 48.0 * stiffness
-    weights = np.where(least > _SMOOTH, 1.0 / areas, 0.0)
+    weights = np.where(least > _LEAST_SMOOTH_COSINE, 1.0 / areas, 0.0)
     values = weights[triangles][:, :, None] * values
     places = np.repeat(triangles, 3, axis=1).ravel(), np.tile(triangles, (1, 3)).ravel()
     correction = sparse.csr_array((values.ravel(), places), shape=(count, count))
@@ -545,11 +548,11 @@ def require_in_air(surface: RadiatingSurface, plane: HardPlane | None, points: F
         behind = np.flatnonzero(plane.height(points) < -rounding)
         if behind.size:
             raise HousingError(f"the point {_place(points[behind[0]])} is behind the hard plane")
-    near, triangles, distances = surface.nearer_than(points, _NEAR)
+    near, triangles, distances = surface.nearer_than(points, _NEAREST_DISTANCE)
     if near.size:
         raise HousingError(
             f"the point {_place(points[near[0]])} is {1e3 * distances[0]:.3g} mm from the radiating surface; expected "
-            f"at least {1e3 * _NEAR * surface.lengths[triangles[0]]:.3g} mm, a hundredth of the edge there"
+            f"at least {1e3 * _NEAREST_DISTANCE * surface.lengths[triangles[0]]:.3g} mm, a hundredth of the edge there"
         )
     inside = np.flatnonzero(_inside(surface, plane, points) > 0.5)
     if inside.size:

@@ -42,8 +42,8 @@ the same error within a tenth; at twelve the largest is less than twice as much.
 """
 
 _GAP = 0.1  # longest edges between a triangle and the floor that it faces, below which its vertices do not count
-_FACING = -0.5  # cosine of its normal against the floor's
-_APART = 0.6  # least depth of the second source, as a part of the largest depth
+_FACING_FLOOR_COSINE = -0.5  # cosine of its normal against the floor's
+_LEAST_SECOND_DEPTH = 0.6  # least depth of the second source, as a part of the largest depth
 _ROWS = 64  # points whose distances from all triangles are held at once
 
 
@@ -107,7 +107,7 @@ class KnownSources:
         if not len(deep) or deep.max() < SOURCE_DEPTH:
             return cls(np.zeros((0, 3)), plane)
         first = int(np.argmax(deep))
-        deep_enough = deep >= max(_APART * deep[first], SOURCE_DEPTH)
+        deep_enough = deep >= max(_LEAST_SECOND_DEPTH * deep[first], SOURCE_DEPTH)
         apart = np.where(deep_enough, np.linalg.norm(candidates - candidates[first], axis=1), 0.0)
         second = int(np.argmax(apart))
         return cls(candidates[[first, second] if apart[second] > 0.0 else [first]], plane)
@@ -206,7 +206,7 @@ def over_narrow_gap(surface: RadiatingSurface, plane: HardPlane | None) -> npt.N
     narrow = np.zeros(len(surface.points), dtype=bool)
     if plane is not None:
         heights = plane.height(surface.points)[surface.triangles].max(axis=1)
-        facing = surface.normals @ plane.normal < _FACING
+        facing = surface.normals @ plane.normal < _FACING_FLOOR_COSINE
         narrow[surface.triangles[facing & (heights < _GAP * surface.lengths)]] = True
     return narrow
 

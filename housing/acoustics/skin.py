@@ -31,7 +31,7 @@ SPLITS: dict[str, tuple[tuple[int, int, int], ...]] = {
         (ring, following, 8) for ring, following in zip((0, 4, 1, 5, 2, 6, 3, 7), (4, 1, 5, 2, 6, 3, 7, 0), strict=True)
     ),
 }
-_NEAREST = 6  # samples whose triangles may hold the nearest point
+_NEAREST_SAMPLES = 6  # samples whose triangles may hold the nearest point
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Skin:
         """
         points, owners = self.samples(spacing)
         tree = cKDTree(np.hstack([points, turned * self.normals[owners]]), balanced_tree=False)
-        _, sample_numbers = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST, len(points)))
+        _, sample_numbers = tree.query(np.hstack([places, turned * normals]), k=min(_NEAREST_SAMPLES, len(points)))
         candidates = owners[np.reshape(sample_numbers, (len(places), -1))]
         shares, gaps = closest_on_triangles(self.corners[candidates], places[:, None])
         feet = np.einsum("mkc,mkci->mki", shares, self.corners[candidates])

@@ -44,7 +44,7 @@ _GRAZING = 1e-3  # cosine between skin and normal below which a line does not me
 _EDGEWISE = 1e-6  # part of a skin triangle by which a line may miss it at its edge
 _ON = 0.35  # edges that the skin and the wrap may lie apart where both are compared
 _SAME_WAY = 0.7  # least cosine between their normals there
-_LARGE = 0.02  # part of the surface's area above which a flat face has a label of its own
+_LABELLED_FACE_AREA = 0.02  # part of the surface's area above which a flat face has a label of its own
 
 
 @dataclass(frozen=True)
@@ -210,13 +210,16 @@ class SurfaceVelocity:
         numbers = flat_face_numbers(self.mesh)
         area = np.bincount(numbers[self.facets.ravel()], share, numbers.max() + 1)
         faces = flat_face_names(self.mesh)
-        told = [face.is_surface or area[number] > _LARGE * self.surface.area for number, face in enumerate(faces)]
+        labelled = [
+            face.is_surface or area[number] > _LABELLED_FACE_AREA * self.surface.area
+            for number, face in enumerate(faces)
+        ]
         middle = self.facets[:, int(np.argmax(_WEIGHTS))]
         labels = []
         for e, facet in enumerate(middle.tolist()):
             axis = nearest_axis(self.surface.normals[e])
             number = numbers[facet]
-            label = faces[number].name if told[number] else f"other ({axis})"
+            label = faces[number].name if labelled[number] else f"other ({axis})"
             labels.append("cap" if self.caps[e] else label)
         return labels
 

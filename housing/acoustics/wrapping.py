@@ -30,16 +30,16 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
-_FINE = 3  # fine cells along a cell of the wrap
+_FINE_CELLS_PER_CELL = 3  # fine cells along a cell of the wrap
 _MOST_CELLS = 3e7  # cells of the fine grid: about 2 GB
 _FILLED = 0.3  # least part of a cell's fine cells that makes it solid: a plate of one layer is a third
-_OPEN = 0.2  # largest open part of the border of a cavity: a cube without its lid has a sixth
+_LARGEST_OPEN_BORDER = 0.2  # largest open part of the border of a cavity: a cube without its lid has a sixth
 _WIDER = 1.4  # steps of the ball that seeks a leak
 _INSIDE = 0.15  # part of the whole above which a cavity that is open is a leak
 _ROUNDS = 14  # rounds that move the vertices onto the skin
 _TURN = 0.7  # cells that a right angle between face and skin counts as distance, over sqrt(2)
-_AGREE = 0.3  # least cosine between a face and the skin that it is moved to
-_LEAST = 0.2  # square cells added to each face's area where faces are weighted
+_LEAST_SKIN_COSINE = 0.3  # least cosine between a face and the skin that it is moved to
+_LEAST_FACE_WEIGHT = 0.2  # square cells added to each face's area where faces are weighted
 _RANK = 0.05  # part of the largest eigenvalue below which the planes of a vertex leave a direction free
 
 _FIRST_REACH, _REACH = 1.5, 0.8  # cells from the skin within which faces are moved onto it: at first, and later
@@ -47,9 +47,9 @@ _FOLD = -0.8  # cosine between neighbours below which the surface is folded
 _UNFOLDINGS = 20
 _MENDINGS = 3  # rounds of mending badly shaped triangles
 _POOR = 0.55  # shape below which a triangle is mended: 1 of an equilateral one
-_SHORT = 0.6  # cells below which an edge may collapse
-_LONG = 1.7  # cells above which an edge is halved in the end
-_FLAT = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
+_COLLAPSIBLE_EDGE = 0.6  # cells below which an edge may collapse
+_HALVED_EDGE = 1.7  # cells above which an edge is halved in the end
+_LARGEST_MENDING_MOVE = 0.1  # cells that mending may move the surface; shape below which a triangle has no plane
 
 
 def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
@@ -83,11 +83,11 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
             "edge, and 0 or more for close_holes"
         )
     cell = edge / 1.05  # two edges of a triangle are a cell long, and one is a diagonal
-    fine = cell / _FINE
+    fine = cell / _FINE_CELLS_PER_CELL
     skin = skin_of(mesh, mesh.boundary)
     low = mesh.bounds[0] - 0.5 * (np.ceil(np.ptp(mesh.bounds, axis=0) / cell) * cell - np.ptp(mesh.bounds, axis=0))
-    around = _FINE * (2 + int(np.ceil(0.5 * close_holes / cell)))
-    shape = np.ceil(np.ptp(mesh.bounds, axis=0) / cell - 1e-9).astype(np.int64) * _FINE + 2 * around
+    around = _FINE_CELLS_PER_CELL * (2 + int(np.ceil(0.5 * close_holes / cell)))
+    shape = np.ceil(np.ptp(mesh.bounds, axis=0) / cell - 1e-9).astype(np.int64) * _FINE_CELLS_PER_CELL + 2 * around
     if np.prod(shape.astype(np.float64)) > _MOST_CELLS:
         raise TriangleSizeError(
             f"a wrap with an edge of {1e3 * edge:.4g} mm takes {np.prod(shape.astype(np.float64)):.3g} cells; expected "
@@ -97,7 +97,14 @@ def wrap(mesh: Mesh, edge: float, close_holes: float) -> RadiatingSurface:
     hit = np.zeros(shape, dtype=bool)
     hit[tuple(np.floor((skin.samples(0.6 * fine)[0] - origin) / fine).astype(np.int64).T)] = True
     solid = _filled(_closed(hit), 0.5 * close_holes / fine + 1.0)
-    blocks = solid.reshape(shape[0] // _FINE, _FINE, shape[1] // _FINE, _FINE, shape[2] // _FINE, _FINE)
+    blocks = solid.reshape(
+        shape[0] // _FINE_CELLS_PER_CELL,
+        _FINE_CELLS_PER_CELL,
+        shape[1] // _FINE_CELLS_PER_CELL,
+        _FINE_CELLS_PER_CELL,
+        shape[2] // _FINE_CELLS_PER_CELL,
+        _FINE_CELLS_PER_CELL,
+    )
     coarse = _manifold(_large_bodies(~_outside(blocks.mean(axis=(1, 3, 5)) < _FILLED)))
     _require_tight(coarse, origin, cell, close_holes)
     points, quads = _surface_net(coarse)
@@ -149,7 +156,7 @@ def _filled(solid: BoolArray, radius: float) -> BoolArray:
             border = (region > 0) & (regions[other] != region)
             all_faces += np.bincount(region[border], minlength=count + 1)
             open_faces += np.bincount(region[border & free[other]], minlength=count + 1)
-    enclosed = open_faces < _OPEN * all_faces
+    enclosed = open_faces < _LARGEST_OPEN_BORDER * all_faces
     enclosed[0] = False
     return np.asarray(~_outside(free & ~enclosed[regions]))
 
@@ -303,7 +310,7 @@ def _on_skin(points: FloatArray, quads: IntArray, skin: _OuterSkin) -> tuple[Flo
         points, triangles = _mended(points, triangles, skin.cell)
         for _ in range(3):
             points = _moved(points, triangles, skin, _REACH * skin.cell)
-    return _divided(*_mended(_unfolded(points, triangles), triangles, skin.cell), _LONG * skin.cell)
+    return _divided(*_mended(_unfolded(points, triangles), triangles, skin.cell), _HALVED_EDGE * skin.cell)
 
 
 def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) -> FloatArray:
@@ -319,8 +326,10 @@ def _moved(points: FloatArray, faces: IntArray, skin: _OuterSkin, reach: float) 
     area = np.linalg.norm(normal, axis=1)
     normal /= np.maximum(area, 1e-300)[:, None]
     plane, direction = skin.nearest(center, normal)
-    agree = (np.linalg.norm(plane - center, axis=1) < reach) & ((direction * normal).sum(axis=1) > _AGREE)
-    share = area + _LEAST * cell**2  # a narrow face keeps its say, so that the rims of thin plates do not shrink
+    agree = (np.linalg.norm(plane - center, axis=1) < reach) & ((direction * normal).sum(axis=1) > _LEAST_SKIN_COSINE)
+    share = (
+        area + _LEAST_FACE_WEIGHT * cell**2
+    )  # a narrow face keeps its say, so that the rims of thin plates do not shrink
     weight = np.where(agree, share / cell**2, 0.0)
     rows = np.repeat(np.arange(len(faces)), faces.shape[1])
     incident = sparse.csr_array((np.ones(faces.size), (faces.ravel(), rows)), shape=(len(points), len(faces)))
@@ -390,7 +399,7 @@ def _mended(points: FloatArray, triangles: IntArray, cell: float) -> tuple[Float
         if _flip(points, corners, around, number, a, b, cell):
             continue
         a, b = triangle[shortest], triangle[(shortest + 1) % 3]
-        if lengths[shortest] < _SHORT * cell:
+        if lengths[shortest] < _COLLAPSIBLE_EDGE * cell:
             for gone in _collapse(points, corners, around, a, b, cell):
                 alive[gone] = False
     remaining = np.array(corners)[alive]
@@ -444,7 +453,7 @@ def _flip(
     total = normal.sum(axis=0)
     offset = abs(float(np.dot(points[d] - points[a], np.cross(points[b] - points[a], points[c] - points[a]))))
     area = float(np.linalg.norm(total))
-    if after.min() <= before.min() or (turned @ total).min() <= 0.0 or offset > _FLAT * cell * area:
+    if after.min() <= before.min() or (turned @ total).min() <= 0.0 or offset > _LARGEST_MENDING_MOVE * cell * area:
         return False
     corners[number], corners[other] = (a, d, c), (d, b, c)
     around[a].discard(other)
@@ -468,10 +477,13 @@ def _collapse(
     before, normal = _shapes(points[old])
     lost, lost_normal = _shapes(points[[list(corners[number]) for number in sorted(gone)]])
     # The planes of the triangles around hold the vertex; a triangle that is too flat has none.
-    normals = np.concatenate([normal[before > _FLAT], lost_normal[lost > _FLAT]])
+    normals = np.concatenate([normal[before > _LARGEST_MENDING_MOVE], lost_normal[lost > _LARGEST_MENDING_MOVE]])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     bases = np.concatenate(
-        [points[old[before > _FLAT, 0]], points[[corners[n][0] for n in sorted(gone)]][lost > _FLAT]]
+        [
+            points[old[before > _LARGEST_MENDING_MOVE, 0]],
+            points[[corners[n][0] for n in sorted(gone)]][lost > _LARGEST_MENDING_MOVE],
+        ]
     )
     best: tuple[float, FloatArray] | None = None
     for place in (points[a], points[b], 0.5 * (points[a] + points[b])):
@@ -480,7 +492,7 @@ def _collapse(
         after, turned = _shapes(trial)
         cosine = (turned * normal).sum(axis=1) / np.linalg.norm(turned, axis=1) / np.linalg.norm(normal, axis=1)
         sound = (cosine > 0.5) | (before < 0.5 * _POOR)
-        is_held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _FLAT * cell
+        is_held = np.abs(((place - bases) * normals).sum(axis=1)).max(initial=0.0) < _LARGEST_MENDING_MOVE * cell
         if is_held and sound.all() and (best is None or after.min() > best[0]):
             best = float(after.min()), place.copy()
     if best is None or best[0] <= min(before.min(), lost.min()):

@@ -120,7 +120,7 @@ def margin(scores: FloatArray, row: int, columns: BoolArray) -> float:
     return float(np.clip(lost / score, 0.0, 1.0))
 
 
-_CLEAR = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
+_CLEAR_MAC_SHARE = 0.75  # least share of one close mode in a shape's MAC with their span, by which it is identified
 _LEAST_FREEDOMS = 2
 _WINDOW = 2.0  # spreads of frequency within which pairs are made
 
@@ -327,7 +327,7 @@ def _distinguished(mac: FloatArray, shared: FloatArray) -> IntArray | None:
     if mac.shape == (1, 1):
         return np.zeros(1, dtype=np.int64)
     columns, rows = linear_sum_assignment(mac.T, maximize=True)
-    return rows if (mac[rows, columns] >= _CLEAR * shared[rows, columns]).all() else None
+    return rows if (mac[rows, columns] >= _CLEAR_MAC_SHARE * shared[rows, columns]).all() else None
 
 
 def _in_order(distance: FloatArray) -> IntArray:

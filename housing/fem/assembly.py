@@ -35,7 +35,8 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _WORKING_SET = 2**20  # numbers in the gradient products of one chunk: 8 MB
-_BENT = 1e-9  # rounding of a middle node's distance from the middle of its edge, as a part of the element
+# Rounding of a middle node's distance from the middle of its edge, as a part of the element.
+_STRAIGHT_EDGE_ROUNDING = 1e-9
 
 
 def assemble(
@@ -145,7 +146,7 @@ def straight_elements(points: FloatArray, block: ElementBlock) -> npt.NDArray[np
     places, reference = points[block.nodes], np.array(block.of.places[4:])
     barycentric = np.column_stack([1.0 - reference.sum(axis=1), reference])
     off = np.abs(places[:, 4:] - barycentric @ places[:, :4]).max(axis=(1, 2))
-    return np.asarray(off <= _BENT * np.ptp(places[:, :4], axis=1).max(axis=1))
+    return np.asarray(off <= _STRAIGHT_EDGE_ROUNDING * np.ptp(places[:, :4], axis=1).max(axis=1))
 
 
 def stiffness_degree(kind: ElementKind, *, affine: bool) -> int:

@@ -189,7 +189,7 @@ class Matrices:
     @cached_property
     def scalar_mass(self) -> sparse.csr_array:
         """Scalar mass m of the solid alone [kg], shape (n_nodes, n_nodes)."""
-        pointer, neighbors, place, _ = self._whole
+        pointer, neighbors, place, _ = self._both_triangles
         return sparse.csr_array((self.node_mass[place], neighbors, pointer))
 
     @cached_property
@@ -276,7 +276,7 @@ class Matrices:
         return blocks.rows * self.n_nodes + blocks.columns
 
     @cached_property
-    def _whole(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    def _both_triangles(self) -> tuple[Int32Array, Int32Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """Return the pattern of both triangles.
 
         These are its pointer and neighbours, the place where each block is kept, and whether it is kept transposed.
@@ -291,7 +291,7 @@ class Matrices:
         return graph.indptr, graph.indices, graph.data - 1, below
 
     def _matrix(self, blocks: FloatArray) -> sparse.csr_array:
-        pointer, neighbors, place, below = self._whole
+        pointer, neighbors, place, below = self._both_triangles
         whole = blocks[place]
         whole[below] = whole[below].transpose(0, 2, 1)
         order = 3 * self.n_nodes
@@ -299,7 +299,7 @@ class Matrices:
 
 
 _FLOOR = 0.06  # part of a limit: its square is small beside the wanted eigenvalues
-_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
+_STIFFNESS_ROUNDING = 3e-8  # part of the largest K_ii / M_ii: well clear of the rounding of K
 _WORTH_A_THREAD = 2**16  # entries of the scalar mass: fewer are multiplied sooner than a thread starts
 
 
@@ -365,7 +365,7 @@ class FreeSystem:
         It is far above the rounding of K, and its root small beside a limit of circular frequencies [rad/s].
         """
         ratio = self.stiffness.diagonal() / self._matrices.mass_diagonal()[self.free]
-        return max(_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
+        return max(_STIFFNESS_ROUNDING * float(ratio.max()), (_FLOOR * limit) ** 2)
 
     def expand(self, vectors: FloatArray) -> FloatArray:
         """Vectors on the free degrees of freedom, shape (n, m), as motions of all nodes, shape (m, n_nodes, 3)."""

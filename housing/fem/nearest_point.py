@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.int64]
 _NEIGHBOURS = 6  # facets looked at: as many as meet in a node of a usual mesh
 _STEPS = 20
 _SHORTENINGS = (1.0, 0.5, 0.25, 0.125)
-_ROUNDING = 1e-12
+_LENGTH_ROUNDING = 1e-12
 _AT_ONCE = 2**18  # pairs of places and facets that are compared at once: some megabytes
 
 
@@ -140,7 +140,7 @@ class NearestOnSurface:
             mine = sets == number
             nodes = self._points[triangles.block.nodes[members[mine]]]
             bulges[mine] = _bulges(nodes @ self._across, triangles.block)
-            slacks[mine] = _ROUNDING * np.ptp(nodes, axis=1).max(axis=1, initial=0.0)
+            slacks[mine] = _LENGTH_ROUNDING * np.ptp(nodes, axis=1).max(axis=1, initial=0.0)
         return _Candidates(
             np.searchsorted(rows[order], np.arange(len(targets) + 1)).tolist(),
             distances[order].tolist(),
@@ -233,8 +233,8 @@ class _Triangles:
         """
         apart = np.linalg.norm(self.centers - targets[:, None], axis=2)
         few = min(_NEIGHBOURS, apart.shape[1]) - 1
-        reach = np.partition(apart, few, axis=1)[:, few, None] * (1.0 + _ROUNDING)
-        rows, members = np.nonzero(apart - self.radii * (1.0 + _ROUNDING) <= reach)
+        reach = np.partition(apart, few, axis=1)[:, few, None] * (1.0 + _LENGTH_ROUNDING)
+        rows, members = np.nonzero(apart - self.radii * (1.0 + _LENGTH_ROUNDING) <= reach)
         shares, distances = closest_on_triangles(self.corners[members], targets[rows])
         return rows, distances, np.full(len(rows), number), members, shares @ self.places
 

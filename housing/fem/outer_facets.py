@@ -13,8 +13,8 @@ IntArray = npt.NDArray[np.int64]
 
 _CELLS = 80  # cells of a view along the housing's diagonal
 _DIRECTIONS = 60  # directions of view
-_FACING = 0.5  # least cosine between a facet's normal and the direction of a view that counts
-_SEEN = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
+_LEAST_VIEW_COSINE = 0.5  # least cosine between a facet's normal and the direction of a view that counts
+_LEAST_VISIBLE_SHARE = 0.25  # least part of the views of a facet in which it is visible; through a bore it is in few
 _DEPTH = 3.0  # cells that a facet may lie behind the foremost in its own: slanting neighbours share cells
 
 
@@ -71,10 +71,10 @@ def outer_facets(mesh: Mesh) -> Facets:
         cells, middle_cells = _cells(towards, middles, _across(direction), samples.spacing)
         foremost = np.full(max(cells.max(), middle_cells.max()) + 1, -np.inf)
         np.maximum.at(foremost, cells, towards @ direction)
-        facing = normals @ direction > _FACING
+        facing = normals @ direction > _LEAST_VIEW_COSINE
         seen += facing & (middles @ direction > foremost[middle_cells] - _DEPTH * samples.spacing)
         faced += facing
-    return pick_facets(boundary, seen >= _SEEN * np.maximum(faced, 1.0))
+    return pick_facets(boundary, seen >= _LEAST_VISIBLE_SHARE * np.maximum(faced, 1.0))
 
 
 def _cells(points: FloatArray, others: FloatArray, across: FloatArray, size: float) -> tuple[IntArray, IntArray]:

@@ -65,7 +65,7 @@ def _block_quadrature(mesh: Mesh, block: ElementBlock) -> SurfaceQuadrature:
     )
 
 
-_ALIGNED = 1.0 - 1e-5  # cosine between the normals of neighbouring facets of one plane
+_LEAST_PLANE_COSINE = 1.0 - 1e-5  # cosine between the normals of neighbouring facets of one plane
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def flat_face_numbers(mesh: Mesh) -> IntArray:
     first_facet, second_facet = (
         owner[part][(edges[1:] == edges[:-1]).all(axis=1)] for part in (slice(None, -1), slice(1, None))
     )
-    flat = np.einsum("ei,ei->e", normals[first_facet], normals[second_facet]) > _ALIGNED
+    flat = np.einsum("ei,ei->e", normals[first_facet], normals[second_facet]) > _LEAST_PLANE_COSINE
     joined = sparse.coo_array((np.ones(flat.sum()), (first_facet[flat], second_facet[flat])), shape=(first, first))
     return np.asarray(connected_components(joined, directed=False)[1], dtype=np.int64)
 
@@ -170,7 +170,7 @@ def flat_face_names(mesh: Mesh) -> list[FaceName]:
 
 _OPPOSITE = -0.99  # cosine between the normals of both sides of a wall
 _LEAST_WALL = 2e-3  # area of an inner side over the whole surface, at least: the facets of a bore are no walls
-_THIN = 0.3  # thickness of a wall over the square root of its inner side's area, at most
+_LARGEST_WALL_SLENDERNESS = 0.3  # thickness of a wall over the square root of its inner side's area, at most
 
 
 def _outer_sides(mesh: Mesh, numbers: IntArray, normals: FloatArray, centers: FloatArray) -> dict[int, int]:
@@ -192,7 +192,7 @@ def _outer_sides(mesh: Mesh, numbers: IntArray, normals: FloatArray, centers: Fl
         across = np.abs(normals[face]) < 0.5  # axes along the wall
         covers = ((low <= centers[face]) & (centers[face] <= high))[:, across].all(axis=1)
         behind = ~inwards & (normals @ normals[face] < _OPPOSITE) & covers & (thickness > 0.0)
-        behind &= thickness < _THIN * np.sqrt(areas[face])
+        behind &= thickness < _LARGEST_WALL_SLENDERNESS * np.sqrt(areas[face])
         if behind.any():
             outer_faces[face] = int(np.argmin(np.where(behind, thickness, np.inf)))
     return outer_faces

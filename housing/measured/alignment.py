@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 _ON_A_LINE = 1e-6  # second largest spread of points as a part of the largest, below which they turn about their line
-_SMALLEST = 20.0  # largest size of a housing over that of its survey; a millionth of it lies near any surface
+_LARGEST_SIZE_RATIO = 20.0  # largest size of a housing over that of its survey; a millionth of it lies near any surface
 _TOLERANCE = 0.02  # part of the housing's diagonal beyond which a point is not one of this surface
 
 
@@ -125,12 +125,12 @@ def small_motion(points: FloatArray, targets: FloatArray, normals: FloatArray) -
 _FIRST_STEPS, _STEPS = 6, 40  # steps from every start; from the promising ones
 _PROMISING = 4.0  # after the first steps: limit of the rms distance over the least one plus the samples' spacing
 _SPREAD_STARTS = 60  # rotations spread over all there are, beside those of axes onto axes
-_SETTLED = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
-_EQUAL = (
-    0.005  # root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions
-)
+_LAST_STEP = 1e-6  # a step that moves points by less, as a part of the housing's diagonal, is the last
+# Root mean square distances that differ by less, as a part of the diagonal, do not distinguish positions.
+_EQUAL_FIT_RMS = 0.005
 _DISTINCT_DEGREES, _DISTINCT_SHIFT = 5.0, 0.05  # degrees, part of the diagonal: positions that differ by less are one
-_LOOSE = 0.02  # firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more
+# Firmness below which the points do not determine a motion; for points all over a box it is 0.3 and more.
+_LOOSE_MOTION_FIRMNESS = 0.02
 _SCALE_OFF = 0.03  # deviation of the scale from 1 beyond which the survey is of another size than the model
 
 
@@ -210,7 +210,7 @@ def align_to_surface(mesh: Mesh, geometry: MeasuredGeometry) -> Alignment:
     limit = _PROMISING * (min(rms for rms, _ in first) + samples.spacing)
     promising = _parted(first, limit, points, diagonal)
     settled = [_settle(points, surface, motion, diagonal, _STEPS) for motion in promising]
-    fits = _parted(settled, min(rms for rms, _ in settled) + _EQUAL * diagonal, points, diagonal)
+    fits = _parted(settled, min(rms for rms, _ in settled) + _EQUAL_FIT_RMS * diagonal, points, diagonal)
     fits.sort(key=lambda motion: motion.angle_degrees)
     motion = fits[0]
     gaps, _, firmness = surface.gaps(motion.place(points))
@@ -298,7 +298,7 @@ def _settle(
             best = (rms, motion)
         moved = float(np.linalg.norm(step.place(placed) - placed, axis=1).max())
         motion = RigidMotion(step.rotation @ motion.rotation, step.place(motion.translation[None])[0])
-        if moved < _SETTLED * diagonal:
+        if moved < _LAST_STEP * diagonal:
             break
     return best
 
@@ -329,7 +329,7 @@ def _remarks(fits: list[RigidMotion], firmness: FloatArray, points: FloatArray, 
             f"the survey fits in {len(fits)} positions equally well; the one that turns it least was taken, others are "
             f"that {turns}; landmarks tell which is right"
         )
-    loose = int(np.count_nonzero(firmness < _LOOSE))
+    loose = int(np.count_nonzero(firmness < _LOOSE_MOTION_FIRMNESS))
     if loose:
         yield (
             f"in {loose} of 6 ways the survey can slide along the surface without leaving it: points on too few faces; "
@@ -434,7 +434,7 @@ def map_survey(
             geometry, positions=motion.place(geometry.positions), directions=motion.turn(geometry.directions)
         )
     limit = _TOLERANCE * float(np.linalg.norm(np.ptp(mesh.points, axis=0))) if tolerance is None else tolerance
-    if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _SMALLEST)):
+    if len(geometry.labels) > 2 and (hint := size_hint(geometry, mesh, _LARGEST_SIZE_RATIO)):
         raise MeasuredDataError(f"the survey is not as large as the housing: {hint}")
     facets = outer_facets(mesh)
     nearest = NearestOnSurface(mesh, facets).points(geometry.positions)

@@ -40,7 +40,7 @@ _FACES = {
     "front": ((0, 0, 1), 0, 1),
 }
 
-_FACING = 0.9  # least cosine between a facet's normal and that of the face it makes up
+_LEAST_FACE_COSINE = 0.9  # least cosine between a facet's normal and that of the face it makes up
 
 
 @dataclass(frozen=True)
@@ -104,9 +104,9 @@ def survey_grid(
     for face, (columns, rows) in counts.items():
         normal_axes, column_axis, row_axis = _FACES[face]
         normal = np.array(normal_axes, dtype=np.float64)
-        outer = pick_facets(boundary, (facing @ normal > _FACING) & ((centers - middle) @ normal > 0.0))
+        outer = pick_facets(boundary, (facing @ normal > _LEAST_FACE_COSINE) & ((centers - middle) @ normal > 0.0))
         if not outer:  # on a cone, for instance: the facets that come nearest to that direction
-            outer = pick_facets(boundary, facing @ normal > _FACING * (facing @ normal).max())
+            outer = pick_facets(boundary, facing @ normal > _LEAST_FACE_COSINE * (facing @ normal).max())
         places = np.tile(middle, (columns, rows, 1))
         places[..., column_axis] = (box[0] + _middles(columns)[:, None] * (box[1] - box[0]))[:, column_axis, None]
         places[..., row_axis] = (box[0] + _middles(rows)[:, None] * (box[1] - box[0]))[:, row_axis]

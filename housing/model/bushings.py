@@ -19,7 +19,7 @@ Six = tuple[float, float, float, float, float, float]
 Axes = tuple[Point, Point, Point]
 
 GLOBAL_AXES: Axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-_SQUARE = 1e-9  # largest deviation of axes from unit vectors at right angles
+_SQUARE_AXES_TOLERANCE = 1e-9  # largest deviation of axes from unit vectors at right angles
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Bushing:
             raise HousingError("six springs and dashpots that are all zero hold nothing: give one of them an amount")
         frame = np.array(self.axes, dtype=np.float64)
         off_square = np.abs(frame @ frame.T - np.eye(3)).max() if frame.shape == (3, 3) else np.inf
-        if not (off_square < _SQUARE and np.linalg.det(frame) > 0.0):
+        if not (off_square < _SQUARE_AXES_TOLERANCE and np.linalg.det(frame) > 0.0):
             raise HousingError(f"axes {self.axes}: expected three unit vectors at right angles, right-handed")
 
     @classmethod

@@ -30,7 +30,7 @@ MOST_PATCH_NODES = 2000
 Tensor = tuple[Point, Point, Point]
 
 NO_INERTIA: Tensor = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-_ROUNDING = 1e-9  # part of the tensor's trace: rounding of numbers typed for a thin body
+_INERTIA_ROUNDING = 1e-9  # part of the tensor's trace: rounding of numbers typed for a thin body
 
 
 class Fixture(Protocol):
@@ -165,7 +165,7 @@ class LumpedMass:
             raise HousingError(f"mass {self.name!r}: inertia {self.inertia} is no symmetric tensor")
         # ∫ r rᵀ dm = ½ tr(I) - I of a real body has no negative eigenvalue: no principal moment exceeds the two others.
         spread = 0.5 * np.trace(tensor) * np.eye(3) - tensor
-        if np.linalg.eigvalsh(spread)[0] < -_ROUNDING * np.trace(tensor):
+        if np.linalg.eigvalsh(spread)[0] < -_INERTIA_ROUNDING * np.trace(tensor):
             moments = ", ".join(f"{moment:g}" for moment in np.linalg.eigvalsh(tensor))
             raise HousingError(
                 f"mass {self.name!r}: no body has principal moments of inertia of {moments} kg m²: each must be at "

@@ -89,8 +89,8 @@ def fixed_freedoms(mesh: Mesh, supports: Sequence[Support]) -> IntArray:
 
 RIGID_MOTIONS = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 
-_HELD = 1e-9  # part of the strongest hold below which a motion is free
-_NAMED = 0.3  # a free motion is called after the directions that make up this much of it
+_HELD_MOTION_SHARE = 1e-9  # part of the strongest hold below which a motion is free
+_NAMED_DIRECTION_SHARE = 0.3  # a free motion is called after the directions that make up this much of it
 
 
 @dataclass(frozen=True)
@@ -156,16 +156,18 @@ def grounding(mesh: Mesh, supports: Sequence[Support | Mount], center: FloatArra
     total = np.sum(springs, axis=0) if springs else np.zeros((6, 6))
     whole = _by_size(total * np.outer(scale, scale)) + np.sum(support_stiffness, axis=0) if springs else total
     values, motions = np.linalg.eigh(whole)
-    free = motions[:, values <= _HELD]
+    free = motions[:, values <= _HELD_MOTION_SHARE]
     part = np.linalg.norm(free, axis=1)
     sums = total.diagonal()
     return Grounding(
         free_motions=free.shape[1],
-        free_directions=tuple(name for name, size in zip(RIGID_MOTIONS, part, strict=True) if size > _NAMED),
+        free_directions=tuple(
+            name for name, size in zip(RIGID_MOTIONS, part, strict=True) if size > _NAMED_DIRECTION_SHARE
+        ),
         supports=tuple(
             SupportHold(
                 name=support.name,
-                fixes=int(np.count_nonzero(np.linalg.eigvalsh(fixed) > _HELD)),
+                fixes=int(np.count_nonzero(np.linalg.eigvalsh(fixed) > _HELD_MOTION_SHARE)),
                 stiffness=stiffness.diagonal(),
                 share=np.divide(stiffness.diagonal(), sums, out=np.zeros(6), where=sums > 0.0),
             )

@@ -38,11 +38,11 @@ SAFETY = 1.5
 Beside refined meshes of thin boxes, rings, blocks and a casting the bare estimate
 has 0.8 to 1.5 of the true error in the median over a mesh's modes, whatever the elements."""
 
-_MOST = 0.999  # largest η²: beyond it the logarithm says no more than "nothing of this mode is right"
+_LARGEST_ERROR_SHARE = 0.999  # largest η²: beyond it the logarithm says no more than "nothing of this mode is right"
 _EDGE = 0.15  # mean of (n · t)² over facets about a node from which its surface has two normals: a kink of 45°
 _WORKING_SET = 2**18  # numbers in the stresses of one chunk: 2 MB
 _NODAL_STRESSES = 2**24  # numbers in the nodal stresses of the modes treated at once: 128 MB
-_SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # components of a stress as rows and columns
+_STRESS_COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # components of a stress as rows and columns
 
 
 def discretisation_errors(
@@ -89,7 +89,7 @@ def discretisation_errors(
             _remove_tractions(recovered, *free)
             energy += _energy_of_error(mesh.points, blocks, motions, recovered, (lam, mu))
         share[chosen] = energy / frequencies[chosen] ** 2
-    return np.asarray(np.expm1(-0.5 * SAFETY * np.log1p(-np.minimum(share, _MOST))))
+    return np.asarray(np.expm1(-0.5 * SAFETY * np.log1p(-np.minimum(share, _LARGEST_ERROR_SHARE))))
 
 
 def fixture_nodes(free: Matrices, whole: Matrices) -> IntArray:
@@ -125,7 +125,7 @@ def _stresses(
     n, q = determinant.shape
     gradients = (slopes.reshape(n, 3 * q, -1) @ motions[nodes]).reshape(n, q, 3, 3, -1)
     stresses = np.empty((n, q, 6, gradients.shape[-1]))
-    for place, (i, j) in enumerate(_SYMMETRIC):
+    for place, (i, j) in enumerate(_STRESS_COMPONENTS):
         np.add(gradients[:, :, i, j], gradients[:, :, j, i], out=stresses[:, :, place])
     stresses *= mu
     stresses[:, :, :3] += (0.5 * lam / mu) * stresses[:, :, :3].sum(axis=2, keepdims=True)
@@ -187,12 +187,12 @@ def _remove_tractions(stresses: FloatArray, nodes: IntArray, projection: FloatAr
     for start in range(0, len(nodes), step):
         members, along = nodes[start : start + step], projection[start : start + step]
         full = np.empty((len(members), 3, 3, n_modes))
-        for place, (i, j) in enumerate(_SYMMETRIC):
+        for place, (i, j) in enumerate(_STRESS_COMPONENTS):
             full[:, i, j] = full[:, j, i] = stresses[members, place]
         half = along @ full.reshape(len(members), 3, -1)
         both = along @ half.reshape(len(members), 3, 3, n_modes).transpose(0, 2, 1, 3).reshape(len(members), 3, -1)
         full = both.reshape(len(members), 3, 3, n_modes)
-        for place, (i, j) in enumerate(_SYMMETRIC):
+        for place, (i, j) in enumerate(_STRESS_COMPONENTS):
             stresses[members, place] = full[:, i, j]
 
 

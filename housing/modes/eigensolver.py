@@ -41,7 +41,7 @@ _BLOCK = 8
 _DEPENDENT = 1e-11  # remainder of a column, as a part of it, below which it lay in the basis
 _NEARLY_WITHIN = 1e-4  # remainder of a column, as a part of it, below which its rounding shows
 _ORTHONORMAL = 1e-14  # largest error of the products of a new block's columns from those of orthonormal ones
-_ALIKE = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
+_DEPENDENT_COLUMN_CORRELATION = 1e-12  # least eigenvalue of a block's correlations before it counts as fewer columns
 
 
 def block_lanczos(
@@ -181,8 +181,12 @@ def _orthonormal(
     values, turn = np.linalg.eigh(
         products[np.ix_(independent, independent)] / np.outer(left[independent], left[independent])
     )
-    mixture = np.zeros((block.shape[1], np.count_nonzero(values > _ALIKE)))
-    mixture[independent] = turn[:, values > _ALIKE] / np.sqrt(values[values > _ALIKE]) / left[independent, None]
+    mixture = np.zeros((block.shape[1], np.count_nonzero(values > _DEPENDENT_COLUMN_CORRELATION)))
+    mixture[independent] = (
+        turn[:, values > _DEPENDENT_COLUMN_CORRELATION]
+        / np.sqrt(values[values > _DEPENDENT_COLUMN_CORRELATION])
+        / left[independent, None]
+    )
     new, new_inertia, shares = (
         algebra.combined(block, mixture),
         algebra.combined(inertia, mixture),

@@ -28,7 +28,7 @@ from gearwhine.housing.modes.residual_modes import (
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_ALIKE = 1e-6  # part of the largest entry by which another may be smaller and count as large
+_LARGEST_ENTRY_TOLERANCE = 1e-6  # part of the largest entry by which another may be smaller and count as large
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ def _oriented(vectors: FloatArray) -> FloatArray:
     Among entries that symmetry makes equally large, the first counts, or rounding would choose.
     """
     size = np.abs(vectors)
-    largest = np.argmax(size >= (1.0 - _ALIKE) * size.max(axis=0), axis=0)
+    largest = np.argmax(size >= (1.0 - _LARGEST_ENTRY_TOLERANCE) * size.max(axis=0), axis=0)
     return np.asarray(vectors * np.sign(vectors[largest, np.arange(vectors.shape[1])]))
 
 

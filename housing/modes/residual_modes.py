@@ -82,10 +82,11 @@ Solve = Callable[[FloatArray], FloatArray]
 STATIC_BOUND = 1e-10
 OVERLAP_BOUND = 1e-8
 _HARMONIC_SETTLED = 1e-7  # part of a whole harmonic response by which a last sweep may still move its missing part
-_SETTLED = 1e-9  # part of a port's whole response, in the norm of strain energy, that a last sweep may still move
+# Part of a port's whole response, in the norm of strain energy, that a last sweep may still move.
+_SETTLED_RESPONSE_SHARE = 1e-9
 _NOTHING_NEW = 1e-12  # part of the ports' compliance below which a direction is rounding or known already
 _ADDS_NOTHING = 1e-12  # part of a dynamic response's strain energy below which its contribution is rounding
-_ALIKE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
+_ROUNDING_ENERGY_SHARE = 1e-12  # part of the largest energy of a sweep's directions below which one is rounding
 _MOST_SWEEPS = 200
 
 
@@ -225,7 +226,9 @@ def residual_attachment_modes(
     elastic = values > floor
     modal = (motions[elastic].T / values[elastic]) @ motions[elastic]
 
-    residual, sweeps = _static_response(stiffness, solve, loads, vectors, inertia, _SETTLED, modal.diagonal())
+    residual, sweeps = _static_response(
+        stiffness, solve, loads, vectors, inertia, _SETTLED_RESPONSE_SHARE, modal.diagonal()
+    )
     span = _independent(stiffness, residual, modal.diagonal())
     response = loads
     for order in range(1, orders):
@@ -381,7 +384,7 @@ def _static_response(
             scale = _ratio(np.ones(len(energy)), np.sqrt(np.maximum(energy.diagonal(), 0.0)))
         shares, mixture = np.linalg.eigh(scale[:, None] * (0.5 * (energy + energy.T)) * scale)
         # A direction that the others have already waits until it is no longer rounding beside them.
-        new = shares > _ALIKE * max(shares.max(initial=0.0), 0.0)
+        new = shares > _ROUNDING_ENERGY_SHARE * max(shares.max(initial=0.0), 0.0)
         mixture = scale[:, None] * mixture[:, new] / np.sqrt(shares[new])
         directions, products = step @ mixture, product @ mixture
         length = directions.T @ left
@@ -497,7 +500,8 @@ def _ratio(top: FloatArray, bottom: FloatArray) -> FloatArray:
     return np.asarray(np.divide(top, bottom, out=np.zeros_like(top), where=bottom > 0.0))
 
 
-_SAME = 1e-6  # part of a response's strain energy, in its root, below which it adds nothing to others
+# Part of a response's strain energy, in its root, below which it adds nothing to others.
+_REDUNDANT_RESPONSE_SHARE = 1e-6
 
 
 def leading_residual_modes(
@@ -542,7 +546,9 @@ def leading_residual_modes(
     strained = np.hstack(parts) * residual_modes.frequencies[:, None]
     length = np.linalg.norm(strained, axis=0)
     directions, sizes, _ = np.linalg.svd(strained[:, length > 0.0] / length[length > 0.0], full_matrices=False)
-    span = directions[:, sizes > _SAME * sizes.max(initial=0.0)] / residual_modes.frequencies[:, None]
+    span = (
+        directions[:, sizes > _REDUNDANT_RESPONSE_SHARE * sizes.max(initial=0.0)] / residual_modes.frequencies[:, None]
+    )
     squares, turned = linalg.eigh(span.T @ (squared[:, None] * span), span.T @ span)
     mixture = span @ turned
     shapes = (mixture.T @ residual_modes.shapes.reshape(len(squared), -1)).reshape(-1, *residual_modes.shapes.shape[1:])

@@ -82,7 +82,7 @@ _FINER = 1.5  # pictures are drawn this many times larger than shown
 _LOWER = 0.1  # how far below the middle the housing stands, as a part of half the height: captions are above it
 _HIGHEST, _LOWEST = 0.72, -0.97  # where the housing ends below the captions and above the edge, likewise
 _FULL, _GROWTH = 1000.0, 0.6  # letters have their full size at this width [pixels], and grow slower than the picture
-_SHARP = 30.0  # angle between faces from which an edge is drawn as one [degrees]
+_SHARP_EDGE_ANGLE = 30.0  # angle between faces from which an edge is drawn as one [degrees]
 
 
 class Scene:
@@ -119,11 +119,11 @@ class Scene:
         faces = np.hstack([np.full((len(housing.triangles), 1), 3), housing.triangles])
         rest = pyvista.PolyData(housing.rest, faces)
         # A flat face has its rim.
-        outline = rest.extract_feature_edges(feature_angle=_SHARP, boundary_edges=True, manifold_edges=False)
+        outline = rest.extract_feature_edges(feature_angle=_SHARP_EDGE_ANGLE, boundary_edges=True, manifold_edges=False)
         # Points on sharp edges stand once for each side, so that shading is smooth on faces and not across edges.
         rest["origin"] = np.arange(len(housing.rest))
         self._solid = rest.compute_normals(
-            cell_normals=False, split_vertices=True, feature_angle=_SHARP, consistent_normals=False
+            cell_normals=False, split_vertices=True, feature_angle=_SHARP_EDGE_ANGLE, consistent_normals=False
         )
         self._origin = np.array(self._solid["origin"])
         self._skin = Skin(self._origin, self._solid.regular_faces.astype(np.int64))

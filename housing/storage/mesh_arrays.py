@@ -64,9 +64,9 @@ def _surface_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
         place = ("facet_block",)
         surfaces, kinds, sizes = zip(*((surface, kind, len(facets)) for surface, kind, facets in blocks), strict=True)
         arrays |= {
-            "facet_block_surface": _whole(place, surfaces, "surface that a block of facets is part of, from 0"),
+            "facet_block_surface": _integers(place, surfaces, "surface that a block of facets is part of, from 0"),
             "facet_block_kind": LabelledArray(place, np.array(kinds), "1", "kind of the facets"),
-            "facet_block_size": _whole(place, sizes, "number of facets; blocks of a kind follow each other"),
+            "facet_block_size": _integers(place, sizes, "number of facets; blocks of a kind follow each other"),
         }
     for kind in dict.fromkeys(kind for _, kind, _ in blocks):
         nodes = np.concatenate([facets for _, other, facets in blocks if other == kind])
@@ -98,7 +98,7 @@ def _volume_arrays(mesh: Mesh) -> dict[str, LabelledArray]:
     sizes = [len(members) for members in mesh.volumes.values()]
     arrays = {
         "volume_name": _names("volume", list(mesh.volumes), "named groups of elements"),
-        "volume_size": _whole(("volume",), sizes, "number of elements in each volume"),
+        "volume_size": _integers(("volume",), sizes, "number of elements in each volume"),
     }
     if sum(sizes):
         members = np.concatenate(list(mesh.volumes.values()))
@@ -121,5 +121,5 @@ def _names(dimension: str, names: list[str], long_name: str) -> LabelledArray:
     return LabelledArray((dimension,), np.array(names), "1", long_name)
 
 
-def _whole(dimensions: tuple[str, ...], numbers: Sequence[int], long_name: str) -> LabelledArray:
+def _integers(dimensions: tuple[str, ...], numbers: Sequence[int], long_name: str) -> LabelledArray:
     return LabelledArray(dimensions, np.array(numbers, dtype=np.int64), "1", long_name)

@@ -19,7 +19,8 @@ from gearwhine.housing.updating.trust_region import AnyDesign, Effort, Solve
 
 FloatArray = npt.NDArray[np.float64]
 
-_APART = 0.01  # least relative distance of two random frequencies, which a survey could still separate
+# Least relative distance of two random frequencies, which a survey could still separate.
+_LEAST_FREQUENCY_DISTANCE = 0.01
 
 
 @dataclass(frozen=True)
@@ -220,5 +221,5 @@ def random_frequencies(measured: FloatArray, generator: np.random.Generator) -> 
     low, high = float(measured[0]), float(measured[-1])
     while True:
         drawn = np.sort(generator.uniform(low, high, len(measured)))
-        if len(drawn) == 1 or (np.diff(np.log(drawn)) > _APART).all():
+        if len(drawn) == 1 or (np.diff(np.log(drawn)) > _LEAST_FREQUENCY_DISTANCE).all():
             return np.asarray(drawn)

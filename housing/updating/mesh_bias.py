@@ -28,7 +28,8 @@ from gearwhine.housing.updating.trust_region import AnyDesign, Solve
 FloatArray = npt.NDArray[np.float64]
 
 _LEAST_MAC = 0.5  # below it two modes of the two meshes are no pair
-_SEEN = 0.1  # part of the strongest combination of the known modes below which one is not observable at seats and skin
+# Part of the strongest combination of the known modes below which one is not observable at seats and skin.
+_OBSERVABLE_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class MeshBias:
         differences = np.log(fine.frequencies[columns] / coarse.frequencies[rows])
         shifts = np.full(len(motions), differences.mean() if len(differences) else 0.0)
         shifts[rows] = differences
-        return cls(np.asarray(np.linalg.pinv(motions, rcond=_SEEN), dtype=np.float64), shifts)
+        return cls(np.asarray(np.linalg.pinv(motions, rcond=_OBSERVABLE_SHARE), dtype=np.float64), shifts)
 
     def matrix(self, state: ModalState) -> FloatArray:
         """B among the modes of a coarse state, shape (n_modes, n_modes)."""

@@ -37,7 +37,7 @@ _LEAST_MAC = 0.5  # below it two shapes are no pair
 _COUNT_SCALE = 0.01  # ln ω on the wrong side of the limit of a known number of modes that costs one σ
 _COUNT_CLEAR = 0.005  # ln ω by which a mode has to be clear of that limit, so that the mesh does not decide
 _TOO_FEW_MODES = 1e6  # J for each mode that a design has too few of to pair
-_WITHIN = 2.0  # largest error of a frequency that counts as met, in σ
+_MET_FREQUENCY_ERROR = 2.0  # largest error of a frequency that counts as met, in σ
 _UNPAIRED_COST = 25.0  # J for each measured mode without partner, beside that of its shape: an error of five σ
 
 
@@ -236,7 +236,9 @@ def is_met(target: Target, misfit: Misfit) -> bool:
     if target.shapes is not None:
         return False
     included = np.isfinite(target.noise)
-    if (misfit.pairs[included] == UNPAIRED).any() or (np.abs(misfit.errors / target.noise)[included] > _WITHIN).any():
+    if (misfit.pairs[included] == UNPAIRED).any() or (
+        np.abs(misfit.errors / target.noise)[included] > _MET_FREQUENCY_ERROR
+    ).any():
         return False
     bounds = target.count
     counted = bounds is None or bounds.least <= misfit.count <= bounds.most

@@ -32,12 +32,13 @@ _Shortfalls: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 GAP_SCALE = 0.02
 """Shortfall of a gap that costs as much as an error of one σ."""
 
-_CLEAR = 0.01  # ln ω by which a strong mode has to be beyond the end of the band, and the shortfall that costs one σ
+# Distance in ln ω that a strong mode keeps beyond the end of the band, and the shortfall that costs one σ.
+_CLEAR_OF_BAND_END = 0.01
 _CLEAR_SCALE = 0.005
 _TURNS = 8
-_SETTLED = 1e-9
+_SETTLED_STEP = 1e-9
 _PLACES = 2  # places of the initial thresholds above and below the number of modes
-_FAINT = 1e-300  # strength of modes that have none
+_FAINTEST_STRENGTH = 1e-300  # strength of modes that have none
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class _Strengths:
     @cached_property
     def edge(self) -> FloatArray:
         """Shortfall of each mode from being clearly beyond the band, in units of the penalty's scale."""
-        return np.maximum(_CLEAR - self.beyond, 0.0) / self.end_scale
+        return np.maximum(_CLEAR_OF_BAND_END - self.beyond, 0.0) / self.end_scale
 
     def below(self, thresholds: FloatArray) -> FloatArray:
         """Shortfall of each mode below thresholds (..., n_measures) and gap, shape (..., n_measures, n_modes)."""
@@ -121,9 +122,9 @@ def _strengths(
     every = np.array([strengths.acceleration, strengths.velocity, strengths.absolute])
     least = np.array([gap, margin, margin])
     rows = np.flatnonzero(np.isfinite(least))
-    omega = np.log(np.maximum(strengths.frequencies, _FAINT))
+    omega = np.log(np.maximum(strengths.frequencies, _FAINTEST_STRENGTH))
     over, under = omega - np.log(band[1]), np.log(band[0]) - omega
-    logarithms = np.log(np.maximum(every[rows], _FAINT))
+    logarithms = np.log(np.maximum(every[rows], _FAINTEST_STRENGTH))
     return _Strengths(
         rows=rows,
         logarithms=logarithms,
@@ -222,7 +223,7 @@ def choose_modes(
             (below**2 + above**2).sum(axis=(1, 2)) + (edge**2).sum(axis=1) + errors[np.arange(n), numbers].sum(axis=1)
         )
         row = int(np.argmin(costs))
-        if not costs[row] < least - _SETTLED:
+        if not costs[row] < least - _SETTLED_STEP:
             break
         best, least = inside[numbers[row]], float(costs[row])
     return best
@@ -245,7 +246,7 @@ def _settled(table: _Strengths, selection: BoolArray) -> tuple[FloatArray, _Shor
         if not step.any():
             return thresholds, shortfalls
         thresholds = thresholds + step
-        if np.abs(step).max() < _SETTLED:
+        if np.abs(step).max() < _SETTLED_STEP:
             break
     return thresholds, table.split(selection, thresholds)
 

@@ -26,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _DRAWN = 8  # draws from the prior for each start that is solved
 _DESCENT = 25  # steps of each draw on the surrogate
-_APART = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
+_LEAST_START_DISTANCE = 0.5  # least distance of two starts, as a part of a draw's usual distance from nominal
 _NEVER_PARTED = (4, 2)  # least number of searches that continue into each round on the fine mesh
 FIRMNESS = (0.4, 1.0, 3.0)  # firmness of the penalties in each round, the first on the coarse mesh
 TRUST = (0.25, 0.15, 0.1)  # trust radius in each round
@@ -304,6 +304,6 @@ def _drawn(
     ends = each(_Descent(surrogate, target, bounds), list(draws))
     apart = [surrogate.center]
     for point, _ in sorted(ends, key=lambda end: end[1]):
-        if all(np.linalg.norm(point - other) > _APART * np.sqrt(len(point)) for other in apart):
+        if all(np.linalg.norm(point - other) > _LEAST_START_DISTANCE * np.sqrt(len(point)) for other in apart):
             apart.append(point)
     return apart[1 : count + 1]

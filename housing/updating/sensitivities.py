@@ -33,8 +33,8 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 _WORKING_SET = 2**19  # numbers in the modes' gradients of one chunk: 4 MB, that a core keeps at hand
-_STILL = 1e-10  # part of the largest velocity: nodes of an element that differ by less move as one
-_EVEN = 1e-11  # part of the largest divergence below which its changes within elements are none
+_EQUAL_VELOCITY_SHARE = 1e-10  # part of the largest velocity: nodes of an element that differ by less move as one
+_EVEN_DIVERGENCE_SHARE = 1e-11  # part of the largest divergence below which its changes within elements are none
 
 _PAIRS = ((0, 1), (1, 2), (2, 0))  # components of the shears, after the three stretches
 
@@ -60,7 +60,7 @@ class Changes:
         if self.velocity is not None:
             moved = self.velocity[nodes]
             apart = np.abs(moved - moved[:, :1]).max(axis=(1, 2))
-            either |= apart > _STILL * np.abs(self.velocity).max(initial=0.0)
+            either |= apart > _EQUAL_VELOCITY_SHARE * np.abs(self.velocity).max(initial=0.0)
         if self.constants is not None:
             either |= self.constants[:, elements].any(axis=0)
         return either
@@ -239,7 +239,7 @@ def _tilt(velocities: FloatArray) -> FloatArray:
 
 def _is_even(divergence: FloatArray) -> bool:
     """Whether div V is the same at all points of each element."""
-    return bool(np.ptp(divergence, axis=1).max() <= _EVEN * np.abs(divergence).max())
+    return bool(np.ptp(divergence, axis=1).max() <= _EVEN_DIVERGENCE_SHARE * np.abs(divergence).max())
 
 
 def _add_even_mass(

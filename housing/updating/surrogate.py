@@ -32,7 +32,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _TOGETHER = 1e-9  # difference of ln λ below which two modes are one
-_STILL = 1e-300  # motion of seats and skin at rest
+_SMALLEST_MOTION = 1e-300  # motion of seats and skin at rest
 
 
 @dataclass(frozen=True)
@@ -123,11 +123,11 @@ class Neighbour:
         seats_rate = (turning @ base.seats.reshape(len(base.seats), -1)).reshape(len(turning), *seats.shape)
         skin_rate = turning @ base.skin
         along = (seats * seats_rate).sum(axis=3)  # radial motion times its rate, (n_parameters, n_modes, n_seats)
-        radial = np.maximum(np.linalg.norm(seats, axis=2), _STILL)
+        radial = np.maximum(np.linalg.norm(seats, axis=2), _SMALLEST_MOTION)
         squares = along.sum(axis=2) / (radial**2).sum(axis=1)
-        squares += (skin * skin_rate).sum(axis=2) / np.maximum((skin**2).sum(axis=1), _STILL)
+        squares += (skin * skin_rate).sum(axis=2) / np.maximum((skin**2).sum(axis=1), _SMALLEST_MOTION)
         means = (along / radial).sum(axis=2) / radial.sum(axis=1)
-        means += (np.sign(skin) * skin_rate).sum(axis=2) / np.maximum(np.abs(skin).sum(axis=1), _STILL)
+        means += (np.sign(skin) * skin_rate).sum(axis=2) / np.maximum(np.abs(skin).sum(axis=1), _SMALLEST_MOTION)
         return np.array([squares, squares - self.slopes[:, modes], means])
 
     def _turning(self, modes: IntArray) -> FloatArray:

@@ -20,7 +20,7 @@ from gearwhine.housing.updating.surrogate import ModalState, Neighbour, Surrogat
 FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 8  # Gauss-Newton steps from each start
-_WORTH = 0.02  # least predicted decrease for a full solution, as a part of the misfit
+_LEAST_PREDICTED_DECREASE = 0.02  # least predicted decrease for a full solution, as a part of the misfit
 _SHORTENED = (1.0, 0.5, 0.25, 0.1)
 
 
@@ -133,7 +133,7 @@ def search(
         if surrogate is None:
             surrogate = design.surrogate()
         point, promised = search_surrogate(surrogate, target, region, effort.starts, generator)
-        if promised > misfit.value - _WORTH * abs(misfit.value):
+        if promised > misfit.value - _LEAST_PREDICTED_DECREASE * abs(misfit.value):
             # No better point found: perhaps it is so near that other starts find it in a smaller region.
             trust *= 0.5
             continue

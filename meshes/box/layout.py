@@ -7,7 +7,7 @@ from typing import Literal
 
 from gearwhine.meshes.box.parts import FACES, Bolt, Bore, Box, Cover, Face, Point, Rib, plane_axes
 
-SUNK = 0.5
+RIB_DEPTH_IN_WALL = 0.5
 """Ribs reach into the walls they meet by this part of the thickness, so that rounded edges leave no gap below."""
 
 
@@ -186,11 +186,11 @@ def sunk_rib_block(box: Box, rib: Rib) -> Block:
     if rib.side == "outside" or on_cover(box, rib):
         normal, way = FACES[rib.face]
         inward = -way if rib.side == "outside" else way
-        return _lengthened(block, normal, inward, SUNK * box.wall.of(rib.face))
+        return _lengthened(block, normal, inward, RIB_DEPTH_IN_WALL * box.wall.of(rib.face))
     for face, (axis, way) in FACES.items():
         end, wall = (block.high[axis], cavity.high[axis]) if way > 0 else (block.low[axis], cavity.low[axis])
         if abs(end - wall) < 1e-9:
-            block = _lengthened(block, axis, way, SUNK * box.wall.of(face))
+            block = _lengthened(block, axis, way, RIB_DEPTH_IN_WALL * box.wall.of(face))
     return block
 
 

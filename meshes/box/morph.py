@@ -128,7 +128,7 @@ def cylinders_of(box: BoxGeometry) -> list[Cylinder]:
     return cylinders
 
 
-_FACING = 1.0 - 1e-6  # cosine from which a facet is normal to an axis
+_LEAST_NORMAL_COSINE = 1.0 - 1e-6  # cosine from which a facet is normal to an axis
 
 
 class BoxMorph:
@@ -163,7 +163,7 @@ class BoxMorph:
         for number, plane in enumerate(planes):
             member = (
                 ~round_
-                & (np.abs(normals[:, plane.axis]) > _FACING)
+                & (np.abs(normals[:, plane.axis]) > _LEAST_NORMAL_COSINE)
                 & (np.abs(places[:, :, plane.axis] - plane.at).max(axis=1) < slack)
                 & ((centers > plane.low - slack) & (centers < plane.high + slack)).all(axis=1)
             )

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from gearwhine.meshes.cad.shape import stated_unit
-from gearwhine.meshes.cad.worker import FORESEEN, JOINING, MESHING, READING, STARTING, Request
+from gearwhine.meshes.cad.worker import FORESEEN_FILE, JOINING, MESHING, READING, STARTING, Request
 from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshSizeError
 from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_request
 from gearwhine.meshes.mesh import Mesh
 
-_LONGEST = 3600.0  # seconds for a file in all
+_LONGEST_READING = 3600.0  # seconds for a file in all
 # Seconds to read and join solids, and more by the byte: a sound file of 20 kB takes a tenth of a second, a damaged one
 # may keep the kernel busy for ever.
 _READING, _READING_PER_BYTE = 5.0, 3e-4
@@ -113,7 +113,7 @@ def mesh_cad(
     with tempfile.TemporaryDirectory(prefix="gearwhine-cad-") as name:
         folder = Path(name)
         (folder / "request.json").write_text(json.dumps(asdict(request)), encoding="utf-8")
-        longest = _LONGEST if time_limit is None else time_limit
+        longest = _LONGEST_READING if time_limit is None else time_limit
         _work(folder, path, min(_reading_limit(path), longest), longest)
         answer = json.loads((folder / "answer.json").read_text(encoding="utf-8"))
         if "unavailable" in answer:
@@ -128,7 +128,7 @@ def mesh_cad(
 
 def _reading_limit(path: Path) -> float:
     """Seconds in which the solids of a file of this size are to be read and joined."""
-    return min(_READING + _READING_PER_BYTE * path.stat().st_size, _LONGEST)
+    return min(_READING + _READING_PER_BYTE * path.stat().st_size, _LONGEST_READING)
 
 
 def _work(folder: Path, path: Path, reading_limit: float, time_limit: float) -> None:
@@ -174,7 +174,7 @@ def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: flo
             # Reading and joining count as one stage.
             spent = now - since.setdefault(READING if stage == JOINING else stage, now)
             limit = {READING: reading_limit, JOINING: reading_limit, MESHING: _meshing_limit(folder)}.get(
-                stage, _LONGEST
+                stage, _LONGEST_READING
             )
             if now - begin > time_limit or spent > limit:
                 raise subprocess.TimeoutExpired(error.cmd, min(limit, time_limit)) from error
@@ -182,11 +182,11 @@ def _errors_of(worker: subprocess.Popen[bytes], folder: Path, reading_limit: flo
 
 def _meshing_limit(folder: Path) -> float:
     """Seconds in which the elements that the worker foresees are to be made."""
-    foreseen = folder / FORESEEN
+    foreseen = folder / FORESEEN_FILE
     text = foreseen.read_text(encoding="utf-8") if foreseen.is_file() else ""
     # The file may be there before its number is.
     elements = float(text) if text.strip() else 0.0
-    return min(_MESHING + _MESHING_PER_ELEMENT * elements, _LONGEST)
+    return min(_MESHING + _MESHING_PER_ELEMENT * elements, _LONGEST_READING)
 
 
 def _stage(folder: Path) -> str:

@@ -133,7 +133,7 @@ def _named(unit: float) -> str:
 
 
 _SEWING = 1e-5  # gaps between surfaces up to this part of the part's diagonal are closed
-_OVERLAP = 1e-6  # solids may share this part of the smaller one's volume, by rounding
+_LARGEST_SHARED_VOLUME = 1e-6  # solids may share this part of the smaller one's volume, by rounding
 _UNNAMED = re.compile(r"Open CASCADE .* translator.*|SOLID|COMPOUND|=>.*|\s*")
 
 
@@ -321,7 +321,7 @@ def conforming(gmsh: Any, solids: list[int], *, glue: bool = True) -> Shape:
     for i, first in enumerate(names):
         for j, second in enumerate(names[:i]):
             shared = sorted(set(parts[first]) & set(parts[second]))
-            if _volume(gmsh, shared) > _OVERLAP * min(abs(volumes[i]), abs(volumes[j])):
+            if _volume(gmsh, shared) > _LARGEST_SHARED_VOLUME * min(abs(volumes[i]), abs(volumes[j])):
                 raise _overlapping(gmsh, second, first, shared)
     faces = {}
     for entity, piece in zip(named, pieces[len(names) :], strict=True):
@@ -336,7 +336,7 @@ def _check_apart(gmsh: Any, solids: dict[str, int]) -> None:
         for second, other in parts[:i]:
             shared, _ = gmsh.model.occ.intersect([(3, solid)], [(3, other)], removeObject=False, removeTool=False)
             common = [tag for dimension, tag in shared if dimension == 3]
-            if _volume(gmsh, common) > _OVERLAP * min(
+            if _volume(gmsh, common) > _LARGEST_SHARED_VOLUME * min(
                 gmsh.model.occ.getMass(3, solid), gmsh.model.occ.getMass(3, other)
             ):
                 raise _overlapping(gmsh, second, first, common)

@@ -22,7 +22,7 @@ from gearwhine.meshes.errors import GeometryError, MesherUnavailableError, MeshS
 from gearwhine.meshes.gmsh_meshing import Tetrahedra, check_mesh_size, coarse_size, collect, gmsh_session, mesh_solids
 
 STARTING, READING, JOINING, MESHING = "starting", "reading it", "joining its solids", "meshing it"
-FORESEEN = "foreseen"  # the file with the number of elements to come
+FORESEEN_FILE = "foreseen"  # the file with the number of elements to come
 
 _FILLING = 10.0  # tetrahedra in a cube of their edge length, about
 _WATCH = 0.5  # seconds between looks at the parent
@@ -112,7 +112,7 @@ def _answer(request: Request, folder: Path) -> dict[str, Any]:
             size = coarse_size(filled * unit**3, area * unit**2, extent(gmsh) * unit)
             request = replace(request, mesh_size=size)
         check_mesh_size(filled * unit**3, extent(gmsh) * unit, size)
-        (folder / FORESEEN).write_text(f"{_foreseen(request, filled * unit**3):.0f}", encoding="utf-8")
+        (folder / FORESEEN_FILE).write_text(f"{_foreseen(request, filled * unit**3):.0f}", encoding="utf-8")
         at(MESHING)
         _refine(gmsh, request, unit)
         for last in (size,) if given else (size, 0.7 * size, 0.5 * size):

@@ -21,9 +21,9 @@ from gearwhine.meshes.mesh import Mesh
 _DEPTH = 20  # levels of files that include files
 _INCLUDE, _INPUT = "INCLUDE", "INPUT"
 # Keywords that are read here, whose lines of data may stand in a file of their own.
-_READ = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
+_KEYWORDS_READ = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
 # Keywords that make, move or take away nodes or elements, and what to write in place of them.
-_FLAT = "write the deck with every node and element in it (as preprocessors do), without this keyword"
+_FLAT_DECK_ADVICE = "write the deck with every node and element in it (as preprocessors do), without this keyword"
 _REFUSED = {"NGEN", "NCOPY", "NFILL", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION", "IMPORT"}
 _Member = TypeVar("_Member")
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
@@ -118,7 +118,7 @@ def _resolved(card: Card, path: Path, depth: int) -> Iterator[Card]:
 
 
 def _takes_file(card: Card) -> bool:
-    return card.keyword == _INCLUDE or (card.keyword in _READ and _INPUT in card.parameters)
+    return card.keyword == _INCLUDE or (card.keyword in _KEYWORDS_READ and _INPUT in card.parameters)
 
 
 def _included(card: Card, path: Path) -> Path:
@@ -217,7 +217,7 @@ def _instanced(cards: list[Card], path: Path) -> Iterator[Card]:
 
 def _take(deck: _Deck, card: Card) -> None:
     if card.keyword in _REFUSED or (card.keyword == "SYSTEM" and card.lines):
-        raise GeometryError(f"{card.place}: *{card.keyword} is not known here; {_FLAT}")
+        raise GeometryError(f"{card.place}: *{card.keyword} is not known here; {_FLAT_DECK_ADVICE}")
     if card.keyword == "NODE":
         numbers = []
         for number, *place in card.lines:

@@ -151,7 +151,7 @@ def _node_sets(content: Any) -> Iterator[tuple[str, IntArray]]:
 
 
 _NAME_LENGTH = 80  # characters of a group's name in MED
-_LOST = {".med": ("hexahedron27",)}
+_KINDS_LOST = {".med": ("hexahedron27",)}
 
 
 def meshio_from_mesh(mesh: Mesh, ending: str) -> Any:
@@ -163,7 +163,7 @@ def meshio_from_mesh(mesh: Mesh, ending: str) -> Any:
         Where volumes overlap and the format knows only one for each element, or a name is too long for it.
     """
     meshio = load_meshio()
-    lost = sorted(set(mesh.kinds) & set(_LOST.get(ending, ())))
+    lost = sorted(set(mesh.kinds) & set(_KINDS_LOST.get(ending, ())))
     if lost:
         raise GeometryError(f"{ending} files hold no {', '.join(lost)} elements; write .vtu, .msh or .inp")
     solids = merged(mesh.blocks) if ending == ".med" else mesh.blocks

@@ -31,7 +31,7 @@ _TO_VTK = {
 }
 _SHELLS = {"CTRIA3": 3, "CTRIAR": 3, "CTRIA6": 3, "CQUAD4": 4, "CQUADR": 4, "CQUAD8": 4}
 _SYSTEMS = {f"CORD{way}{kind}": (way, kind) for way in (1, 2) for kind in "RCS"}
-_TAKEN = {"GRID", "GRDSET", *_SOLIDS, *_SHELLS, *_SYSTEMS}
+_CARDS_READ = {"GRID", "GRDSET", *_SOLIDS, *_SHELLS, *_SYSTEMS}
 # Other solids (pyramids, those of p elements) and cards that make elements; a card "=" repeats the one before it.
 _REFUSED = re.compile(r"C(I?HEX|TET|PEN|PYR)|CGEN$|=")
 _DEPTH = 20  # levels of files that include files
@@ -195,7 +195,7 @@ def _cards(lines: Iterator[tuple[str, _Place]]) -> Iterator[_Card]:
                     f"{_where(place)}: card {name} is not known here; write the deck with every element on a card of "
                     f"its own, solids as {', '.join(_SOLIDS)}"
                 )
-            card = _Card(name, [], place) if name in _TAKEN else None
+            card = _Card(name, [], place) if name in _CARDS_READ else None
             width = 0
         elif card is not None and len(head) > 1 and len(end) > 1 and head[1:] != end[1:]:
             raise GeometryError(

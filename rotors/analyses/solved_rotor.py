@@ -56,7 +56,7 @@ _DEFLECTION_PLACES = 201  # places along a rotor at which its static deflection 
 
 _STEPS = 400  # frequencies, where none are given
 _MODES, _BEYOND = 3, 1.25  # number of the elastic mode that ends the frequencies, and factor on its frequency
-_RIGID = 2000.0 * np.pi  # highest frequency for a rotor that has no elastic mode [rad/s]
+_RIGID_ROTOR_FREQUENCY = 2000.0 * np.pi  # highest frequency for a rotor that has no elastic mode [rad/s]
 _TORQUE_PLACES = 201  # places along a rotor at which its torque is computed
 Bearings = tuple[Bearing, ...]
 Crossings = tuple[Crossing, ...] | str
@@ -446,7 +446,7 @@ def _frequencies(excitation: TorsionalExcitation, modes: TorsionalModes) -> Floa
     if excitation.frequencies is not None:
         return np.array(excitation.frequencies)
     elastic = modes.frequencies[modes.frequencies > 0.0][:_MODES]
-    highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID
+    highest = _BEYOND * float(elastic[-1]) if elastic.size else _RIGID_ROTOR_FREQUENCY
     steps = highest * np.arange(1, _STEPS + 1) / _STEPS
     return np.union1d(steps, elastic) if excitation.damping_ratio > 0.0 else steps
 

@@ -27,7 +27,7 @@ IntArray = npt.NDArray[np.intp]
 
 _DEGREE = 16  # degree of the interpolants along a cone
 _TAIL = 2e-15  # last coefficients of an interpolant that is exact, relative to the largest
-_ROUNDING = 2e-15  # the same bound for a wall as thick as the largest diameter; a thinner wall has a larger one
+_WALL_ROUNDING = 2e-15  # the same bound for a wall as thick as the largest diameter; a thinner wall has a larger one
 _MOST_HALVINGS = 40  # largest number of halvings of a cone
 
 _ANGLES = np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
@@ -213,9 +213,12 @@ def _thickened(
         if isinstance(part, Segment):
             sections = [part.section((place - origin) / part.length) for place in (start, end)]
             outers = [section.outer_diameter for section in sections]
-            own = getattr(part.material, against.modulus)
+            modulus_of_part = getattr(part.material, against.modulus)
             thicker = [
-                [_as_stiff(bare, outer, 1.0 if modulus is None else modulus / own, against.power) for bare in outers]
+                [
+                    _as_stiff(bare, outer, 1.0 if modulus is None else modulus / modulus_of_part, against.power)
+                    for bare in outers
+                ]
                 for left, right, outer, modulus in bodies
                 if left < middle < right and outer > 0.5 * sum(outers)
             ]
@@ -338,7 +341,7 @@ def _taper(part: Segment, start: float, end: float, halvings: int) -> list[tuple
     walls = [part.section(fraction) for fraction in (start, end)]
     thinnest = min(section.outer_diameter - section.inner_diameter for section in walls)
     largest = max(outer for outer, _ in part.end_diameters)
-    tolerance = max(_TAIL, _ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
+    tolerance = max(_TAIL, _WALL_ROUNDING * largest / thinnest) * np.abs(chebyshev).max(axis=0)
     if not bool((np.abs(chebyshev[-2:]) <= tolerance).all()):
         if halvings == _MOST_HALVINGS:
             raise RotorError(f"segment {part!r} tapers too sharply; expected diameters further from zero")

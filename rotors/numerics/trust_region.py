@@ -11,7 +11,7 @@ FloatArray = npt.NDArray[np.float64]
 
 MOST_ITERATIONS = 500
 # Part of the largest eigenvalue below which an eigenvalue's direction is flat.
-_FLAT = 1e-14
+_FLAT_DIRECTION_SHARE = 1e-14
 # Distance, in first radii, beyond which a function that still falls is taken to have no minimum.
 _FARTHEST = 1e12
 _EPSILON = float(np.finfo(np.float64).eps)
@@ -106,7 +106,7 @@ def _step(local: Local, radius: float) -> tuple[FloatArray, float]:
     values, vectors = linalg.eigh(local.hessian)
     values = np.maximum(values, 0.0)
     slope = vectors.T @ local.gradient
-    flat = (values <= _FLAT * values[-1]) & (np.abs(slope) <= 100.0 * _EPSILON * local.force)
+    flat = (values <= _FLAT_DIRECTION_SHARE * values[-1]) & (np.abs(slope) <= 100.0 * _EPSILON * local.force)
     slope = np.where(flat, 0.0, slope)
     if not slope.any():
         return np.zeros_like(slope), 0.0

@@ -67,9 +67,9 @@ _INSIDES: dict[str, _Inside] = {
 }
 _CONRAD = math.radians(186.0)
 # Largest length of a roller's contact over the width, two rows together.
-_LONGEST = 0.95
+_LONGEST_ROLLER_CONTACT = 0.95
 # Largest logarithm of the dynamic rating over the printed one with which the usual count is kept.
-_NEAR = 0.1
+_NEAR_RATING_LOGARITHM = 0.1
 
 
 def catalogue_row(
@@ -143,7 +143,9 @@ def catalogue_row(
     choosable = static is not None and dynamic is not None and not inside.length
     for count in range(max(usual - 2, 3), usual + 3) if choosable else (usual,):
         row = _fitted(make, count, diameter, inside.length * width, pitch, wanted, rated)
-        if row is not None and (not isinstance(row, _ROLLERS) or row.length * inside.rows <= _LONGEST * width):
+        if row is not None and (
+            not isinstance(row, _ROLLERS) or row.length * inside.rows <= _LONGEST_ROLLER_CONTACT * width
+        ):
             rows.append(row)
     if not rows:
         name = "static" if static is not None else "dynamic"
@@ -158,7 +160,7 @@ def catalogue_row(
     def missed(row: Row) -> float:
         return abs(math.log(dynamic_rating(row, rows_rated) / dynamic))
 
-    near = [row for row in rows if missed(row) <= _NEAR]
+    near = [row for row in rows if missed(row) <= _NEAR_RATING_LOGARITHM]
     return min(near, key=lambda row: abs(row.count - usual)) if near else min(rows, key=missed)
 
 

@@ -43,10 +43,10 @@ FloatArray = npt.NDArray[np.float64]
 
 # Closure error of the contacts, as a part of the distance between the grooves' centres: target and largest accepted.
 # The largest accepted error also limits the force error, relative to the larger of static and centrifugal force.
-_CLOSED = 1e-15
-_OPEN = 1e-12
+_CLOSURE_GOAL = 1e-15
+_GAP_LIMIT = 1e-12
 # Newton's method on all balls at once: a ball with an error below this has converged.
-_ROUNDED = 1e-14
+_CONVERGED_BALL_ERROR = 1e-14
 _NEWTON_STEPS, _HALVINGS = 12, 6
 
 
@@ -90,21 +90,21 @@ class CentrifugalBalls:
         row, start = self.row, self._first_forces(v)
         force, (error, gradient, hessian) = start, self._closure(start, v)
         for _ in range(_NEWTON_STEPS):
-            if (error <= _ROUNDED).all():
+            if (error <= _CONVERGED_BALL_ERROR).all():
                 break
             step, share = np.linalg.solve(hessian, gradient[:, :, None])[:, :, 0], np.ones((row.count, 1))
             for _ in range(_HALVINGS):
                 trial = force - share * step
                 new_error, new_gradient, new_hessian = self._closure(trial, v)
                 better = new_error < error
-                if better[error > _ROUNDED].all():
+                if better[error > _CONVERGED_BALL_ERROR].all():
                     break
                 share[~better] *= 0.5
             force = np.where(better[:, None], trial, force)
             error = np.where(better, new_error, error)
             gradient = np.where(better[:, None], new_gradient, gradient)
             hessian = np.where(better[:, None, None], new_hessian, hessian)
-        for ball in np.flatnonzero(~(error <= _ROUNDED) | ~start.any(axis=1)):
+        for ball in np.flatnonzero(~(error <= _CONVERGED_BALL_ERROR) | ~start.any(axis=1)):
             force[ball] = self._inner_force(v[ball])
         return force
 
@@ -170,13 +170,16 @@ class CentrifugalBalls:
                 force=row.groove_distance,
             )
 
-        minimum = minimise(local, start, 0.5, _CLOSED)
+        minimum = minimise(local, start, 0.5, _CLOSURE_GOAL)
         # The force of a ball that barely touches has no certain direction: then its possible error decides.
         closure = local(minimum.place)
-        if minimum.residual > _OPEN and np.linalg.norm(np.linalg.solve(closure.hessian, closure.gradient)) > _OPEN:
+        if (
+            minimum.residual > _GAP_LIMIT
+            and np.linalg.norm(np.linalg.solve(closure.hessian, closure.gradient)) > _GAP_LIMIT
+        ):
             raise EquilibriumError(
                 f"a ball's contacts miss their grooves by {minimum.residual:.3g} of their centres' distance after "
-                f"{minimum.iterations} steps; expected {_OPEN:g}: check that geometry and speed are in m and rad/s"
+                f"{minimum.iterations} steps; expected {_GAP_LIMIT:g}: check that geometry and speed are in m and rad/s"
             )
         return np.asarray(scale * minimum.place)
 

@@ -57,7 +57,7 @@ class ContactElasticity:
 STEEL = ContactElasticity()
 
 # Value log κ of the longest ellipse considered: far beyond any groove, and R_D still has all its digits.
-_LONGEST = 30.0
+_LONGEST_ELLIPSE_LOGARITHM = 30.0
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def ellipticity(curvature_ratio: float) -> float:
 
     if excess(0.0) >= 0.0:
         return 1.0
-    return math.exp(brentq(excess, 0.0, _LONGEST, xtol=1e-15, rtol=8.9e-16))
+    return math.exp(brentq(excess, 0.0, _LONGEST_ELLIPSE_LOGARITHM, xtol=1e-15, rtol=8.9e-16))
 
 
 def point_contact(curvature_along_major: float, curvature_along_minor: float, contact_modulus: float) -> PointContact:

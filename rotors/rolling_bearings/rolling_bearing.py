@@ -19,7 +19,7 @@ from gearwhine.rotors.errors import RotorError, require, require_finite
 from gearwhine.rotors.rolling_bearings.ratings import Row
 from gearwhine.rotors.rolling_bearings.roller_rows import SphericalRollerRow
 
-_CLOSEST = 0.7  # distance of two rows over the width of their elements, which may be staggered
+_CLOSEST_ROW_DISTANCE = 0.7  # distance of two rows over the width of their elements, which may be staggered
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class RollingBearing:
         # two contacts of the same elements.
         placed = [row for row in self.rows if not isinstance(row, SphericalRollerRow)]
         for one, other in pairwise(sorted(placed, key=lambda row: row.position)):
-            apart, least = other.position - one.position, _CLOSEST * 0.5 * (one.width + other.width)
+            apart, least = other.position - one.position, _CLOSEST_ROW_DISTANCE * 0.5 * (one.width + other.width)
             expected = f"rows at least {least:.4g} m apart, whose elements do not overlap"
             require(apart == 0.0 or apart >= least, f"distance of two rows of {self.name}", apart, expected)
 

@@ -27,7 +27,7 @@ from gearwhine.rotors.ross.tables import Entry, Remarks
 RIGID_IN_SHEAR: Final = 1e9
 """Shear coefficient of an element without shear deflection."""
 
-_SAME = 1e-9
+_SAME_DIAMETER_DIFFERENCE = 1e-9
 
 
 def ross_hutchinson(bore_ratio: float, poisson_ratio: float) -> float:
@@ -62,7 +62,7 @@ def ross_formula(segment: Segment) -> tuple[str, bool, float]:
     }  # fmt: skip
     name = min(of_ross, key=lambda formula: abs(of_ross[formula] - factor))
     difference = of_ross[name] / factor - 1.0
-    return name, True, 0.0 if abs(difference) < _SAME else difference
+    return name, True, 0.0 if abs(difference) < _SAME_DIAMETER_DIFFERENCE else difference
 
 
 SHAFT = "ShaftElement"

@@ -34,7 +34,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 1e-12
+_PATH_END_ROUNDING = 1e-12
 """Distance beyond the ends within which a position counts as on the path [base pitches]."""
 
 
@@ -49,7 +49,7 @@ def contact_curvature_radius(pair: GearPairGeometry, position: npt.ArrayLike) ->
     0 where contact reaches a base circle, on which an involute begins with no radius; NaN off the path of contact.
     """
     at = np.asarray(position, dtype=np.float64)
-    on_path = (at >= -_ROUNDING) & (at <= pair.contact_ratio + _ROUNDING)
+    on_path = (at >= -_PATH_END_ROUNDING) & (at <= pair.contact_ratio + _PATH_END_ROUNDING)
     driver = pair.driver.base_radius * pair.driver_roll_angle(at)
     driven = pair.driven.base_radius * pair.driven_roll_angle(at)
     # The two distances add up to that of the tangent points.

@@ -52,7 +52,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 FloatArray = npt.NDArray[np.float64]
 
 _PHASES = 48  # number of phases of a mesh period in the means
-_CONVERGED = 1e-13  # last step of the mean deflection over the deflection
+_CONVERGED_DEFLECTION_STEP = 1e-13  # last step of the mean deflection over the deflection
 _ROUNDS = 60
 _NO_ARM = 1e-12  # distance of the stiffness centre from the middle of the face that is rounding [m]
 _TO_THE_END = np.array([15.0, -10.0, 3.0]) / 8.0
@@ -347,7 +347,7 @@ class FaceContact:
             touching = loads.touching
             reached = float(compression.mean()) + shared * force
             slope = float(np.mean(1.0 / np.add.reduceat(loads.tangent, prepared.first))) + shared
-            if abs(reached - target) <= _CONVERGED * abs(target) + 1e-22:
+            if abs(reached - target) <= _CONVERGED_DEFLECTION_STEP * abs(target) + 1e-22:
                 break
             low, high = (force, high) if reached < target else (low, force)
             step = force + (target - reached) / slope

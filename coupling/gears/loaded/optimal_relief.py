@@ -104,9 +104,9 @@ def transmission_error_harmonics(mesh: LoadedMesh, count: int = 8) -> FloatArray
 
 _GRID = 14
 _POINTS = 128
-_HIGHEST = 32
+_HIGHEST_MULTIPLE = 32
 """Highest multiple of the mesh frequency with a weight."""
-_LONGEST = 0.95
+_LONGEST_RELIEF = 0.95
 """Longest relief from the tip, over half of the path of contact."""
 _DEEPEST = 3.0
 """Largest amount of relief, in mean deflections at the largest load."""
@@ -148,8 +148,10 @@ class WeightedHarmonics:
     def __post_init__(self) -> None:
         """Check the multiples of the mesh frequency and their weights."""
         for multiple, weight in self.weights.items():
-            if not 1 <= multiple <= _HIGHEST:
-                raise GearError(f"relief aim: multiples of the mesh frequency must be 1 to {_HIGHEST}, got {multiple}")
+            if not 1 <= multiple <= _HIGHEST_MULTIPLE:
+                raise GearError(
+                    f"relief aim: multiples of the mesh frequency must be 1 to {_HIGHEST_MULTIPLE}, got {multiple}"
+                )
             require_finite(f"relief aim: the weight of multiple {multiple}", weight, minimum=0.0)
         if not any(self.weights.values()):
             raise GearError("relief aim: at least one multiple of the mesh frequency must have a weight above 0")
@@ -283,7 +285,7 @@ def optimal_tip_relief(
     # Counted from first touch, which crowning or a deviation shifts from nominal motion.
     loaded, unloaded = (loaded_transmission_error(plain, force) for force in (max(forces), 0.0))
     deflection = loaded.mean_transmission_error - unloaded.mean_transmission_error
-    longest = _LONGEST * 0.5 * geometry.path_length
+    longest = _LONGEST_RELIEF * 0.5 * geometry.path_length
     shortest, deepest = 0.05 * longest, _DEEPEST * deflection
     amounts, lengths = np.linspace(0.0, deepest, _GRID + 1)[1:], np.linspace(shortest, longest, _GRID)
     tried = np.array([[worst(float(amount), float(length)) for length in lengths] for amount in amounts])

@@ -41,7 +41,9 @@ from gearwhine.coupling.gears.stiffness.ring_body import body_rings, kolosov, ri
 FloatArray = npt.NDArray[np.float64]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-_RIGID = np.array([1.0, -1.0])  # tractions, or displacements, of a rigid motion of a circle along t = 0
+_RIGID_MOTION_TRACTIONS = np.array(
+    [1.0, -1.0]
+)  # tractions, or displacements, of a rigid motion of a circle along t = 0
 
 
 class RimShares(NamedTuple):
@@ -75,7 +77,7 @@ def rotation_shares(gear: Gear) -> RimShares:
     toothed = 0.25 * gear.face_width * ((gear.pitch_radius / root) ** 4 - 1.0)
     whole = coupling = rim = toothed
     before = 0.0
-    for ring, own in zip(rings, softness, strict=True):
+    for ring, ring_softness in zip(rings, softness, strict=True):
         a, b = ring.inner, ring.outer
         # s = p - q / r² on this ring.
         q = 1.0 / (ring.width * sum(softness))
@@ -84,7 +86,7 @@ def rotation_shares(gear: Gear) -> RimShares:
         whole += ring.width * fourth
         coupling += ring.width * (p * fourth - q * square)
         rim += ring.width * (p**2 * fourth - 2.0 * p * q * square + q**2 * math.log(b / a))
-        before += own
+        before += ring_softness
     return RimShares(coupling / whole, rim / whole)
 
 
@@ -100,16 +102,16 @@ def shift_shares(gear: Gear, state: PlaneState) -> RimShares:
         return RimShares(1.0, 1.0)
     root, rings = gear.root_circle_radius, body_rings(gear)
     places = [ring.inner + 0.5 * (ring.outer - ring.inner) * (1.0 + _NODES) for ring in rings]
-    fields = ring_motions(rings, 1, kolosov(gear, state), _RIGID, places)
-    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID)
-    shift = 0.5 * float(_RIGID @ at_root)
+    fields = ring_motions(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS, places)
+    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS)
+    shift = 0.5 * float(_RIGID_MOTION_TRACTIONS @ at_root)
     # Masses over π ρ, radii in root circle radii; the teeth first.
     whole = coupling = gear.face_width * ((gear.pitch_radius / root) ** 2 - 1.0)
     rim = 0.5 * whole * float(at_root @ at_root) / shift**2
     for ring, radius, field in zip(rings, places, fields, strict=True):
         mass = ring.width * (ring.outer - ring.inner) * _WEIGHTS * radius
         whole += float(mass.sum())
-        coupling += float(mass @ (field @ _RIGID)) * 0.5 / shift
+        coupling += float(mass @ (field @ _RIGID_MOTION_TRACTIONS)) * 0.5 / shift
         rim += float(mass @ (field**2).sum(axis=1)) * 0.5 / shift**2
     return RimShares(coupling / whole, rim / whole)
 
@@ -119,7 +121,7 @@ def shift_compliance(gear: Gear, state: PlaneState) -> float:
     if held_radius(gear) is None:
         return 0.0
     rings, nu = body_rings(gear), gear.poisson_ratio
-    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID)
+    at_root = root_motion(rings, 1, kolosov(gear, state), _RIGID_MOTION_TRACTIONS)
     # Times 2 mu, under a traction of 1 whose resultant is 2 pi times the width; E / (2 mu) = 1 + nu.
-    shift = 0.5 * float(_RIGID @ at_root)
+    shift = 0.5 * float(_RIGID_MOTION_TRACTIONS @ at_root)
     return (1.0 + nu) * shift / (2.0 * math.pi * gear.youngs_modulus * gear.face_width)

@@ -161,7 +161,7 @@ class ElasticRingStiffness(CompliantTeeth):
 
 EFFECTIVE_FILLET_ANGLE = math.radians(75.0)
 """Lean of the fillet's tangent at the effective section [rad] (O'Donnell)."""
-_WIDE = 5.0
+_WIDE_FACE_THICKNESSES = 5.0
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ class CornellStiffness(CompliantTeeth):
 def cornell_state(gear: Gear) -> PlaneState:
     """Plane strain for a face wider than five tooth thicknesses at the reference circle, else plane stress."""
     thickness = 2.0 * float(flank_points(gear, load_angle(gear, np.array(gear.pitch_radius))).half_thickness)
-    return "plane-strain" if gear.face_width > _WIDE * thickness else "plane-stress"
+    return "plane-strain" if gear.face_width > _WIDE_FACE_THICKNESSES * thickness else "plane-stress"
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _TORSION = ("rotor_analysis", "torsional_response")
 _TORSION_PROBES = (*_TORSION, "probes")
-_NAMED = (
+_KEYS_OF_NAMED_PARTS = (
     ("rotor",),
     ("bearing",),
     ("gear",),
@@ -110,7 +110,7 @@ def _one_of(kind: str, names: Iterable[str]) -> str:
 
 def _check_unique(draft: Draft) -> Iterator[Finding]:
     """Yield the second and later uses of a name among entries of one kind, and names that look like another one."""
-    for keys in _NAMED:
+    for keys in _KEYS_OF_NAMED_PARTS:
         first: dict[str, int] = {}
         for index, entry in draft.raw_entries(*keys):
             name = entry.get("name")
@@ -141,7 +141,7 @@ _CHARACTERS = "both are written with other characters, such as Cyrillic letters 
 def _names_by_case(case: Case) -> Iterator[str]:
     """Yield a sentence on names of one kind that differ in capitals alone."""
     document = case_document(case)
-    for keys in (*_NAMED, ("material",)):
+    for keys in (*_KEYS_OF_NAMED_PARTS, ("material",)):
         entries = look_up(document, keys)
         if isinstance(entries, list):
             entries = [entry["name"] for entry in entries if "name" in entry]

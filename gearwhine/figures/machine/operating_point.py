@@ -51,7 +51,7 @@ _BESIDE, _BETWEEN = 6.0, 6.0  # margins and gap between the two planes [mm of pa
 _LARGEST, _ARROW, _WORDS = 5.0, 13.0, 5.0  # largest deflection, longest arrow and height of its number [mm of paper]
 _STEPS = (1, 2, 5)
 _ROW, _GLYPH, _ARC = 12.0, 2.5, 1.5  # row of thrusts or moments, its middle from its top, radius [mm of paper]
-_LEAST = 1e-3  # part of the largest force below which none is drawn
+_LEAST_DRAWN_FORCE = 1e-3  # part of the largest force below which none is drawn
 _LEAST_MOMENT = 0.02  # part of the largest moment below which none is drawn
 _BODY, _SHAFT = "#d9cfb4", "#c9d5e0"
 _N_PER_MM = 1e-3
@@ -113,7 +113,7 @@ def draw_deflected_shaft(
     factor = _exaggeration(across, view)
     strongest = max((abs(part) for force in forces for part in (*force.force, force.thrust)), default=0.0) or 1.0
     below, above = _extent(assembly, view, shaft, forces, factor, strongest)
-    thrusts = [force for force in forces if abs(force.thrust) >= _LEAST * strongest]
+    thrusts = [force for force in forces if abs(force.thrust) >= _LEAST_DRAWN_FORCE * strongest]
     largest = max((abs(part) for force in forces for part in force.moment), default=0.0)
     turned = [[force for force in forces if abs(force.turning(plane)) > _LEAST_MOMENT * largest] for plane in range(2)]
     # Moments of a thousandth of a millimetre of arm are rounding of the picture.
@@ -180,7 +180,7 @@ def _extent(
     room = [view.half_height + max(0.0, float((sense * moved).max())) for sense in (-1.0, 1.0)]
     for force in forces:
         for value, shift in zip(force.force, moved, strict=True):
-            if abs(value) < _LEAST * strongest:
+            if abs(value) < _LEAST_DRAWN_FORCE * strongest:
                 continue
             side, sense = (0, -1.0) if value > 0.0 else (1, 1.0)
             surface = view.across(_surface(assembly, force)) / view.per_paper
@@ -248,7 +248,7 @@ def _draw_force(
 ) -> None:
     """Draw a force's component in a plane as an arrow that pushes the surface, with its number at the tail."""
     value = force.force[plane]
-    if abs(value) < _LEAST * strongest:
+    if abs(value) < _LEAST_DRAWN_FORCE * strongest:
         return
     sense = 1.0 if value > 0.0 else -1.0
     tip = moved - sense * view.across(_surface(assembly, force))
@@ -373,7 +373,7 @@ def draw_face_load(title: str, pair: PairLoad) -> Figure:
 
 
 _NARROWEST = 1.0  # least range on either side of zero [µrad]
-_ALIGNED = 1e-8  # misalignment by each cause up to which there is nothing to draw [rad]
+_LEAST_DRAWN_MISALIGNMENT = 1e-8  # misalignment by each cause up to which there is nothing to draw [rad]
 _BAR = 11.0  # height of a pair's row [mm of paper]
 _NAMES, _SUMS = 26.0, 30.0  # widths of the pairs' names and of their sums [mm of paper]
 
@@ -503,7 +503,7 @@ def draw_load(solved: SolvedLoad) -> Iterator[tuple[str, Figure]]:
         yield stem, draw_deflected_shaft(title, assembly, shaft, acting[shaft.name])
     pairs = [pair for pair in solved.point.pairs if pair.force > 0.0]
     causes = [abs(pair.misalignment_by_cause[cause]) for pair in pairs for cause in CAUSES]
-    if max(causes, default=0.0) > _ALIGNED:
+    if max(causes, default=0.0) > _LEAST_DRAWN_MISALIGNMENT:
         yield "load-misalignment", draw_misalignment("Misalignment of the flanks by cause", pairs)
     names = [f"{pair.pair.driver.name}-{pair.pair.driven.name}" for pair in pairs]
     faces, patterns = file_stems(names, "load-face-"), file_stems(names, "load-pattern-")

@@ -28,7 +28,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT = 80.0  # height of the panel of order slices [mm of paper]
 _COLUMNS = 3  # columns of their legend
-_EVEN = 0.2  # least step of the speed between two spectra for an axis of speed, as a part of the mean step
+_LEAST_SPEED_STEP = 0.2  # least step of the speed between two spectra for an axis of speed, as a part of the mean step
 _FAINT_ORDER = 40.0  # decibels below the overall level at the same speed from which on an order is left out
 _LEVELS = 100.0  # decibels below the highest level that they show at most
 _TIME = "time [s]"
@@ -87,7 +87,7 @@ def _axis(speeds_rpm: FloatArray, times: FloatArray) -> tuple[FloatArray, str]:
     Spectra of a machine that settles at a speed, or returns to one, would lie on each other over the speed.
     """
     steps = np.diff(speeds_rpm)
-    even = steps.size > 0 and np.abs(steps).min() >= _EVEN * np.abs(steps).mean()
+    even = steps.size > 0 and np.abs(steps).min() >= _LEAST_SPEED_STEP * np.abs(steps).mean()
     if even and (np.all(steps > 0.0) or np.all(steps < 0.0)):
         return speeds_rpm, "speed of the first driver [rpm]"
     return times, _TIME

@@ -47,7 +47,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _POWER, _BANDS, _BETWEEN = 48.0, 34.0, 13.0  # heights of the panels of sound power, and gap between them [mm]
 _ABOVE = 2.0  # height above the panel for the leaders of the names [mm]
-_NAMED = 5  # number of lines with names
+_MOST_NAMED_LINES = 5  # number of lines with names
 _RANGE = 60.0  # range of levels below the highest that is drawn [dB]
 _HEARD = 25.0  # range below the loudest line in which lines have names and directivities [dB]
 _STEP = 10.0  # step of the axis of levels [dB]
@@ -81,7 +81,7 @@ def draw_sound_power(title: str, solved: "SolvedSound") -> Figure:
     """
     lines = loudest_lines(solved, _RANGE)
     limit = 1.02 * max(solved.limit_hz, *(line.frequency_hz for line in lines))
-    loudest = loudest_lines(solved, _HEARD)[:_NAMED]
+    loudest = loudest_lines(solved, _HEARD)[:_MOST_NAMED_LINES]
     named = [Label(_text(line), line.frequency_hz, line.level_db) for line in loudest]
     row = arrange(named, [label.x / limit * PANEL_WIDTH for label in named], PANEL_WIDTH)
     note = (

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 _MOST_WATERFALLS = 12  # largest number of waterfalls of a grid over several keys
-_LOUD = 40.0  # range of levels below the highest that the colours distinguish [dB]
+_RANGE_OF_COLOURS = 40.0  # range of levels below the highest that the colours distinguish [dB]
 _MARKS = 30  # number of points up to which each is marked
 _LEVELS, _LEVELS_GAP = 36.0, 8.0  # height of a sensor's panel, and gap with a title between two [mm of paper]
 _FORCES, _FORCES_GAP = 42.0, 8.0  # height of a gear pair's panels, and gap with a title between two [mm of paper]
@@ -211,7 +211,7 @@ def _draw_loudest(axes: Any, bar: Any, dataset: xr.Dataset, along: str) -> None:
     # The quiet ones first, below the loud ones.
     order = np.argsort(levels, axis=None)[: int(np.isfinite(levels).sum())]
     color = levels.ravel()[order]
-    low = max(float(color.min()), float(color.max()) - _LOUD)
+    low = max(float(color.min()), float(color.max()) - _RANGE_OF_COLOURS)
     points = axes.scatter(
         at.ravel()[order], frequencies.ravel()[order], c=color, cmap="viridis_r", vmin=low, s=12.0, lw=0.0, zorder=3
     )

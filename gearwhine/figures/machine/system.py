@@ -60,11 +60,11 @@ KIND_COLORS = {
 }
 _PALE_GREY = "#c3c9ce"
 _HEIGHT = 105.0  # height of the panel [mm]
-_LARGEST = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
+_LARGEST_MARK_AREA = 30.0  # area of the mark of a mode whose strain is all in the teeth [points²]
 _MICROMETRE = 1e-6
 _RESPONSE_HEIGHT, _RESPONSE_GAP = 38.0, 2.0  # height of a panel and gap between two [mm]
 _DECADES = 4.0  # decades of amplitude that a panel shows at most
-_NAMED = 8  # number of curves that a panel distinguishes by colour
+_MOST_COLOURED_CURVES = 8  # number of curves that a panel distinguishes by colour
 _COLUMNS = 4  # columns of their names above it
 _CAMPBELL_COLUMNS = 8  # columns of the kinds of modes below the Campbell diagram
 
@@ -146,7 +146,7 @@ def _mark_crossings(axes: Axes, campbell: SystemCampbell) -> None:
         place = (RPM * abs(crossing.speed), crossing.eigenvalue.imag / HERTZ)
         color = KIND_COLORS.get(crossing.kind, INK)
         if crossing.line.kind == "mesh" and crossing.kind != "residual":
-            area = 9.0 + _LARGEST * min(crossing.teeth, 1.0)
+            area = 9.0 + _LARGEST_MARK_AREA * min(crossing.teeth, 1.0)
             axes.scatter(*place, s=area, color=color, edgecolors="white", linewidths=0.4, zorder=4, label="crossing")
         elif crossing.line.kind == "shaft" and crossing.kind == "rotor":
             axes.scatter(
@@ -178,7 +178,7 @@ def draw_transmissibility(
         ("acceleration [m/s²/µm]", {name: np.abs(a) for name, a in response.sensor_acceleration.items()}),
     ]
     quantities = [(quantity, curves) for quantity, curves in panels if curves]
-    names = [legend_height(min(len(curves), _NAMED), _COLUMNS) for _, curves in quantities]
+    names = [legend_height(min(len(curves), _MOST_COLOURED_CURVES), _COLUMNS) for _, curves in quantities]
     note = "peak amplitudes by a harmonic error of 1 µm alone at any frequency, without load shuttling"
     if len(mesh_frequencies):
         note += "; dashed: mesh frequencies at operation, and multiples"
@@ -208,7 +208,11 @@ def _draw(axes: Axes, frequencies: FloatArray, curves: Mapping[str, FloatArray],
     handles = []
     peaks = {name: float(_MICROMETRE * values[inside].max(initial=0.0)) for name, values in curves.items()}
     # Of many curves the highest have a colour and a name each.
-    named = curves if len(curves) <= _NAMED else sorted(peaks, key=lambda name: -peaks[name])[: _NAMED - 1]
+    named = (
+        curves
+        if len(curves) <= _MOST_COLOURED_CURVES
+        else sorted(peaks, key=lambda name: -peaks[name])[: _MOST_COLOURED_CURVES - 1]
+    )
     colours = dict(zip((name for name in curves if name in named), SERIES, strict=False))
     for name, values in curves.items():
         top = max(top, peaks[name])

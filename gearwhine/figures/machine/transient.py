@@ -60,8 +60,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _HEIGHT, _BETWEEN, _RIGHT = 34.0, 6.5, 14.0  # height of a panel, gap above it, and width beside it for levels [mm]
 _ABOVE = 4.5  # height above the first panel for the name of its sensor [mm]
-_NAMED = 5  # named lines of a sensor
-_LEAST = 1e-4  # part of the highest line below which no line is named
+_MOST_NAMED_LINES = 5  # named lines of a sensor
+_LEAST_NAMED_LINE = 1e-4  # part of the highest line below which no line is named
 
 
 def draw_sensor_spectra(
@@ -91,7 +91,9 @@ def draw_sensor_spectra(
     """
     width, limit = SHEET_WIDTH - LEFT - _RIGHT, solved.trusted_limit
     named = {
-        name: [line for line in sensor_lines if abs(line.value) >= _LEAST * abs(sensor_lines[0].value)][:_NAMED]
+        name: [line for line in sensor_lines if abs(line.value) >= _LEAST_NAMED_LINE * abs(sensor_lines[0].value)][
+            :_MOST_NAMED_LINES
+        ]
         for name, sensor_lines in lines.items()
     }
     # A line stands at the same frequency for all sensors: its name stands once, above them all.
@@ -156,7 +158,7 @@ _LINES, _MOST_LINES = 3, 8  # lines of each sensor, and of all on a sheet
 _PARTS = 6  # parts of each kind
 _BAR, _NAMES, _BARS_GAP = 3.4, 31.0, 15.0  # height of a bar, width of its name, and gap above a panel [mm]
 _MARGIN = 4.0
-_VISIBLE = 0.05  # size below which a part counts as zero [%]
+_VISIBLE_PART = 0.05  # size below which a part counts as zero [%]
 
 
 def draw_contributions(title: str, lines: dict[str, tuple[TracedLine, ...]]) -> Figure:
@@ -204,7 +206,7 @@ def _gathered(parts: Sequence[Contribution]) -> list[tuple[str, float]]:
     named = [(part.name, part.share) for part in ranked[:_PARTS]]
     rest = ranked[_PARTS:]
     together = sum(part.share for part in rest)
-    if 100.0 * abs(together) < _VISIBLE:
+    if 100.0 * abs(together) < _VISIBLE_PART:
         return named
     return [*named, (counted(len(rest), "other"), together)]
 
@@ -219,22 +221,22 @@ def _draw(axes: Axes, parts: list[tuple[str, float]], color: str) -> None:
     low, high = min(0.0, *shares), max(0.0, *shares)
     room = 0.2 * (high - low) or 1.0
     # A value stands beyond its bar, on the left of negative ones.
-    axes.set_xlim(low - (room if min(shares) <= -_VISIBLE else 0.0), high + room)
+    axes.set_xlim(low - (room if min(shares) <= -_VISIBLE_PART else 0.0), high + room)
     for place, share in enumerate(shares):
         axes.annotate(
-            _percent(share), (share, place), (2.0 if share > -_VISIBLE else -2.0, 0.0), textcoords="offset points",
-            fontsize=NOTE - 0.5, color=INK, va="center", ha="left" if share > -_VISIBLE else "right",
+            _percent(share), (share, place), (2.0 if share > -_VISIBLE_PART else -2.0, 0.0), textcoords="offset points",
+            fontsize=NOTE - 0.5, color=INK, va="center", ha="left" if share > -_VISIBLE_PART else "right",
         )  # fmt: skip
     axes.grid(visible=False, axis="y")
 
 
 def _percent(share: float) -> str:
-    return "0" if abs(share) < _VISIBLE else f"{share:.{0 if abs(share) >= 10.0 else 1}f}"
+    return "0" if abs(share) < _VISIBLE_PART else f"{share:.{0 if abs(share) >= 10.0 else 1}f}"
 
 
 _PERIODS = 6  # mesh periods that are drawn
-_FINE = 40  # least number of a curve's points in a mesh period
-_SMOOTH = 24  # least number of an orbit's points in a mesh period
+_LEAST_POINTS_PER_MESH_PERIOD = 40  # least number of a curve's points in a mesh period
+_LEAST_ORBIT_POINTS_PER_MESH_PERIOD = 24  # least number of an orbit's points in a mesh period
 _EDGE = 10  # samples on either side from which a point between samples is interpolated
 _BETA = 8.0  # parameter of Kaiser's window over them
 _ROW, _ROW_GAP = 42.0, 18.0  # height of a row of panels, and gap with axis and title between two [mm of paper]
@@ -270,7 +272,7 @@ def between_samples(times: FloatArray, values: FloatArray, end: float, period: f
     """
     interval = float(times[1] - times[0])
     n_samples = int(np.searchsorted(times, end + 1e-9 * interval, side="right"))
-    factor = int(np.ceil(_FINE * interval / period))
+    factor = int(np.ceil(_LEAST_POINTS_PER_MESH_PERIOD * interval / period))
     if factor <= 1 or n_samples < 2:
         return times[:n_samples], values[:n_samples]
     count = factor * (n_samples - 1) + 1
@@ -338,7 +340,7 @@ def draw_friction(title: str, histories: Histories, mesh_frequencies: dict[str, 
 
 
 _MODES = 4  # largest number of modes in a panel
-_LONGEST = 6000  # largest number of points of a curve
+_MOST_CURVE_POINTS = 6000  # largest number of points of a curve
 _LEGEND_BAND = 3.4  # height of a legend's line for a mode [mm of paper]
 
 
@@ -403,7 +405,7 @@ def draw_modal_coordinates(
         for color, (number, values) in zip(SERIES, list(group.items())[:_MODES], strict=False):
             parts = signal_parts(values)
             label = f"mode {number}: d.c. {float(parts.mean):.2e}, a.c. {float(parts.rms):.1e} rms"
-            at, outline = outlined(times - times[0], values, _LONGEST)
+            at, outline = outlined(times - times[0], values, _MOST_CURVE_POINTS)
             left.plot(MILLI * at, outline, color=color, lw=0.7, label=label)
             spectrum = amplitude_spectrum(values, interval, window)
             inside = (spectrum.frequencies > 0.0) & (spectrum.frequencies <= limit)
@@ -539,7 +541,7 @@ def draw_transient(
             motions = {name: motion[-_ORBIT_SAMPLES:] for name, motion in motions.items()}
         most = max((frequency for frequency in meshes), default=0.0)
         times = solved.histories.times
-        refined = int(np.ceil(_SMOOTH * most * float(times[1] - times[0]))) or 1
+        refined = int(np.ceil(_LEAST_ORBIT_POINTS_PER_MESH_PERIOD * most * float(times[1] - times[0]))) or 1
         # Beyond that a path takes long to draw, and memory.
         refined = min(refined, max(_ORBIT_SAMPLES // len(times), 1))
         yield "orbits", draw_orbits("Orbits of the gears", motions, note=f"{title}, {speed}", refined=refined)

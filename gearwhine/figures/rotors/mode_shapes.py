@@ -53,11 +53,11 @@ _BACK = 0.6 * np.exp(1j * np.radians(35.0))
 _TURN = np.linspace(0.0, 0.86 * 2.0 * np.pi, 60)
 _EDGEWISE = 0.5  # part of the largest displacement seen upwards below which a mode is seen from the other side
 _ARROWS, _SHORTEST = 13, 0.5  # number of arrows of an axial motion, and the shortest length [mm of paper]
-_TIGHT = {"shrinkA": 0, "shrinkB": 0}  # arrows begin and end at their points
+_UNSHRUNK_ARROW = {"shrinkA": 0, "shrinkB": 0}  # arrows begin and end at their points
 _HEIGHT = 60.0  # height of the panel [mm of paper]
 _ARROW = 0.26  # arrow of the largest load, over the panel's height
 _WORD, _EDGE = 0.08, 0.03  # height of a load's label, and margin, over the panel's height
-_NEGLIGIBLE = 1e-6  # part of the deflection in y below which that in x is not drawn
+_LEAST_DRAWN_DEFLECTION = 1e-6  # part of the deflection in y below which that in x is not drawn
 
 
 def draw_lateral_modes(assembly: RotorAssembly, modes: LateralModes, *, most: int | None = None) -> Figure:
@@ -209,7 +209,7 @@ def draw_static_deflection(
     largest = float(np.abs(moved).max(initial=0.0))
     curves: list[Artist] = []
     for column, name in ((1, "y"), (0, "x")):
-        if np.abs(moved[:, column]).max(initial=0.0) > _NEGLIGIBLE * largest or column == 1:
+        if np.abs(moved[:, column]).max(initial=0.0) > _LEAST_DRAWN_DEFLECTION * largest or column == 1:
             color = BLUE if column else SERIES[1]
             curves += axes.plot(MM * places, MICRO * moved[:, column], color=color, lw=1.3, zorder=3, label=name)
     low, high = min(0.0, MICRO * float(moved.min())), max(0.0, MICRO * float(moved.max()))
@@ -314,7 +314,7 @@ def _draw_axial_mode(axes: Axes, view: ShaftView, z: FloatArray, motion: Complex
     top = int(np.abs(motion).argmax())
     moved = (motion * np.exp(-1j * np.angle(motion[top]))).real / (np.abs(motion[top]) or 1.0)
     axes.plot(MM * z[[0, -1]], (level, level), color=GREY, lw=0.5, zorder=1)
-    head = {"arrowstyle": "-|>,head_width=0.14,head_length=0.3", "color": AXIAL.color, "lw": 1.1} | _TIGHT
+    head = {"arrowstyle": "-|>,head_width=0.14,head_length=0.3", "color": AXIAL.color, "lw": 1.1} | _UNSHRUNK_ARROW
     for index in np.linspace(0, z.size - 1, _ARROWS).round().astype(int).tolist():
         start, end = MM * float(z[index]), MM * float(z[index]) + view.length(_REACH) * float(moved[index])
         axes.plot((start, start), (level - 1.4, level + 1.4), color=GREY, lw=0.6, zorder=2, label="at rest")
@@ -379,7 +379,7 @@ def _project(
 def _draw_directions(axes: Axes, view: ShaftView, level: float, back: complex) -> None:
     """Show where x and y point, left of a mode and below its name."""
     start, low = view.low - view.length(11.0), level - 10.5
-    head = {"arrowstyle": "-|>,head_width=0.1,head_length=0.25", "color": GREY, "lw": 0.7} | _TIGHT
+    head = {"arrowstyle": "-|>,head_width=0.1,head_length=0.25", "color": GREY, "lw": 0.7} | _UNSHRUNK_ARROW
     for name, (x, y) in (("x", (0.7, 0.0)), ("y", (0.0, 0.5))):
         across, up = _project(view, 0.0, np.array([x, 1.6 * x]), np.array([y, 1.5 * y]), 0.0, back)
         axes.annotate("", (start + across[0], low + up[0]), (start, low), arrowprops=head, annotation_clip=False)

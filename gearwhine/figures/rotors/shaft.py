@@ -129,7 +129,7 @@ _BORE, _DISC, _GEAR, _TEETH = "#f6f8f9", "#a9b8c6", "#c3b48f", "#e2d9c0"
 _EDGE = 0.6  # width of outlines [points]
 _HUB = 1.5  # radius of a coupling's hubs over that of the shafts beside it
 _POINT = 1.1  # radius of a point mass [mm of paper]
-_BEYOND = 2.5  # overhang of centre and pitch lines [mm of paper]
+_CENTRE_LINE_OVERHANG = 2.5  # overhang of centre and pitch lines [mm of paper]
 _CHAIN = (0, (8, 2, 1.5, 2))
 
 
@@ -150,7 +150,10 @@ def draw_outline(axes: Axes, assembly: RotorAssembly, view: ShaftView) -> None:
         _disc(axes, assembly, view, disc)
     for gear in assembly.gears:
         _gear(axes, view, gear)
-    ends = MM * assembly.reach[0] - view.length(_BEYOND), MM * assembly.reach[1] + view.length(_BEYOND)
+    ends = (
+        MM * assembly.reach[0] - view.length(_CENTRE_LINE_OVERHANG),
+        MM * assembly.reach[1] + view.length(_CENTRE_LINE_OVERHANG),
+    )
     axes.plot(ends, (0.0, 0.0), color=INK, lw=0.5, ls=_CHAIN, zorder=4, label="centre line")
 
 
@@ -205,7 +208,7 @@ def _gear(axes: Axes, view: ShaftView, gear: DrawnGear) -> None:
         patch = Rectangle((left, -radius), width, 2.0 * radius, facecolor=color, edgecolor=INK, lw=_EDGE, zorder=order)
         patch.set_label(name)
         axes.add_patch(patch)
-    beyond = view.length(0.5 * _BEYOND)
+    beyond = view.length(0.5 * _CENTRE_LINE_OVERHANG)
     pitch = 0.5 * view.across(gear.pitch_diameter)
     for height in (-pitch, pitch):
         ends = (left - beyond, left + width + beyond)
@@ -282,7 +285,7 @@ def _draw_ground(axes: Axes, view: ShaftView, place: float, top: float, wide: fl
     axes.plot(across, down, color=INK, lw=0.7 * _LINE, zorder=3)
 
 
-_CLEAR = 1.5  # gap between the drawing and slanting leaders, and round the panel [mm of paper]
+_CLEARANCE = 1.5  # gap between the drawing and slanting leaders, and round the panel [mm of paper]
 _SPOT, _PROBE = 0.8, 2.4  # radius of an unbalance's dot, height of a probe [mm of paper]
 
 
@@ -301,7 +304,7 @@ class OutlinePanel:
     @property
     def height(self) -> float:
         """Height of the whole panel."""
-        return self.above.height + self.rise + self.drop + self.below.height + 2.0 * _CLEAR
+        return self.above.height + self.rise + self.drop + self.below.height + 2.0 * _CLEARANCE
 
     @property
     def remarks(self) -> list[str]:
@@ -318,7 +321,7 @@ class OutlinePanel:
     def draw(self, figure: Figure, bottom: float) -> Axes:
         """Draw it into a sheet, its lower edge ``bottom`` mm above the sheet's."""
         axes = panel(figure, bottom, self.height)
-        centre = _CLEAR + self.below.height + self.drop
+        centre = _CLEARANCE + self.below.height + self.drop
         self.view.apply(axes, centre)
         self.view.show_axes(axes, self.assembly.rotor.length, self.assembly.largest_radius)
         axes.grid(visible=False)
@@ -375,8 +378,8 @@ def lay_out(assembly: RotorAssembly, *, labelled: bool) -> OutlinePanel:
         view=view,
         above=_arranged(_labels_above(assembly, view) if labelled else [], view),
         below=_arranged(_labels_below(assembly, view), view),
-        rise=view.half_height + _CLEAR + marks,
-        drop=max([view.half_height, *stands]) + _CLEAR,
+        rise=view.half_height + _CLEARANCE + marks,
+        drop=max([view.half_height, *stands]) + _CLEARANCE,
         labelled=labelled,
     )
 

@@ -11,7 +11,7 @@ from gearwhine.output.report.pictures import Shown, figure
 from gearwhine.output.sections import NOTHING, Column, Finding, Row, Section, Table, arrowed, is_number
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
-_LONGEST = 60  # length of the longest identifier [characters]
+_LONGEST_IDENTIFIER = 60  # length of the longest identifier [characters]
 _MARKS = {True: ("passed", "✓"), False: ("failed", "✗"), None: ("warned", "!")}  # classes and marks of findings
 _WRAPPED = 20  # characters of a cell from which on its column may wrap
 _UNIT = re.compile(r" (?=[→%])|(?<=\d) (?=(?:Hz|kHz|rpm|mm|µm|N|kg)\b)")
@@ -43,7 +43,10 @@ class Places:
         """Give a name of a result an identifier, once."""
         if (result, name) in self._identifiers:
             return
-        stem = re.sub(r"[^a-z0-9]+", "-", f"{result} {name}".lower()).strip("-")[:_LONGEST].strip("-") or "place"
+        stem = (
+            re.sub(r"[^a-z0-9]+", "-", f"{result} {name}".lower()).strip("-")[:_LONGEST_IDENTIFIER].strip("-")
+            or "place"
+        )
         identifier, number = stem, 1
         while identifier in self._used:
             number += 1

@@ -14,8 +14,8 @@ from PIL import Image
 
 from gearwhine.output.sections import Picture, Section, arrowed
 
-_LARGEST = 8 << 20  # size of a file up to which it is taken as a picture [bytes]
-_LIGHT = 512  # size of a file up to which it is not packed [bytes]
+_LARGEST_PICTURE_FILE = 8 << 20  # size of a file up to which it is taken as a picture [bytes]
+_LARGEST_UNPACKED_FILE = 512  # size of a file up to which it is not packed [bytes]
 _TALL = 1.2  # height over width of a picture that fills a printed page
 _COLOURS, _QUALITY = 256, 85  # colours of a palette, and quality of WebP
 _SMALL, _WIDE = 720, 1400  # largest width of a small picture, and of any [pixels]
@@ -38,7 +38,11 @@ class Shown:
 def pictures_in(place: Path) -> list[Path]:
     """Return the picture files of a folder by name; no links, and none that is too large to be a figure."""
     paths = sorted(place.glob("*.png"))
-    return [path for path in paths if path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST]
+    return [
+        path
+        for path in paths
+        if path.is_file() and not path.is_symlink() and path.stat().st_size <= _LARGEST_PICTURE_FILE
+    ]
 
 
 def distribute(sections: Sequence[Section], files: Sequence[Path]) -> tuple[dict[int, list[Shown]], list[Path]]:
@@ -100,7 +104,7 @@ def _packed(path: Path, widest: int) -> tuple[str, bytes, tuple[int, int]] | Non
             flat.paste(image, mask=image.getchannel("A") if image.mode == "RGBA" else None)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return None
-    if len(content) <= _LIGHT:
+    if len(content) <= _LARGEST_UNPACKED_FILE:
         return "image/png", content, size
     if size[0] > widest:
         flat = flat.resize((widest, max(round(size[1] * widest / size[0]), 1)), Image.Resampling.LANCZOS)

@@ -229,4 +229,4 @@ def test_the_best_relief_of_a_machine_in_a_housing_aims_at_the_loudest_sensor_as
     study = gw.load("small-gearbox", {"housing.box.mesh_size": "50 mm"})
     found = gw.Study(study.machine).gears()  # solves the housing, which `gears` of the case then takes
     equal(found, study.gears())
-    assert found.document["pairs"][0]["optimal_relief"]["aim"]["kind"] == "sensor"
+    assert found.document["pairs"][0]["optimal_tip_relief"]["aim"]["kind"] == "sensor"

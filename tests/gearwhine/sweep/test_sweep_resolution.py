@@ -18,7 +18,7 @@ from gearwhine.output.sections import Finding, Table
 from gearwhine.results.first_page import first_page
 from gearwhine.results.sweep import PEAK, sections
 from gearwhine.sweep.resolution import MissedPeak, missed_peaks, over_with, peak_warnings, speeds_to_add
-from gearwhine.sweep.resonances import NEAR, SOUND, Resonances
+from gearwhine.sweep.resonances import PLACES_ABOUT_MODE, SOUND, Resonances
 from gearwhine.sweep.solution import PointResult
 
 pytestmark = pytest.mark.slow
@@ -51,7 +51,7 @@ def resonances(
         line_orders=np.array([order]),
         outputs=(output,),
         line_levels=level([[order * abs(rpm) / 60.0]], natural) - over,
-        levels_near=level(natural + width * NEAR, natural)[None, None, None] - over,
+        levels_near=level(natural + width * PLACES_ABOUT_MODE, natural)[None, None, None] - over,
         line_rates=np.zeros((1, 0), dtype=complex),
         mode_rates=np.zeros((1, 1, 0), dtype=complex),
     )
@@ -215,7 +215,7 @@ def with_modes(points: list[Any], *others: float) -> None:
     widths = RATIO * naturals
     for one in points:
         found = one.outcome.resonances
-        near = level(naturals[:, None] + widths[:, None] * NEAR) - 3.0
+        near = level(naturals[:, None] + widths[:, None] * PLACES_ABOUT_MODE) - 3.0
         object.__setattr__(found, "frequencies", naturals)
         object.__setattr__(found, "half_widths", widths)
         object.__setattr__(found, "names", tuple(f"mode at {natural:g}" for natural in naturals))

@@ -98,7 +98,7 @@ def test_a_vertex_that_is_lost_on_the_default_triangles_is_told_and_refused(monk
     case = sounding_gearbox({"acoustics.highest_frequency": "3 kHz"}).case
     housing = sounding_housing()
     # The triangles that they were, without their long edges halved.
-    monkeypatch.setattr(wrapping, "_LONG", np.inf)
+    monkeypatch.setattr(wrapping, "_HALVED_EDGE", np.inf)
 
     def solved() -> Any:
         wrapped = build_radiation(case, housing)
