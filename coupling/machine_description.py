@@ -105,7 +105,6 @@ from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.settings import TransientSettings
 from gearwhine.coupling.time.transient import Motion, simulate
 from gearwhine.housing import HousingModes
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -116,6 +115,7 @@ from gearwhine.numerics.findings import (
     kind_findings,
     refuse,
 )
+from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.rotors import Coupling, EquilibriumError, Rotor, modal_rotor
 from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape

@@ -27,10 +27,10 @@ from gearwhine.housing.modes.effective_mass import damping_ratios, modal_damping
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from gearwhine.housing.modes.health import HealthReport, health_report
 from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
 from gearwhine.meshes.box.surface_points import point_off_box
 from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribute_findings, kind_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

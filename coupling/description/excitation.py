@@ -28,7 +28,7 @@ from gearwhine.coupling.machine.loads import (
     TorqueSlope,
 )
 from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedProfile, SpeedRun, TorqueLine, free_speed
-from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -33,7 +33,6 @@ from gearwhine.coupling.machine.loads import (
     largest_torques,
 )
 from gearwhine.coupling.machine.mounted_parts import GearMesh
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -45,6 +44,7 @@ from gearwhine.numerics.findings import (
     kind_findings,
     refuse,
 )
+from gearwhine.numerics.own_copies import keep_tuples
 
 LARGEST_OFFSET = 1e-6
 """Largest difference between the distance of two axes and the centre distance of the gears on them [m]."""

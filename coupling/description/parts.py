@@ -16,7 +16,6 @@ from gearwhine.coupling.gears.stiffness.beam import shear_modulus
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import (
     Finding,
     Instance,
@@ -30,6 +29,7 @@ from gearwhine.numerics.findings import (
     refuse,
 )
 from gearwhine.numerics.names import twin_of
+from gearwhine.numerics.own_copies import keep_tuples
 from gearwhine.rotors import Disc, Rotor, Segment
 from gearwhine.rotors import Unbalance as ShaftUnbalance
 from gearwhine.rotors.model.loads import Bow

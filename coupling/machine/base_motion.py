@@ -16,8 +16,8 @@ import numpy.typing as npt
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.machine.components import Component, HousingComponent, PedestalComponent, RotorComponent
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad, TimedLoad
-from gearwhine.housing.own_copies import keep_arrays, keep_tuples
 from gearwhine.numerics.findings import Finding, Number, Numbers, attribute_findings, kind_findings, refuse
+from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

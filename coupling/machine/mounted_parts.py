@@ -14,8 +14,8 @@ from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.machine.bearing_laws import BearingLaw, GapLaw, RollingLaw
 from gearwhine.coupling.machine.face_compliance import FaceCompliance
 from gearwhine.coupling.machine.mesh_kinematics import LineOfAction, line_of_action
-from gearwhine.housing.own_copies import keep_arrays, keep_tuples
 from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_arrays, keep_tuples
 from gearwhine.rotors import Bearing
 from gearwhine.rotors.rolling_bearings import ROLLING_DAMPING_TIME, RollingBearing
 

@@ -74,7 +74,7 @@ MODES_CODE = (
     "gearwhine.housing.fem",
     "gearwhine.housing.model",
     "gearwhine.housing.modes",
-    "gearwhine.housing.own_copies",
+    "gearwhine.numerics.own_copies",
     "gearwhine.housing.storage",
     "gearwhine.case",
     "gearwhine.from_case.fixtures",

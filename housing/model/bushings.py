@@ -10,9 +10,9 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import Additions
 from gearwhine.housing.model.fixtures import port_fixture_matrices
 from gearwhine.housing.model.patches import Patch, Point, patch_matrix
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import IntArray, facet_nodes
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]

@@ -18,9 +18,9 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
 from gearwhine.housing.fem.nearest_point import SurfacePoint, surface_point
 from gearwhine.housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -14,9 +14,9 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import NOTHING, Matrices, NodeBlocks
 from gearwhine.housing.fem.nearest_point import SurfacePoint
 from gearwhine.housing.fem.surface import IntArray, SurfaceQuadrature, surface_quadrature
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh, box_facets, circle_facets, plane_facets
 from gearwhine.meshes.elements import Facets
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -15,9 +15,9 @@ from scipy import sparse
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.nearest_point import surface_point
 from gearwhine.housing.model.patches import patch_matrix, point_matrix
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from gearwhine.housing.fem.matrices import NOTHING, Additions
 from gearwhine.housing.fem.surface import IntArray
 from gearwhine.housing.model.bushings import Mount
 from gearwhine.housing.model.patches import Patch, rigid_motions, spread
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.elements import Facets, facet_nodes
 from gearwhine.numerics.findings import Flags, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -40,9 +40,9 @@ from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
 from gearwhine.housing.material import STEEL
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
-from gearwhine.housing.own_copies import keep_tuples
+from gearwhine.numerics.own_copies import keep_tuples
 
 FloatArray = npt.NDArray[np.float64]
 ReliefShape = Literal["linear", "parabolic"]

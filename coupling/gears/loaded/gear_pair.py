@@ -33,8 +33,8 @@ from gearwhine.coupling.gears.stiffness.models import (
     rim_compliances,
     stiffness_under_load,
 )
-from gearwhine.housing.own_copies import keep_tuples
 from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
+from gearwhine.numerics.own_copies import keep_tuples
 
 
 def equivalent_mass(

@@ -45,7 +45,7 @@ from gearwhine.coupling.gears.stiffness.tooth_compliance import (
     PotentialEnergyStiffness,
     WeberBanaschekStiffness,
 )
-from gearwhine.housing.own_copies import keep_arrays
+from gearwhine.numerics.own_copies import keep_arrays
 
 FloatArray = npt.NDArray[np.float64]
 
