@@ -286,7 +286,7 @@ def draw(number: int, seed: int, under: list[str]) -> list[DrawnFault]:
 
     A line is drawn first and then its fault, so that a long table of names is no likelier than its lines are.
     """
-    from gearwhine.rotors.numerics.compiled import kernel_sources
+    from gearwhine.numerics.compiled import kernel_sources
 
     kernels = {str(path.relative_to(ROOT)) for path in kernel_sources(ROOT)}
     names = [str(path.relative_to(ROOT)) for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]

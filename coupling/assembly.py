@@ -668,8 +668,8 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
 
     The runout error e_err is subtracted from the compression δ of
     :mod:`gearwhine.coupling.machine.mesh_kinematics`. A gear whose centre circles its shaft with eccentricity
-    ε moves by ε (cos, sin)(Ωt + phase) on top of u, so e_err = -e (ε_k - ε_i): the same first-order runout as
-    :func:`gearwhine.coupling.gears.geometry.pitch_deviations.runout_error`.
+    ε moves by ε (cos, sin)(Ωt + phase) on top of u, so e_err = -e (ε_k - ε_i), to first
+    order.
     """
     line = mesh.line_of_action(sense)
     direction = np.zeros(coordinates.size)

@@ -53,7 +53,7 @@ def shown(*, quiet: bool) -> Iterator[Progress]:
             yield combined
 
 
-_COMPILER = "gearwhine.rotors.numerics.compiled"  # named, not imported: with numba it takes longer than many a command
+_COMPILER = "gearwhine.numerics.compiled"  # named, not imported: with numba it takes longer than many a command
 _COMPILING = "compiling kernels, the first time only"
 
 

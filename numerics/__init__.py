@@ -1,1 +1,1 @@
-"""Ground floor of all rooms: findings of parts that check themselves, names that look alike, plausible materials."""
+"""Ground floor of all rooms: compiled kernels, banded matrices, trust region, branches of modes; findings, copies."""

@@ -23,7 +23,7 @@ Each analysis returns a frozen result with the certificate that no mode is missi
     unbalance_response(shaft, bearings, [Unbalance(at=0.5, moment=1e-4)], speeds)
     static_deflection(shaft, bearings).bearing_loads
 
-Sub-packages, each of which imports only those before it: ``gearwhine.rotors.numerics``, ``gearwhine.rotors.model``
+Sub-packages, each of which imports only those before it: ``gearwhine.rotors.model``
 (description), ``gearwhine.rotors.transfer_matrix`` (Timoshenko elements, Wittrick-Williams count),
 ``gearwhine.rotors.rolling_bearings``, ``gearwhine.rotors.ross`` (file exchange), ``gearwhine.rotors.modes`` (undamped
 modes, modal rotor), ``gearwhine.rotors.whirl`` (damped gyroscopic whirl), ``gearwhine.rotors.analyses``.

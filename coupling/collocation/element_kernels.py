@@ -29,7 +29,7 @@ from gearwhine.coupling.collocation.arrays import (
 from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, ENERGY, FORCE, TANGENT, evaluate_contact
 from gearwhine.coupling.connector_forces.dense_kernels import SUMS, add_rows, solve_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
-from gearwhine.rotors.numerics.compiled import uncounted
+from gearwhine.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

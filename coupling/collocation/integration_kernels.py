@@ -74,7 +74,7 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     ROTATION_WORK,
     Contacts,
 )
-from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -24,7 +24,7 @@ from gearwhine.coupling.collocation.element_kernels import end_matrices, interpo
 from gearwhine.coupling.connector_forces.contact_kernels import DAMPING, FORCE, TANGENT, TOUCHING, penetration
 from gearwhine.coupling.connector_forces.dense_kernels import SUMS, solve_part_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts
-from gearwhine.rotors.numerics.compiled import uncounted
+from gearwhine.numerics.compiled import uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.kernel_arrays import BALLS, BEARING_ENERGY, BEARING_POWER, ROLLERS, Bearings
-from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

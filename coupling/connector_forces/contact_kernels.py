@@ -19,7 +19,7 @@ from gearwhine.coupling.gears.contact.tooth_force_kernels import (
     tooth_force_and_energy,
     tooth_force_and_tangents,
 )
-from gearwhine.rotors.numerics.compiled import inner
+from gearwhine.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ Importing this module imports numba.
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.compiled import inner
+from gearwhine.numerics.compiled import inner
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -27,7 +27,7 @@ from gearwhine.coupling.linear.complex_modes import coupled_modes
 from gearwhine.coupling.linear.eigenpairs import refine_pair
 from gearwhine.coupling.linear.excitation_orders import ExcitationLine, excitation_lines
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
-from gearwhine.rotors.numerics.branch_following import (
+from gearwhine.numerics.branch_following import (
     BranchPoint,
     along_branches,
     extended_branches,

@@ -28,7 +28,7 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw
-from gearwhine.rotors.numerics.trust_region import Local, minimise
+from gearwhine.numerics.trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -68,7 +68,7 @@ from gearwhine.coupling.connector_forces.kernel_arrays import (
     StepMatrices,
 )
 from gearwhine.coupling.time.step_kernels import add_gyroscopic, apply_base
-from gearwhine.rotors.numerics.compiled import inner, uncounted
+from gearwhine.numerics.compiled import inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from gearwhine.coupling.connector_forces.dense_kernels import add_rows, project, solve_in_place
 from gearwhine.coupling.connector_forces.kernel_arrays import Contacts, Dynamics, StepMatrices
-from gearwhine.rotors.numerics.compiled import counted, inner
+from gearwhine.numerics.compiled import counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 PHASE_CONVENTION = "of spectra: of the cosine at t = 0 of the histories' time axis"
-"""Attribute of every file of results; those of earlier versions have phases at the first sample of the record."""
+"""Attribute of every file of results."""
 
 
 class Stream(Protocol):

@@ -11,7 +11,6 @@ import io
 import math
 import re
 import struct
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -232,32 +231,16 @@ def _labels(data: xr.Dataset, dimension: str) -> list[str]:
 def _sensor_places(data: xr.Dataset) -> tuple[_Places, list[tuple[float, float, float]]]:
     """Return points and directions of sensors by name, numbered from 1, and their positions [m].
 
-    A result of an earlier version holds them as its case has them: the points that were asked for.
+    Both are empty where the result does not hold them.
     """
-    if "sensor_position" in data and "sensor_direction" in data:
-        rows = [
-            (name, *(data[key].sel(sensor=name).values.tolist() for key in ("sensor_position", "sensor_direction")))
-            for name in _labels(data, "sensor")
-        ]
-    else:
-        rows = list(_sensors_of_case(str(data.attrs.get("case", ""))))
+    if "sensor_position" not in data:
+        return {}, []
+    rows = [
+        (name, *(data[key].sel(sensor=name).values.tolist() for key in ("sensor_position", "sensor_direction")))
+        for name in _labels(data, "sensor")
+    ]
     places = {("sensor", name): (number, _direction(unit)) for number, (name, _, unit) in enumerate(rows, start=1)}
     return places, [(float(x), float(y), float(z)) for _, (x, y, z), _ in rows]
-
-
-def _sensors_of_case(text: str) -> Iterator[tuple[str, Sequence[float], Sequence[float] | None]]:
-    """Yield name, position [m] and unit vector of the sensors of a case, whether or not its files are there still."""
-    from pydantic import ValidationError
-
-    from gearwhine.case.housing import Sensor
-
-    try:
-        entries = tomllib.loads(text)["housing"]["sensor"]
-        sensors = [Sensor.model_validate(entry) for entry in entries]
-    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValidationError):
-        return
-    for sensor in sensors:
-        yield sensor.name, sensor.position, sensor.unit_vector
 
 
 def _direction(unit_vector: Sequence[float] | None) -> int:
@@ -293,7 +276,7 @@ def _heard_lines(data: xr.Dataset, places: _Places) -> Iterator[UniversalFunctio
             parts[:, 0] + 1j * parts[:, 1],
             "Pa",
             "sound pressure",
-            (name, "sound pressure of the lines", f"amplitudes are peaks, phases at {_phases_at(data)}"),
+            (name, "sound pressure of the lines", "amplitudes are peaks, phases at t = 0"),
             (name, *places[("microphone", name)]),
         )
 
@@ -322,7 +305,6 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
             if phase is not None:
                 values = values * np.exp(1j * np.asarray(phase.sel(at).values))
             error = at.get("mesh_error")
-            phases_at = _phases_at(data) if phase is not None and error is None else ""
             label = next((at[dimension] for dimension in at if measured and measured in str(dimension)), labels[0])
             unit = str(variable.attrs.get("units", ""))
             long_name = str(variable.attrs.get("long_name", name))
@@ -335,7 +317,7 @@ def _functions(data: xr.Dataset, places: _Places, signals: Signals) -> Iterator[
                 (
                     ", ".join(map(str, labels)),
                     long_name,
-                    _remarks(variable, abscissa, _axis_unit(data, axis), phases_at),
+                    _remarks(variable, abscissa, _axis_unit(data, axis), phases=phase is not None and error is None),
                 ),
                 (str(label), *places.get((measured or "", str(label)), (0, 0))),
                 *(() if error is None else (("mesh", 0, 0), "m", "transmission error")),
@@ -358,18 +340,13 @@ def _quantity(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _phases_at(data: xr.Dataset) -> str:
-    """Return the time that phases of spectra are of, as a title says it; earlier versions had another one."""
-    return "t = 0" if "phase_convention" in data.attrs else "the record's start"
-
-
-def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, phases_at: str) -> str:
-    """Return a title with what the values are; ``phases_at`` is empty where they have none of their own."""
+def _remarks(variable: xr.DataArray, abscissa: FloatArray, unit: str, *, phases: bool) -> str:
+    """Return a title with what the values are; ``phases`` says whether they have phases of their own."""
     remarks = [f"window {variable.attrs['window']}"] if "window" in variable.attrs else []
     if unit == "s":
         remarks.append(f"sampling interval {float(abscissa[1] - abscissa[0])!r} s")
     else:
-        remarks.append(f"amplitudes are peaks, phases at {phases_at}" if phases_at else "amplitudes are peaks")
+        remarks.append("amplitudes are peaks, phases at t = 0" if phases else "amplitudes are peaks")
     if (limit := _limit(variable)) is not None:
         remarks.append(f"complete below {limit:.0f} Hz")
     return "; ".join(remarks)

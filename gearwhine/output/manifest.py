@@ -117,8 +117,7 @@ def opened_dataset(path: Path) -> Iterator["xr.Dataset"]:
     Raises
     ------
     DamagedResultsError
-        Where the file is damaged, or of another kind, as far as its reader notices: results of earlier versions have
-        no digest.
+        Where the file is damaged, or of another kind, as far as its reader notices.
     """
     import xarray as xr
 

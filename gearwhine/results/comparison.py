@@ -267,18 +267,13 @@ def responses_document(likeness: "ResponseCorrelation | str") -> dict[str, Any]:
     return {"missing_because": likeness} if isinstance(likeness, str) else document_of(RESPONSES, likeness)
 
 
-def rule_of(document: Document) -> str:
-    """Return the rule of the pairs in words; results of earlier versions have it as `pairing`."""
-    return str(document.get("pairing_rule", document["pairing"]))
-
-
 _POOR = 0.3  # MAC between different modes above which the survey confuses them
 _REAL = 0.9  # modal phase collinearity below which a shape is called complex
 
 
 def report(document: Document) -> Section:
     """Chapter of the report: the pairs, and how clear the pairing is."""
-    sentences = [f"Paired by {rule_of(document)}."]
+    sentences = [f"Paired by {document['pairing_rule']}."]
     if document.get("rms_error_percent") is not None:
         sentences.append(
             f"Errors: {document['rms_error_percent']:.2f} % root mean square, "
@@ -334,7 +329,7 @@ def sections(document: Document) -> tuple[Section, ...]:
 def _by_frequencies_alone(document: Document) -> Iterator[str]:
     count = document["model_modes"]
     yield (
-        f"Paired by {rule_of(document)}: largest error {document['max_error_percent']:.2f} %, "
+        f"Paired by {document['pairing_rule']}: largest error {document['max_error_percent']:.2f} %, "
         f"rms {document['rms_error_percent']:.2f} %; "
         f"{counted(count['count'], 'model mode')} below {count['below_hz']:.0f} Hz."
     )
@@ -377,7 +372,7 @@ def _by_shapes(document: Document) -> Iterator[str]:
     model_modes = counted(count["count"], "model mode")
     if document["pairs"]:
         yield (
-            f"Paired by {rule_of(document)}: largest error {document['max_error_percent']:.2f} %, "
+            f"Paired by {document['pairing_rule']}: largest error {document['max_error_percent']:.2f} %, "
             f"rms {document['rms_error_percent']:.2f} %; {model_modes} below {count['below_hz']:.0f} Hz."
         )
         if "gap" in document:
@@ -385,7 +380,7 @@ def _by_shapes(document: Document) -> Iterator[str]:
         if any(pair.get("confidence") is not None for pair in document["pairs"]):
             yield "Confidence: what the best assignment loses without the pair, as a part of its score; no probability."
     else:
-        yield f"Paired by {rule_of(document)}: no measured mode is like one of {model_modes}."
+        yield f"Paired by {document['pairing_rule']}: no measured mode is like one of {model_modes}."
     for mode in document["unpaired_measured"]:
         yield (
             f"Measured mode {mode['measured_mode']} ({mode['measured_hz']:.0f} Hz) has no partner: most like mode "

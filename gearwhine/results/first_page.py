@@ -20,7 +20,7 @@ from gearwhine.output.sections import (
     table_of,
 )
 from gearwhine.results.bearing_lives import LONGEST_LIFE
-from gearwhine.results.comparison import LINKED_PAIR, rule_of
+from gearwhine.results.comparison import LINKED_PAIR
 from gearwhine.results.line_columns import LINE_NAME
 from gearwhine.results.motion import (
     MECHANISM,
@@ -504,7 +504,7 @@ def _compared(documents: Sequence[Document]) -> tuple[str | Table, ...]:
         if pairs := compared.get("pairs"):
             sentence = (
                 f"Errors of the frequencies: {compared['rms_error_percent']:.2f} % root mean square, "
-                f"{compared['max_error_percent']:.2f} % at most; paired by {rule_of(compared)}."
+                f"{compared['max_error_percent']:.2f} % at most; paired by {compared['pairing_rule']}."
             )
             return (sentence, *table_of(LINKED_PAIR, pairs))
     return ()

@@ -782,8 +782,6 @@ def brief(load: Document) -> Iterator[str]:
 def _misalignments(load: Document) -> Iterator[str]:
     """Yield the misalignment that the motion takes of every pair, beside that of the operating point."""
     for pair in load["gear_pairs"]:
-        if "misalignment_taken_from" not in pair:  # in summaries of earlier versions
-            continue
         words = misalignment_words(
             pair["misalignment_taken_rad"], pair["misalignment_taken_from"], pair["misalignment_rad"]
         )
@@ -867,13 +865,9 @@ _MOST_INFLUENCES = 10  # parameters of a table
 _MOST_BEARINGS = 8  # of a sentence
 
 
-def _step(row: Document) -> str:
-    return str(row.get("step_words", row["step"]))  # not in summaries of earlier versions
-
-
 def _short_step(row: Document) -> str:
     """Return the step of a wall or face in words; of a bearing its size, since names are long."""
-    return str(row["step"]) if str(row["kind"]).startswith("bearing") else _step(row)
+    return str(row["step"]) if str(row["kind"]).startswith("bearing") else str(row["step_words"])
 
 
 _STEP_KEYS = ("parameter", "kind", "step", "step_words", "reverse_words")
@@ -919,7 +913,7 @@ def _first_order(row: Document) -> str:
 _LINE_COLUMNS = (
     Column("parameter", "parameter"),
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
-    Column("step", _step),
+    Column("step", "step_words"),
     Column("level\n[dB]", "level_db", "+.2f"),
     Column("first order\n[dB]", "first_order_db", shown=_first_order),
     Column("reverse", "reverse_words"),

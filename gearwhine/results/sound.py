@@ -533,8 +533,6 @@ def total_sentence(document: Document) -> str:
 
 def known_source_sentence(document: Document) -> str:
     """Return the error of known sources inside in words, or that there is no such proof."""
-    if "known_source_error" not in document:  # in summaries of earlier versions
-        return ""
     if (error := document["known_source_error"]) is not None:
         microphone_errors = [microphone.get("known_source_error") for microphone in document["microphones"]]
         errors = [value for value in microphone_errors if value is not None]
@@ -556,7 +554,7 @@ def known_source_sentence(document: Document) -> str:
 
 def left_out_sentence(document: Document) -> str:
     """Return the lines whose sound is not solved in words; empty where they have hardly any power."""
-    left_out = document.get("left_out", ())  # not in summaries of earlier versions
+    left_out = document["left_out"]
     parts = []
     estimated = [line for line in left_out if line["share"] is not None]
     rest = 1.0 - document["covered"] if estimated else 0.0

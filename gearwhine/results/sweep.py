@@ -147,7 +147,7 @@ def _content(document: Document) -> Iterator[str | Table]:
 
 def _missed(document: Document) -> Iterator[str | Table]:
     """Yield the peaks between the points, and the speeds that resolve them."""
-    peaks = document.get("missed_peaks", ())  # not in summaries of earlier versions
+    peaks = document["missed_peaks"]
     if not peaks:
         return
     of_sensors = "" if peaks[0]["output"] == _SOUND else "; of sensors the rms of the line"

@@ -373,9 +373,8 @@ def _content(document: Document) -> Iterator[str | Table]:
 def _fit(document: Document) -> Iterator[str]:
     counts = document.get("model_modes")
     count = "" if counts is None else f"; {counted(counts['count'], 'model mode')} below {counts['below_hz']:.0f} Hz"
-    rule = document.get("pairing_rule", document["pairing"])
     yield (
-        f"Paired by {rule}: largest error {document['max_error_percent']:.2f} %, rms "
+        f"Paired by {document['pairing_rule']}: largest error {document['max_error_percent']:.2f} %, rms "
         f"{document['rms_error_percent']:.2f} % (before: {document['before']['rms_error_percent']:.2f} %){count}; "
         f"{_choice(document)}."
     )

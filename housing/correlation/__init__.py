@@ -2,19 +2,15 @@
 
 Shapes are rows, degrees of freedom columns; NaN where not measured; complex where measured so.
 
-- :func:`modal_assurance_criterion` (MAC), :func:`auto_mac`, :func:`pole_weighted_mac`, :func:`modal_scale_factor` --
-  likeness of two shapes.
+- :func:`modal_assurance_criterion` (MAC), :func:`auto_mac`, :func:`modal_scale_factor` -- likeness of two shapes.
 - :func:`comac`, :func:`enhanced_comac` -- coordinate criteria: difference of paired shapes at each degree of freedom.
-- :func:`cross_orthogonality`, :func:`self_orthogonality`, :func:`outside_span` -- likeness weighted by the model's
-  mass, reduced to the survey.
-- :func:`phase_collinearity`, :func:`complexity_factor`, :func:`phase_deviation`, :func:`real_shapes` -- complexity of a
-  shape, and the real shape nearest to it.
+- :func:`cross_orthogonality`, :func:`outside_span` -- likeness weighted by the model's mass, reduced to the survey.
+- :func:`phase_collinearity`, :func:`real_shapes` -- complexity of a shape, and the real shape nearest to it.
 - :func:`span_mac`, :func:`principal_angles` -- close modes as spaces.
 - :func:`pair_modes` by a :class:`PairingRule` -- pairs of measured and model modes.
 - :func:`compare_by_shapes`, :func:`compare_by_dominance`, :func:`compare_by_frequency` -- a :class:`Comparison` of
   model and measured modes.
-- :func:`frac`, :func:`fdac`, :func:`response_vector_assurance`, :func:`amplitude_correlation`,
-  :func:`synthesised_responses` -- likeness of frequency responses.
+- :func:`frac`, :func:`synthesised_responses` -- likeness of frequency responses.
 """
 
 from gearwhine.housing.correlation.comparison import Comparison as Comparison
@@ -25,14 +21,10 @@ from gearwhine.housing.correlation.comparison import compare_by_dominance as com
 from gearwhine.housing.correlation.comparison import compare_by_frequency as compare_by_frequency
 from gearwhine.housing.correlation.comparison import compare_by_shapes as compare_by_shapes
 from gearwhine.housing.correlation.comparison import dominance_band as dominance_band
-from gearwhine.housing.correlation.frequency_responses import amplitude_correlation as amplitude_correlation
-from gearwhine.housing.correlation.frequency_responses import fdac as fdac
 from gearwhine.housing.correlation.frequency_responses import frac as frac
-from gearwhine.housing.correlation.frequency_responses import response_vector_assurance as response_vector_assurance
 from gearwhine.housing.correlation.frequency_responses import synthesised_responses as synthesised_responses
 from gearwhine.housing.correlation.modal_assurance_criterion import auto_mac as auto_mac
 from gearwhine.housing.correlation.modal_assurance_criterion import comac as comac
-from gearwhine.housing.correlation.modal_assurance_criterion import complexity_factor as complexity_factor
 from gearwhine.housing.correlation.modal_assurance_criterion import enhanced_comac as enhanced_comac
 from gearwhine.housing.correlation.modal_assurance_criterion import largest_off_diagonal as largest_off_diagonal
 from gearwhine.housing.correlation.modal_assurance_criterion import (
@@ -40,12 +32,9 @@ from gearwhine.housing.correlation.modal_assurance_criterion import (
 )
 from gearwhine.housing.correlation.modal_assurance_criterion import modal_scale_factor as modal_scale_factor
 from gearwhine.housing.correlation.modal_assurance_criterion import phase_collinearity as phase_collinearity
-from gearwhine.housing.correlation.modal_assurance_criterion import phase_deviation as phase_deviation
-from gearwhine.housing.correlation.modal_assurance_criterion import pole_weighted_mac as pole_weighted_mac
 from gearwhine.housing.correlation.modal_assurance_criterion import real_shapes as real_shapes
 from gearwhine.housing.correlation.orthogonality import cross_orthogonality as cross_orthogonality
 from gearwhine.housing.correlation.orthogonality import outside_span as outside_span
-from gearwhine.housing.correlation.orthogonality import self_orthogonality as self_orthogonality
 from gearwhine.housing.correlation.pairing import PairingRule as PairingRule
 from gearwhine.housing.correlation.pairing import pair_modes as pair_modes
 from gearwhine.housing.correlation.subspaces import principal_angles as principal_angles

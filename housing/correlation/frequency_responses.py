@@ -1,8 +1,7 @@
-"""Frequency response assurance criteria: FRAC at each point over frequency, RVAC and FDAC at each frequency.
+"""Frequency response assurance criterion (FRAC): likeness of responses at each point over frequency.
 
-Responses need no modes to be identified, and no pairing; but a resonance a few per cent off costs all that these
-criteria can show, so they follow once frequencies are right. Squared cosines see shape and not size:
-:func:`amplitude_correlation` sees both.
+Responses need no modes to be identified, and no pairing; but a resonance a few per cent off costs all that the
+criterion can show, so it follows once frequencies are right. A squared cosine sees shape and not size.
 """
 
 from typing import Literal
@@ -11,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from gearwhine.housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray, modal_assurance_criterion
+from gearwhine.housing.correlation.modal_assurance_criterion import ComplexArray, FloatArray
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.housing.modes.receptance import receptance
@@ -85,65 +84,10 @@ def frac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
         Where their shapes differ.
     """
     a, x = _alike(model, measured)
-    return _coherence(a, x, axis=-1)
-
-
-def response_vector_assurance(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
-    """MAC of the shapes of vibration at each line (Heylen, Lammens and Sas 1997: RVAC), over the degrees of freedom.
-
-    Grafe (1998) calls it the global shape correlation.
-
-    Parameters
-    ----------
-    model, measured : array_like of complex, shape (n_dofs, ..., f)
-
-    Returns
-    -------
-    ndarray, shape (..., f)
-
-    Raises
-    ------
-    HousingError
-        Where their shapes differ.
-    """
-    a, x = _alike(model, measured)
-    return _coherence(a, x, axis=0)
-
-
-def amplitude_correlation(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
-    """Likeness in shape and size at each line: the global amplitude correlation of Grafe (1998).
-
-        2 |h_aᴴ h_x| / (h_aᴴ h_a + h_xᴴ h_x)
-
-    It is 1 only where the responses are equal but for one phase; a factor g between them gives 2g / (1 + g²).
-    Parameters and result are those of :func:`response_vector_assurance`.
-    """
-    a, x = _alike(model, measured)
-    product = np.abs((a.conj() * x).sum(axis=0))
-    return _ratio(2.0 * product, (np.abs(a) ** 2 + np.abs(x) ** 2).sum(axis=0))
-
-
-def fdac(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
-    """Frequency domain assurance criterion: MAC of the model's vibration at every line with the test's at every line.
-
-    Pascual, Golinval and Razeto (1997). Resonances that agree in shape but not in frequency stand as ridges beside the
-    diagonal, at a distance equal to the shift in frequency.
-
-    Parameters
-    ----------
-    model, measured : array_like of complex, shapes (n_dofs, f) and (n_dofs, g)
-        Responses to one reference; NaN where not measured.
-
-    Returns
-    -------
-    ndarray, shape (f, g)
-
-    Raises
-    ------
-    HousingError
-        Where the degrees of freedom differ.
-    """
-    return modal_assurance_criterion(np.asarray(model).T, np.asarray(measured).T)
+    product = np.abs((a.conj() * x).sum(axis=-1)) ** 2
+    whole = (np.abs(a) ** 2).sum(axis=-1) * (np.abs(x) ** 2).sum(axis=-1)
+    is_known = whole > 0.0
+    return np.asarray(np.where(is_known, np.minimum(product / np.where(is_known, whole, 1.0), 1.0), np.nan))
 
 
 def _alike(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ComplexArray, ComplexArray]:
@@ -153,13 +97,3 @@ def _alike(model: npt.ArrayLike, measured: npt.ArrayLike) -> tuple[ComplexArray,
     unknown = np.isnan(a) | np.isnan(x)
     a[unknown] = x[unknown] = 0.0
     return a, x
-
-
-def _coherence(a: ComplexArray, x: ComplexArray, axis: int) -> FloatArray:
-    product = np.abs((a.conj() * x).sum(axis=axis)) ** 2
-    return _ratio(product, (np.abs(a) ** 2).sum(axis=axis) * (np.abs(x) ** 2).sum(axis=axis))
-
-
-def _ratio(part: FloatArray, whole: FloatArray) -> FloatArray:
-    is_known = whole > 0.0
-    return np.asarray(np.where(is_known, np.minimum(part / np.where(is_known, whole, 1.0), 1.0), np.nan))

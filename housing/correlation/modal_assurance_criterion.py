@@ -162,55 +162,6 @@ def modal_scale_factor(reference: npt.ArrayLike, shapes: npt.ArrayLike) -> Compl
     return np.asarray((a.conj() * b).sum(axis=1) / np.where(norm > 0.0, norm, 1.0), dtype=np.complex128)
 
 
-def pole_weighted_mac(
-    first: npt.ArrayLike, first_poles: npt.ArrayLike, second: npt.ArrayLike, second_poles: npt.ArrayLike
-) -> FloatArray:
-    """Pole-weighted MAC: likeness of the free motions of two modes, by shape, frequency and damping (Vacher 2010).
-
-    A mode's free motion is y(t) = Re(c v exp(λ t)). The largest of ∫ y₁·y₂ dt over the phases of both, squared and
-    over the largest of ∫ |y₁|² dt and of ∫ |y₂|² dt, is
-
-        (|v₁ᴴ v₂| / |λ₁* + λ₂| + |v₁ᵀ v₂| / |λ₁ + λ₂|)² / (n₁ n₂),    n = vᴴ v / 2|Re λ| + |vᵀ v| / 2|λ|.
-
-    Frequencies that differ by more than the half-power bandwidths make it small, so it judges whether two
-    identifications found the same mode of one machine; it condemns a model within a few per cent. A model and its
-    test are shown in both respects by the MAC over both frequencies instead (the FMAC of Fotsch and Ewins 2000), as
-    ``comparison.png`` does.
-
-    Parameters
-    ----------
-    first, second : array_like, shapes (a, n_dofs) and (b, n_dofs)
-        Shapes without NaN.
-    first_poles, second_poles : array_like of complex, shapes (a,) and (b,)
-        λ = -ζω + iω√(1 - ζ²) [rad/s].
-
-    Returns
-    -------
-    ndarray, shape (a, b)
-
-    Raises
-    ------
-    HousingError
-        Where sets and poles do not fit together, a degree of freedom is missing, or a pole does not decay.
-    """
-    first_set, second_set = two_sets(first, second)
-    poles = [np.asarray(set_poles, dtype=np.complex128) for set_poles in (first_poles, second_poles)]
-    for shapes, set_poles in zip((first_set, second_set), poles, strict=True):
-        if set_poles.shape != (len(shapes),) or not np.all(set_poles.real < 0.0):
-            raise HousingError(
-                f"poles {set_poles} rad/s for {len(shapes)} shapes; expected as many, each of negative real part"
-            )
-        if np.isnan(shapes).any():
-            raise HousingError(
-                "the pole-weighted MAC needs every degree of freedom of every shape; leave out those unmeasured"
-            )
-    (a, _), (b, _) = filled(first_set), filled(second_set)
-    p, q = poles[0][:, None], poles[1]
-    product = np.abs(a.conj() @ b.T) / np.abs(p.conj() + q) + np.abs(a @ b.T) / np.abs(p + q)
-    norms = np.outer(_largest_energy(a, poles[0]), _largest_energy(b, poles[1]))
-    return np.asarray(np.minimum(product**2 / np.where(norms > 0.0, norms, 1.0), 1.0))
-
-
 def _largest_energy(shapes: ShapeArray, poles: ComplexArray) -> FloatArray:
     hermitian, plain = (np.abs(shapes) ** 2).sum(axis=1), np.abs((shapes**2).sum(axis=1))
     return np.asarray(hermitian / (2.0 * np.abs(poles.real)) + plain / (2.0 * np.abs(poles)))
@@ -305,27 +256,10 @@ def phase_collinearity(shapes: npt.ArrayLike) -> FloatArray:
     return np.asarray(np.where(total > 0.0, np.minimum(ratio, 1.0) ** 2, 1.0))
 
 
-def complexity_factor(shapes: npt.ArrayLike) -> FloatArray:
-    """Modal complexity factor 1 - MPC, shape (n,): 0 for a real shape."""
-    return np.asarray(1.0 - phase_collinearity(shapes))
-
-
 def mean_phase(shapes: npt.ArrayLike) -> FloatArray:
     """Angle of the line nearest to a shape's entries, from -π/2 (left out) to π/2, shape (n,) [rad]."""
     values, _ = filled(shape_set(shapes, "complex"))
     return np.asarray(0.5 * np.angle((values**2).sum(axis=1)))
-
-
-def phase_deviation(shapes: npt.ArrayLike) -> FloatArray:
-    """Mean angle between a shape's entries and the line nearest to them, weighted by size, shape (n,) [rad].
-
-    The mean phase deviation of Reynders, Houbrechts and De Roeck (2012): 0 for a real shape; random phases give π/4.
-    """
-    aligned, _ = filled(_aligned(shapes))
-    size = np.abs(aligned)
-    angle = np.arctan2(np.abs(aligned.imag), np.abs(aligned.real))
-    total = size.sum(axis=1)
-    return np.asarray((size * angle).sum(axis=1) / np.where(total > 0.0, total, 1.0))
 
 
 def real_shapes(shapes: npt.ArrayLike) -> FloatArray:

@@ -19,30 +19,12 @@ from gearwhine.housing.correlation.modal_assurance_criterion import (
     FloatArray,
     ShapeArray,
     alike_measured,
-    shape_set,
     two_sets,
 )
 from gearwhine.housing.errors import HousingError
 
 # Beyond this condition of the shapes, rounding and noise of a part in a thousand decide the coordinates.
 _WORST_CONDITION = 1e3
-
-
-def serep_mass(model: npt.ArrayLike) -> FloatArray:
-    """Return the SEREP mass at the survey's degrees of freedom, (Φ⁺)ᵀ Φ⁺, shape (n_dofs, n_dofs) [kg].
-
-    Parameters
-    ----------
-    model : array_like, shape (n_modes, n_dofs)
-        Mass-normalised shapes [1/√kg].
-
-    Raises
-    ------
-    HousingError
-        Where the survey has fewer degrees of freedom than there are modes, or cannot separate them.
-    """
-    inverse = _inverse(shape_set(model, "the model's"), "the survey has")
-    return np.asarray((inverse.T @ inverse).real)
 
 
 def modal_coordinates(model: npt.ArrayLike, measured: npt.ArrayLike) -> ComplexArray:
@@ -85,18 +67,6 @@ def cross_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatA
     coordinates = np.abs(modal_coordinates(model, measured))
     norms = np.linalg.norm(coordinates, axis=0)
     return np.asarray(coordinates / np.where(norms > 0.0, norms, 1.0))
-
-
-def self_orthogonality(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:
-    """Normalised orthogonality of the measured shapes among themselves, shape (n_measured, n_measured).
-
-    |ψ_iᴴ M_s ψ_j| / √(ψ_iᴴ M_s ψ_i · ψ_jᴴ M_s ψ_j): 1 on the diagonal, and off it the share of one measured mode in
-    another. Parameters and raises as :func:`modal_coordinates`.
-    """
-    coordinates = modal_coordinates(model, measured)
-    norms = np.linalg.norm(coordinates, axis=0)
-    unit = coordinates / np.where(norms > 0.0, norms, 1.0)
-    return np.asarray(np.minimum(np.abs(unit.conj().T @ unit), 1.0))
 
 
 def outside_span(model: npt.ArrayLike, measured: npt.ArrayLike) -> FloatArray:

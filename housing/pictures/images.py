@@ -79,22 +79,6 @@ def render_modes(
     return render_shapes(housing, shapes, folder, view=view, size=size, progress=progress)
 
 
-def render_gallery(
-    mesh: Mesh,
-    modes: ModeSet,
-    numbers: Sequence[int],
-    path: Path,
-    *,
-    notes: Mapping[int, str] | None = None,
-    view: str = AUTO,
-    tile: tuple[int, int] = (520, 420),
-) -> Path:
-    """Draw several modes on one sheet, up to four in a row, over a colour bar; see :func:`render_modes`."""
-    check_view(view)
-    housing = drawn_housing(mesh)
-    return render_sheet(housing, drawn_modes(housing, modes, numbers, notes), path, view=view, tile=tile)
-
-
 def render_shapes(
     housing: DrawnHousing,
     shapes: Sequence[DrawnShape],

@@ -16,12 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.analyses.harmonic_response import finite_values
-from gearwhine.rotors.certificate import ACCEPTED
-from gearwhine.rotors.errors import IncompleteModesError, require, require_finite
-from gearwhine.rotors.model.bearing import Bearing
-from gearwhine.rotors.model.shaft import Rotor
-from gearwhine.rotors.numerics.branch_following import (
+from gearwhine.numerics.branch_following import (
     BranchPoint,
     along_branches,
     extended_branches,
@@ -29,6 +24,11 @@ from gearwhine.rotors.numerics.branch_following import (
     paired_modes,
     refined_crossing,
 )
+from gearwhine.rotors.analyses.harmonic_response import finite_values
+from gearwhine.rotors.certificate import ACCEPTED
+from gearwhine.rotors.errors import IncompleteModesError, require, require_finite
+from gearwhine.rotors.model.bearing import Bearing
+from gearwhine.rotors.model.shaft import Rotor
 from gearwhine.rotors.whirl.circular_coordinates import coupled_motions
 from gearwhine.rotors.whirl.completeness import NO_OSCILLATION, certified_roots, negative_count, oscillating
 from gearwhine.rotors.whirl.eigenvalues import (

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.analyses.harmonic_response import finite_values
 from gearwhine.rotors.errors import require, require_finite
 from gearwhine.rotors.model.bearing import AxisSpring
 from gearwhine.rotors.model.segment import Coupling
 from gearwhine.rotors.model.shaft import Rotor
-from gearwhine.rotors.numerics.banded import BandPattern
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.transfer_matrix.mode_shapes import require_positions
 from gearwhine.rotors.transfer_matrix.rotor_shafts import rod_shaft

@@ -28,8 +28,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError
-from gearwhine.rotors.numerics.trust_region import Local, minimise
 from gearwhine.rotors.rolling_bearings.element_contacts import (
     ElementLoads,
     RowEnergy,

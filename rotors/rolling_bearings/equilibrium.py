@@ -29,9 +29,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors.errors import EquilibriumError, require, require_count, require_finite
 from gearwhine.rotors.model.bearing import Bearing
-from gearwhine.rotors.numerics.trust_region import Local, minimise
 from gearwhine.rotors.rolling_bearings.centrifugal_balls import CentrifugalBalls
 from gearwhine.rotors.rolling_bearings.element_contacts import ElementLoads, RowContacts, StaticBalls
 from gearwhine.rotors.rolling_bearings.four_point_balls import FourPointBalls

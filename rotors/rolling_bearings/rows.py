@@ -174,12 +174,6 @@ class BallRow:
         """Return the same row with another direction."""
         return replace(self, direction=direction)
 
-    @property
-    def free_contact_angle(self) -> float:
-        """Contact angle after the inner ring has taken up the clearance along the row's direction [rad]."""
-        radial = math.cos(self.contact_angle) - 0.5 * self.clearance / self.groove_distance
-        return math.acos(min(radial, 1.0))
-
     @cached_property
     def inner_contact(self) -> PointContact:
         """A ball in the inner groove: curvatures 2/D and γ/(1 − γ) · 2/D along, 2/D and −1/(f D) across."""
@@ -262,12 +256,3 @@ class FourPointRow(BallRow):
         return BallRow(**arguments), BallRow(
             **arguments | {"direction": -self.direction, "axial_offset": -self.axial_offset}
         )
-
-    @property
-    def shims(self) -> tuple[float, float]:
-        """Distance of the arcs' centres of the inner and of the outer ring [m]."""
-        inner, outer = (
-            (2.0 * groove - 1.0) * self.ball_diameter * math.sin(self.contact_angle)
-            for groove in (self.inner_groove, self.outer_groove)
-        )
-        return inner, outer

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.numerics.compiled import counted, inner, uncounted
 from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, table_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.compiled import FINITE, counted, inner
+from gearwhine.numerics.compiled import FINITE, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.compiled import counted, inner
+from gearwhine.numerics.compiled import counted, inner
 from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,8 +9,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.banded_kernels import TINY, factor, fill
-from gearwhine.rotors.numerics.compiled import counted, inner
+from gearwhine.numerics.banded_kernels import TINY, factor, fill
+from gearwhine.numerics.compiled import counted, inner
 from gearwhine.rotors.whirl.eigenvalue_kernels import edge_distance, logarithm
 from gearwhine.rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
 

@@ -11,9 +11,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
+from gearwhine.numerics.compiled import FUSED, counted, inner, uncounted
 from gearwhine.rotors.certificate import ACCEPTED, MOST_STEPS, SETTLED
-from gearwhine.rotors.numerics.banded_kernels import TINY, adjoint, factor, fill, forward_back, orthonormalise, put
-from gearwhine.rotors.numerics.compiled import FUSED, counted, inner, uncounted
 from gearwhine.rotors.whirl.shooting_matrix_kernels import Pattern, Table, force_unit, put_entries, scratch
 
 FloatArray = npt.NDArray[np.float64]

@@ -44,9 +44,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.model.bearing import Bearing, RadialSupport
 from gearwhine.rotors.model.shaft import Rotor
-from gearwhine.rotors.numerics.banded import BandPattern
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.transfer_matrix.rotor_shafts import axial_shaft_on, discretised_bending_shaft
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing, bearing_at_node

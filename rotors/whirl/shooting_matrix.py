@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.banded import BandPattern
+from gearwhine.numerics.banded import BandPattern
 from gearwhine.rotors.transfer_matrix.discretised_shaft import DiscretisedShaft
 from gearwhine.rotors.whirl.circular_coordinates import BLOCK_COORDINATES, NodeBearing
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.banded_kernels import TINY, factor, fill, put
-from gearwhine.rotors.numerics.compiled import FUSED, counted, inner
+from gearwhine.numerics.banded_kernels import TINY, factor, fill, put
+from gearwhine.numerics.compiled import FUSED, counted, inner
 from gearwhine.rotors.transfer_matrix.timoshenko_kernels import element_transfer_matrices, transfer_matrix
 
 FloatArray = npt.NDArray[np.float64]

@@ -171,12 +171,6 @@ class WhirlModes(ComplexFrequencies):
         """
         return strain_shares(self.motion, self.bearings, edges)
 
-    def direction_at(self, z: npt.ArrayLike) -> FloatArray:
-        """Whirl at positions z [m], (w, len(z)): 1 circular counter-clockwise, 0 planar, −1 circular clockwise."""
-        forward, backward = (np.abs(part[:, :, 0]) ** 2 for part in self.motion.at(z))
-        total = forward + backward
-        return np.asarray(np.divide(forward - backward, total, out=np.zeros_like(total), where=total > 0.0))
-
 
 @dataclass(frozen=True, eq=False)
 class WhirlSolver:

@@ -105,7 +105,7 @@ def test_results_of_earlier_runs_are_replaced_and_foreign_pages_are_not(gearwhin
     assert "out/case.toml: a file that the case reads" in again.err
     for _ in range(2):
         assert gearwhine("report", "out", "-q").code == 0
-    (folder / ".gearwhine.json").unlink()  # as in folders of earlier versions: the summary tells what is ours
+    (folder / ".gearwhine.json").unlink()  # the summary still says which files are ours
     assert gearwhine("check", "case.toml", "-q", "-o", "out").code == 0
     outcome = gearwhine("report", "out", "-q")
     assert outcome.code == 2

@@ -13,8 +13,8 @@ from PIL import Image
 from gearwhine.housing import HousingError, ModeSet, solve_modes
 from gearwhine.housing.errors import RendererUnavailableError
 from gearwhine.housing.fem.matrices import Matrices
-from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing
-from gearwhine.housing.pictures.images import render_gallery, render_modes, render_shapes
+from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, drawn_housing, drawn_modes
+from gearwhine.housing.pictures.images import render_modes, render_shapes, render_sheet
 from gearwhine.housing.pictures.scene import STRIP, find_renderer
 from gearwhine.housing.pictures.views import VIEWS
 from gearwhine.meshes import Mesh
@@ -148,7 +148,9 @@ def test_an_arrow_in_a_title_is_drawn(box: Mesh, modes: ModeSet, tmp_path: Path)
 
 @pytest.mark.usefixtures("renderer")
 def test_gallery_is_a_sheet_of_four_in_a_row(box: Mesh, modes: ModeSet, tmp_path: Path) -> None:
-    path = render_gallery(box, modes, [1, 2, 3, 4, 7], tmp_path / "sheet.png", tile=(120, 100))
+    housing = drawn_housing(box)
+    shapes = drawn_modes(housing, modes, [1, 2, 3, 4, 7])
+    path = render_sheet(housing, shapes, tmp_path / "sheet.png", tile=(120, 100))
     assert _pixels(path).shape == (200 + STRIP, 480, 3)
 
 
@@ -156,8 +158,6 @@ def test_pictures_of_modes_that_are_not_there_are_refused(box: Mesh, modes: Mode
     for numbers in ([0], [-1], [9], []):
         with pytest.raises(HousingError, match="give numbers from 1 to 8"):
             render_modes(box, modes, numbers, tmp_path)
-        with pytest.raises(HousingError, match="give numbers from 1 to 8"):
-            render_gallery(box, modes, numbers, tmp_path / "sheet.png")
     with pytest.raises(HousingError, match="no view 'below'; there are auto, iso"):
         render_modes(box, modes, [7], tmp_path, view="below")
     assert "iso" in VIEWS

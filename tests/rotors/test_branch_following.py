@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwhine.rotors.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
+from gearwhine.numerics.branch_following import BranchPoint, extended_branches, paired_modes, refined_crossing
 
 SETTINGS = {"jump_scale": 0.1, "most_jumps": 100.0, "longest_jump": 0.5}
 

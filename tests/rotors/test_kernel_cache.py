@@ -14,13 +14,13 @@ from gearwhine.coupling.collocation.switch_kernels import by_pairs
 from gearwhine.coupling.connector_forces.contact_kernels import evaluate_contact
 from gearwhine.coupling.gears.contact.lookup_tables import law_table
 from gearwhine.coupling.gears.contact.tooth_force_kernels import friction_history, penetration
-from gearwhine.rotors.numerics import compiled
-from gearwhine.rotors.numerics.banded_kernels import factor
-from gearwhine.rotors.numerics.compiled import counted
+from gearwhine.numerics import compiled
+from gearwhine.numerics.banded_kernels import factor
+from gearwhine.numerics.compiled import counted
 
 COMPILED = Path(compiled.__file__).parent
 HOME = compiled.__name__.rpartition(".")[0]
-ROOMS = COMPILED.resolve().parents[1]
+ROOMS = COMPILED.resolve().parent
 
 
 def packages(root: Path) -> Path:
@@ -30,7 +30,7 @@ def packages(root: Path) -> Path:
     (root / "gearwhine" / "coupling").mkdir()
     (package.parent / "__init__.py").touch()
     (package / "__init__.py").touch()
-    home = package / COMPILED.name
+    home = package.parent / COMPILED.name
     home.mkdir(parents=True, exist_ok=True)
     (home / "__init__.py").touch()
     (home / "compiled.py").write_bytes((COMPILED / "compiled.py").read_bytes())

@@ -8,8 +8,8 @@ import numpy.typing as npt
 import pytest
 from scipy import optimize
 
+from gearwhine.numerics.trust_region import Local, minimise
 from gearwhine.rotors import EquilibriumError, RotorError
-from gearwhine.rotors.numerics.trust_region import Local, minimise
 from gearwhine.rotors.rolling_bearings import (
     BallRow,
     FourPointRow,

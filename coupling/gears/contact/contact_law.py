@@ -428,11 +428,6 @@ class ToothContact:
         return () if steady and not self.hunting_numbers else (0.0,)
 
     @property
-    def back_flank_event_phases(self) -> tuple[float, ...]:
-        """Phases in [0, 1) at which a pair of back flanks would enter or leave, ascending."""
-        return tuple(sorted((self.back_flank_offset - phase) % 1.0 for phase in self.event_phases))
-
-    @property
     def corner_phases(self) -> tuple[float, ...]:
         """Phases in [0, 1) at which the slope of a deviation or a stiffness jumps (a relief begins), ascending.
 

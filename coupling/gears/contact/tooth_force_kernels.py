@@ -56,7 +56,7 @@ from gearwhine.coupling.gears.contact.lookup_tables import (
     SHARED,
     VARIANT_STEP,
 )
-from gearwhine.rotors.numerics.compiled import counted, inner, uncounted
+from gearwhine.numerics.compiled import counted, inner, uncounted
 
 FloatArray = npt.NDArray[np.float64]
 TangentForce = tuple[float, float, float, float, float, int]

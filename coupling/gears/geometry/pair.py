@@ -557,34 +557,3 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
         )
     opening = involute(math.acos(base / centre_distance)) - involute(driver.transverse_pressure_angle)
     return (driver.teeth + driven.teeth) * opening / (2.0 * math.tan(driver.pressure_angle))
-
-
-def shifted_for_centre_distance(driver: Gear, driven: Gear, centre_distance: float) -> Gear:
-    """Driven gear with the profile shift of a pair without backlash at `centre_distance` [m], the driver unchanged.
-
-    Raises
-    ------
-    GearError
-        Where no pair, or no such gear, can be made.
-    """
-    shift = profile_shift_sum(driver, driven, centre_distance) - driver.profile_shift
-    return replace(driven, profile_shift=shift)
-
-
-def tip_shortening(driver: Gear, driven: Gear, centre_distance: float) -> float:
-    """Tip shortening: reduction of both addenda that restores the tip clearance of the basic rack.
-
-    Parameters
-    ----------
-    driver, driven : Gear
-    centre_distance : float
-        [m]
-
-    Returns
-    -------
-    float
-        ``x_k + x_i - (a - a_d) / m_n`` in normal modules, a_d the sum of the reference radii; to be taken off both
-        `addendum`.  Negative, a lengthening, hardly ever.
-    """
-    reference = driver.pitch_radius + driven.pitch_radius
-    return driver.profile_shift + driven.profile_shift - (centre_distance - reference) / driver.module

@@ -1,4 +1,4 @@
-"""Pitch deviations, runout, and faulty teeth: differences between the tooth pairs of the hunting period.
+"""Pitch deviations and faulty teeth: differences between the tooth pairs of the hunting period.
 
 The pitch gap of a pair is the gap that the pitch deviations of two mating teeth leave between their flanks.
 
@@ -10,8 +10,6 @@ tooth m and the driven gear's tooth n the pair's gap is
 
 constant while the pair is in contact.  The back flanks of the same teeth are behind where the working ones are
 ahead: there the sign is opposite, and other teeth mate (`GearPairGeometry.mating_back_teeth`).
-
-Runout is the transmission error of gears that are eccentric on their shafts (`runout_error`).
 """
 
 from __future__ import annotations
@@ -121,37 +119,3 @@ def pair_variants(geometry: GearPairGeometry) -> PairVariants:
 def _faults_of(gear: Gear, tooth: int | None) -> tuple[Fault, ...]:
     """Faults of a tooth, including those of all teeth; None or -1 stands for a sound tooth."""
     return tuple(fault for fault in gear.faults if fault.tooth is None or fault.tooth == tooth)
-
-
-def runout_error(
-    driver: Gear,
-    driven: Gear,
-    line_of_action_angle: float,
-    driver_angle: npt.ArrayLike,
-    driven_angle: npt.ArrayLike,
-) -> FloatArray:
-    """Error ``e_err`` in the compression ``s (R_k th_k + R_i th_i) + e . (u_k - u_i) - e_err``.
-
-    A centre that circles with eccentricity ``eps`` moves the gear by ``eps (cos, sin)(theta + phase)`` on top of
-    its shaft's motion ``u``, so ``e_err = -e . (eps_k - eps_i)``.  First order in the eccentricities: the
-    pressure angle is held.
-
-    Parameters
-    ----------
-    driver, driven : Gear
-        The gears, of which `eccentricity` [m] and `eccentricity_phase` [rad] are used.
-    line_of_action_angle : float
-        Angle of e from x [rad], `GearPairGeometry.line_of_action_angle`.
-    driver_angle, driven_angle : array_like, shape (n,)
-        Rotations of the two gears, counter-clockwise positive [rad].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Deviations [m].
-    """
-    components = [
-        gear.eccentricity * np.cos(np.asarray(angle, dtype=np.float64) + gear.eccentricity_phase - line_of_action_angle)
-        for gear, angle in ((driver, driver_angle), (driven, driven_angle))
-    ]
-    return np.asarray(components[1] - components[0], dtype=np.float64)

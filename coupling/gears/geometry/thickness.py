@@ -1,4 +1,4 @@
-"""Tooth thickness, and its measurement: chordal thickness, base tangent length (span), dimension over balls.
+"""Tooth thickness, and its measurement: base tangent length (span), dimension over balls.
 
 On the cylinder of radius ``r_y`` a tooth spans the half angle ``psi - inv(alpha_y)`` with ``cos(alpha_y) = rb / r_y``
 and psi its half angle on the base circle; normal to the helix it is thinner by ``cos(beta_y)``.  All values include the
@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from gearwhine.coupling.gears.errors import GearError, require_finite
 from gearwhine.coupling.gears.geometry.gear import Gear
@@ -17,13 +16,6 @@ from gearwhine.coupling.gears.geometry.involute import inverse_involute, involut
 
 CUSTOMARY_BALL = 1.728
 """Diameter of measuring balls and wires in modules: for external gears by the American custom."""
-
-
-class ChordalThickness(NamedTuple):
-    """Chordal thickness and chordal height below the tip, as a tooth caliper reads them [m]."""
-
-    thickness: float
-    height: float
 
 
 @dataclass(frozen=True)
@@ -83,31 +75,6 @@ def tooth_thickness(gear: Gear, radius: float) -> float:
 def normal_tooth_thickness(gear: Gear, radius: float) -> float:
     """Thickness at `radius` normal to the helix, ``tooth_thickness cos(beta_y)`` [m]."""
     return tooth_thickness(gear, radius) * math.cos(gear.helix_angle_at(radius))
-
-
-def pointed_radius(gear: Gear) -> float:
-    """Radius where the two flanks would meet [m]."""
-    return gear.base_radius / math.cos(inverse_involute(gear.base_half_angle))
-
-
-def chordal_thickness(gear: Gear, radius: float | None = None) -> ChordalThickness:
-    """Chord of a tooth in its normal section, and its height below the tip.
-
-    With the normal thickness ``s_n`` and the radius of curvature ``r_n = r / cos(beta_y)^2`` of the section there:
-    ``2 r_n sin(s_n / (2 r_n))``, and ``r_a - r + r_n (1 - cos(s_n / (2 r_n)))``.
-
-    Parameters
-    ----------
-    gear : Gear
-    radius : float or None
-        Radius of the measurement [m]; None for the reference circle.
-    """
-    radius = gear.pitch_radius if radius is None else radius
-    curvature = radius / math.cos(gear.helix_angle_at(radius)) ** 2
-    angle = 0.5 * normal_tooth_thickness(gear, radius) / curvature
-    return ChordalThickness(
-        2.0 * curvature * math.sin(angle), gear.tip_radius - radius + curvature * (1.0 - math.cos(angle))
-    )
 
 
 def span_measurement(gear: Gear, teeth: int | None = None) -> SpanMeasurement:

@@ -84,11 +84,6 @@ class LineContact:
         """Approach over force [m/N]."""
         return self._compliance(force, 0.0)
 
-    def tangent_compliance(self, force: npt.ArrayLike) -> FloatArray:
-        """Slope of the approach by the force [m/N]."""
-        # a grows as sqrt(F), so that the logarithm falls by half of dF/F.
-        return self._compliance(force, 0.5)
-
     def _compliance(self, force: npt.ArrayLike, less: float) -> FloatArray:
         strip = self.half_width(force)
         if np.any(2.0 * strip > self.depths):

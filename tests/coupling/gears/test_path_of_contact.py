@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gearwhine.coupling.gears import Gear, GearError, GearPairGeometry, path_of_contact
 from gearwhine.coupling.gears.errors import InterferenceError
-from gearwhine.coupling.gears.geometry.pair import profile_shift_sum, shifted_for_centre_distance, tip_shortening
+from gearwhine.coupling.gears.geometry.pair import profile_shift_sum
 from gearwhine.coupling.gears.geometry.path_of_contact import POINTS_OF_CONTACT, specific_sliding
 from gearwhine.coupling.gears.geometry.thickness import tooth_thickness
 
@@ -79,9 +79,6 @@ def test_shifts_give_the_distance_and_the_distance_the_shifts(
     pair = GearPairGeometry(driver, driven)
     distance = pair.working_centre_distance
     assert profile_shift_sum(driver, driven, distance) == pytest.approx(x + y, abs=1e-9)
-    assert shifted_for_centre_distance(
-        driver, replace(driven, profile_shift=0.05), distance
-    ).profile_shift == pytest.approx(y, abs=1e-9)
     # The thicknesses fill the working pitch.
     radii = pair.working_pitch_radii
     filled = tooth_thickness(driver, radii[0]) + tooth_thickness(driven, radii[1])
@@ -113,17 +110,6 @@ def test_backlash_is_the_pitch_that_the_teeth_leave_empty() -> None:
         normal = empty * math.cos(normal_angle) * math.cos(pair.working_helix_angle)
         assert pair.normal_backlash == pytest.approx(normal, rel=1e-9)
         assert pair.backlash == pytest.approx(empty * math.cos(pair.working_pressure_angle), rel=1e-9)
-
-
-def test_shortened_tips_keep_the_racks_clearance() -> None:
-    distance = PAIR.working_centre_distance
-    by = tip_shortening(PINION, WHEEL, distance)
-    assert 0.0 < by < 0.05
-    assert PAIR.tip_clearance(PINION) < 0.25 * 3e-3
-    gears = [replace(gear, addendum=1.0 - by) for gear in (PINION, WHEEL)]
-    pair = GearPairGeometry(gears[0], gears[1], distance)
-    for gear in gears:
-        assert pair.tip_clearance(gear) == pytest.approx(0.25 * 3e-3, rel=1e-9)
 
 
 def test_interference_names_both_radii() -> None:

@@ -13,10 +13,8 @@ from gearwhine.coupling.gears.geometry.gear import require_tip_thickness
 from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.geometry.profile import flank_points, load_angle
 from gearwhine.coupling.gears.geometry.thickness import (
-    chordal_thickness,
     normal_tooth_thickness,
     over_balls,
-    pointed_radius,
     span_measurement,
     tooth_thickness,
 )
@@ -49,8 +47,7 @@ def test_thickness_is_what_the_outline_shows(gear: Gear) -> None:
 @by_name
 def test_teeth_are_pointed_where_the_thickness_ends(gear: Gear) -> None:
     end = brentq(lambda radius: tooth_thickness(gear, radius), gear.tip_radius, 2.0 * gear.tip_radius, xtol=1e-15)
-    assert pointed_radius(gear) == pytest.approx(end, rel=1e-9)
-    addendum = (pointed_radius(gear) - gear.pitch_radius) / gear.module - gear.profile_shift
+    addendum = (end - gear.pitch_radius) / gear.module - gear.profile_shift
     replace(gear, addendum=addendum - 1e-6)
     with pytest.raises(PointedToothError):
         replace(gear, addendum=addendum + 1e-6)
@@ -123,21 +120,6 @@ def test_a_ball_is_as_far_from_both_flanks_as_it_is_thick() -> None:
     )
     assert nearest.fun == pytest.approx(0.5 * found.diameter, rel=1e-9)
     assert nearest.x == pytest.approx(found.contact_radius, rel=1e-5)
-
-
-def test_chord_of_a_spur_tooth_is_that_of_its_arc() -> None:
-    r, s = SPUR.pitch_radius, tooth_thickness(SPUR, SPUR.pitch_radius)
-    found = chordal_thickness(SPUR)
-    assert found.thickness == pytest.approx(2.0 * r * math.sin(s / (2.0 * r)), rel=1e-12)
-    assert found.height == pytest.approx(SPUR.tip_radius - r * math.cos(s / (2.0 * r)), rel=1e-12)
-
-
-def test_chord_of_a_helical_tooth_is_that_of_its_equivalent_spur() -> None:
-    # Same normal section, with a reference circle of z / cos^3(beta) teeth.
-    found = chordal_thickness(HELICAL)
-    radius = 0.5 * HELICAL.module * HELICAL.teeth / math.cos(HELICAL.helix_angle) ** 3
-    arc = HELICAL.module * (math.pi / 2.0 + 0.6 * math.tan(ALPHA))
-    assert found.thickness == pytest.approx(2.0 * radius * math.sin(arc / (2.0 * radius)), rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
+from gearwhine.numerics import compiled
 from gearwhine.progress import in_order, shown
-from gearwhine.rotors.numerics import compiled
 
 
 def test_compilation_is_news_of_the_present_work(capsys: pytest.CaptureFixture[str]) -> None:

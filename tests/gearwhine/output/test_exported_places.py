@@ -57,16 +57,14 @@ def test_each_file_has_the_points_of_its_own_result(folder: Path) -> None:
         assert places == {"top": {(1, -2)}, "wall": {(2, 1)}}
 
 
-def without_places(folder: Path, place: Path, *, case: bool) -> Path:
-    """Copy a result as an earlier version wrote it: without the arrays of its sensors' places."""
+def without_places(folder: Path, place: Path) -> Path:
+    """Copy a result without the arrays of its sensors' places."""
     shutil.copytree(folder, place, ignore=shutil.ignore_patterns("exports"))
     path = place / "results.nc"
     data = xr.load_dataset(path, engine="h5netcdf").drop_vars(["sensor_position", "sensor_direction"])
-    if not case:
-        del data.attrs["case"]
     path.unlink()
     data.to_netcdf(path, engine="h5netcdf")
-    (place / MANIFEST).unlink()  # earlier versions had none
+    (place / MANIFEST).unlink()
     return place
 
 
@@ -89,17 +87,8 @@ def test_damaged_results_are_neither_exported_nor_reported(
 
 
 @pytest.mark.slow
-def test_results_of_earlier_versions_have_the_points_of_their_own_case(folder: Path, tmp_path: Path) -> None:
-    place = without_places(folder, tmp_path / "old", case=True)
-    assert export_results(place, ("uff",))["warnings"] == []
-    points, places = exported(place / "exports" / "run.uff")
-    np.testing.assert_allclose(points, [(0.035, 0.1605, 0.03), (0.11, 0.09, -0.02)], atol=1e-12)
-    assert places == {"top": {(1, -2)}, "wall": {(2, 0)}}  # a normal that is not known
-
-
-@pytest.mark.slow
 def test_points_that_are_not_known_are_warned_of(folder: Path, tmp_path: Path) -> None:
-    place = without_places(folder, tmp_path / "older", case=False)
+    place = without_places(folder, tmp_path / "without")
     (warned,) = export_results(place, ("uff",))["warnings"]
     assert (warned["file"], warned["sensors"]) == ("run.uff", ["top", "wall"])
     _, places = exported(place / "exports" / "run.uff")

@@ -54,7 +54,11 @@ def _comparison(gap: float | None) -> Document:
     pair = {"mode": 1, "measured_hz": 100.0, "model_hz": 101.0, "error_percent": 1.0, "strength": 0.01}
     errors = {"rms_error_percent": 1.0, "max_error_percent": 1.0}
     counted = {"model_modes": {"count": 1, "below_hz": 900.0}}
-    return {"pairs": [pair], "pairing": "order", "gap": gap, "measures_agree": True} | errors | counted
+    return (
+        {"pairs": [pair], "pairing": "order", "pairing_rule": "order", "gap": gap, "measures_agree": True}
+        | errors
+        | counted
+    )
 
 
 def test_brackets_are_printed_as_they_stand() -> None:

@@ -294,11 +294,6 @@ def test_what_has_no_proof_by_a_known_source_says_so(document: dict[str, Any]) -
         ),
     ):
         assert known_source_sentence(without | {"method": method}) == f"No proof by a known source: {why}"
-    # A summary of an earlier version is shown without it.
-    earlier = {key: value for key, value in document.items() if key not in PROOFS}
-    assert known_source_sentence(earlier) == ""
-    assert "known source" not in " ".join(sections(earlier)[0].sentences)
-    assert len(sound_proofs(earlier)) == 2
 
 
 def test_lines_that_are_left_out_are_a_sentence(solved: SolvedSound) -> None:

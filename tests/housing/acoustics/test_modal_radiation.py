@@ -99,11 +99,6 @@ def test_arrays_hold_the_table_bit_for_bit(table):
         assert tuple(given.arrays()) == ARRAYS[: 10 if len(given.delays) else 7]
         for one in fields(ModalRadiation):
             np.testing.assert_array_equal(getattr(again, one.name), getattr(given, one.name))
-    # A table of an earlier version lacks the error of known sources.
-    earlier = table.arrays()
-    del earlier["radiation_source_error"]
-    with pytest.raises(KeyError, match="radiation_source_error"):
-        ModalRadiation.of_arrays(earlier)
 
 
 def test_a_table_holds_the_error_of_known_sources_of_each_solution(radiation, table):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwhine.housing.correlation import complexity_factor, modal_assurance_criterion, modal_scale_factor
+from gearwhine.housing.correlation import modal_assurance_criterion, modal_scale_factor, phase_collinearity
 
 tools = pytest.importorskip("sdypy.EMA.tools", reason="sdypy-EMA is not installed")
 RANDOM = np.random.default_rng(5)
@@ -15,8 +15,8 @@ def test_mac() -> None:
     assert modal_assurance_criterion(A, B) == pytest.approx(np.asarray(tools.MAC(A.T, B.T)).real, rel=1e-12)
 
 
-def test_complexity_factor() -> None:
-    assert complexity_factor(A) == pytest.approx(np.asarray(tools.MCF(A.T)), rel=1e-10)
+def test_phase_collinearity() -> None:
+    assert 1.0 - phase_collinearity(A) == pytest.approx(np.asarray(tools.MCF(A.T)), rel=1e-10)
 
 
 def test_scale_factor_of_real_shapes() -> None:

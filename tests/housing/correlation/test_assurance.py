@@ -10,7 +10,6 @@ from gearwhine.housing.correlation import (
     largest_off_diagonal,
     modal_assurance_criterion,
     modal_scale_factor,
-    pole_weighted_mac,
 )
 
 RANDOM = np.random.default_rng(7)
@@ -110,35 +109,3 @@ def test_scale_factors_bring_shapes_together() -> None:
 def test_sets_that_do_not_fit_are_refused(first, second, message: str) -> None:
     with pytest.raises(HousingError, match=message):
         modal_assurance_criterion(first, second)
-
-
-def _greatest(one: np.ndarray, p: complex, other: np.ndarray, q: complex) -> float:
-    """Largest ∫ y₁·y₂ dt over the phases of both, by trying them: y = Re(c v e^{λt})."""
-    phases = np.exp(2j * np.pi * np.arange(720) / 720)
-    plain = (one @ other) / -(p + q) * np.multiply.outer(phases, phases)
-    crossed = np.vdot(one, other) / -(np.conj(p) + q) * np.multiply.outer(phases.conj(), phases)
-    return float((0.5 * (plain + crossed).real).max())
-
-
-def test_the_pole_weighted_form_is_the_likeness_of_free_motions() -> None:
-    v, w = RANDOM.normal(size=(2, 4)) + 1j * RANDOM.normal(size=(2, 4))
-    p, q = -0.4 + 3.0j, -0.2 + 3.4j
-    own = [
-        max(
-            (0.5 * ((x @ x) / -(2 * s) * c**2 + np.vdot(x, x) / (-2 * s.real)).real)
-            for c in np.exp(1j * np.pi * np.arange(720) / 720)
-        )
-        for x, s in ((v, p), (w, q))
-    ]
-    expected = _greatest(v, p, w, q) ** 2 / (own[0] * own[1])
-    assert pole_weighted_mac(v, [p], w, [q])[0, 0] == pytest.approx(expected, rel=1e-4)
-    assert pole_weighted_mac(v, [p], 3j * v, [p])[0, 0] == pytest.approx(1.0)
-    far = pole_weighted_mac(v, [-0.004 + 3.0j], v, [-0.004 + 3.15j])[0, 0]
-    assert far < 0.02  # 5 % off at 0.13 % of critical
-
-
-def test_poles_that_do_not_decay_are_refused() -> None:
-    with pytest.raises(HousingError, match="negative real part"):
-        pole_weighted_mac([1.0], [0.0 + 1.0j], [1.0], [-1.0 + 1.0j])
-    with pytest.raises(HousingError, match="leave out those unmeasured"):
-        pole_weighted_mac([1.0, np.nan], [-1.0 + 1.0j], [1.0, 1.0], [-1.0 + 1.0j])

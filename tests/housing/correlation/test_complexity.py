@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from gearwhine.housing.correlation import (
-    complexity_factor,
     modal_assurance_criterion,
     phase_collinearity,
-    phase_deviation,
     real_shapes,
 )
 from gearwhine.housing.correlation.modal_assurance_criterion import mean_phase
@@ -20,7 +18,6 @@ def test_a_known_ellipse(angle: float) -> None:
     """φ = (cos α x + i sin α y) e^{iθ}: s = Σφ² ∝ cos 2α e^{2iθ}, so MPC = cos² 2α."""
     shape = (np.cos(angle) * X + 1j * np.sin(angle) * Y) * 3.0 * np.exp(0.9j)
     assert phase_collinearity(shape) == pytest.approx(np.cos(2 * angle) ** 2)
-    assert complexity_factor(shape) == pytest.approx(np.sin(2 * angle) ** 2, abs=1e-15)
     assert phase_collinearity(shape) == pytest.approx(modal_assurance_criterion(shape, shape.conj())[0, 0])
     assert mean_phase(shape) == pytest.approx(0.9)
     assert real_shapes(shape)[0] == pytest.approx(3.0 * np.cos(angle) * X)
@@ -31,13 +28,6 @@ def test_a_known_ellipse(angle: float) -> None:
 def test_a_wave_that_travels_has_no_collinearity() -> None:
     wave = np.exp(2j * np.pi * np.arange(8) / 8)
     assert phase_collinearity(wave) == pytest.approx(0.0, abs=1e-15)
-
-
-def test_phases_scatter_about_the_mean_by_size() -> None:
-    """Entries 0.2 rad to either side of the line, deviate by 0.2 rad; those of a real shape do not."""
-    shape = np.array([2.0, 2.0, -1.0, -1.0]) * np.exp(1j * np.array([0.2, -0.2, 0.2, -0.2])) * 1j
-    assert phase_deviation(shape) == pytest.approx(0.2)
-    assert phase_deviation(X * (1.0 + 2.0j)) == pytest.approx(0.0, abs=1e-8)
 
 
 def test_gaps_stay_gaps() -> None:

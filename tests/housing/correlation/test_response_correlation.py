@@ -5,13 +5,7 @@ import pytest
 from scipy import sparse
 
 from gearwhine.housing import HousingError, Material, assemble, solve_modes
-from gearwhine.housing.correlation import (
-    amplitude_correlation,
-    fdac,
-    frac,
-    response_vector_assurance,
-    synthesised_responses,
-)
+from gearwhine.housing.correlation import frac, synthesised_responses
 
 LINES = np.linspace(10.0, 400.0, 300)
 POINTS = np.arange(1, 8) / 8
@@ -27,15 +21,8 @@ def _responses(resonances: np.ndarray = RESONANCES, lines: np.ndarray = LINES, r
 
 def test_equal_responses_to_any_scale() -> None:
     given = _responses()
-    for value in (frac(given, -3j * given), response_vector_assurance(given, 2.0 * given)):
-        assert value == pytest.approx(np.ones(value.shape))
-    assert fdac(given, 5j * given).diagonal() == pytest.approx(np.ones(300))
-
-
-@pytest.mark.parametrize("factor", [1.0, 0.5, 3.0])
-def test_amplitudes_are_seen_by_the_amplitude_criterion_alone(factor: float) -> None:
-    given = _responses()
-    assert amplitude_correlation(given, factor * given) == pytest.approx(np.full(300, 2 * factor / (1 + factor**2)))
+    value = frac(given, -3j * given)
+    assert value == pytest.approx(np.ones(value.shape))
 
 
 def test_a_single_resonance_shifted() -> None:
@@ -49,22 +36,12 @@ def test_a_single_resonance_shifted() -> None:
     assert frac(first, second) == pytest.approx(4 * gamma**2 / (shift**2 + 4 * gamma**2), rel=1e-3)
 
 
-def test_a_shift_of_all_resonances_stands_beside_the_diagonal() -> None:
-    """With all resonances 8 % higher the test vibrates at 1.08 w as the model does at w, and at w otherwise."""
-    assert fdac(_responses(), _responses(1.08 * RESONANCES, 1.08 * LINES)).diagonal() == pytest.approx(np.ones(300))
-    test = _responses(1.08 * RESONANCES)
-    table = fdac(_responses(), test)
-    assert table.diagonal().min() < 0.9
-    assert response_vector_assurance(_responses(), test) == pytest.approx(table.diagonal())
-
-
 def test_lines_not_measured_are_left_out() -> None:
     given, test = _responses(), _responses(1.02 * RESONANCES)
     gaps = test.copy()
     gaps[:, 40:90] = np.nan
     kept = np.r_[0:40, 90:300]
     assert frac(given, gaps) == pytest.approx(frac(given[:, kept], test[:, kept]))
-    assert np.isnan(response_vector_assurance(given, gaps)[40:90]).all()
     assert np.isnan(frac(np.full(3, np.nan), np.ones(3)))
 
 

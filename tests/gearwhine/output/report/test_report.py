@@ -35,7 +35,8 @@ RUN = {
     },
     "compare": {
         "pairs": [{"measured_hz": 658.0, "model_hz": 684.0, "error_percent": 3.951, "mode": 1}],
-        "pairing": "dominance in order of frequency",
+        "pairing": "dominance",
+        "pairing_rule": "dominance in order of frequency",
         "rms_error_percent": 3.951,
         "max_error_percent": 3.951,
         "gap": 0.12,

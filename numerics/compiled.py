@@ -49,11 +49,11 @@ FUSED = {"contract"}
 FINITE = {"contract", "nnan", "ninf", "nsz"}
 _ALL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
-_PACKAGES = ("rotors", "coupling")
+_PACKAGES = ("numerics", "rotors", "coupling")
 _UNUSED = 30 * 86400.0
 """Age of a folder that is removed [s]."""
 _KERNELS = re.compile(rb"^from [\w.]*\.compiled import", re.MULTILINE)
-_IMPORT = re.compile(rb"^from (?:gearwhine\.)?((?:rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
+_IMPORT = re.compile(rb"^from (?:gearwhine\.)?((?:numerics|rotors|coupling)?\.?[\w.]*) import", re.MULTILINE)
 
 
 class _Log(event.Listener):
@@ -112,7 +112,7 @@ def kernel_sources(root: Path) -> list[Path]:
     Parameters
     ----------
     root : Path
-        The folder that holds the packages ``rotors`` and ``coupling``.
+        The folder that holds the packages ``numerics``, ``rotors`` and ``coupling``.
 
     Returns
     -------
@@ -158,11 +158,11 @@ def sources_digest(root: Path) -> str:
 @cache
 def cache_folder() -> str:
     """Folder of this process's kernels, made where it can be; empty where there is none to write to."""
-    root = next(folder for folder in Path(__file__).resolve().parents if folder.name == "rotors").parent
+    root = Path(__file__).resolve().parents[1]
     name = f"kernels-{sources_digest(root)}"
     configured = str(numba.config.CACHE_DIR)  # type: ignore[attr-defined]  # numba takes it from the environment
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "gearwhine"
-    for base in [Path(configured)] if configured else [root / "rotors" / "__pycache__", user]:
+    for base in [Path(configured)] if configured else [root / "numerics" / "__pycache__", user]:
         folder = base / name
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Compiled LU factorization of banded complex matrices, stored as in `gearwhine.rotors.numerics.banded`.
+"""Compiled LU factorization of banded complex matrices, stored as in `gearwhine.numerics.banded`.
 
 Importing this module imports numba.
 """
@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.rotors.numerics.compiled import FUSED, counted, inner
+from gearwhine.numerics.compiled import FUSED, counted, inner
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -66,7 +66,7 @@ class BandPattern:
 
     def solve(self, values: ComplexArray, sides: ComplexArray) -> ComplexArray:
         """Solutions of A x = sides, (b, k, order) both; the matrices from values (b, nnz)."""
-        from gearwhine.rotors.numerics import banded_kernels as kernels
+        from gearwhine.numerics import banded_kernels as kernels
 
         solved = np.array(sides, dtype=np.complex128, order="C")
         kernels.solve(*self.arrays, values, solved)
@@ -77,7 +77,7 @@ class BandPattern:
 
         Found by ``rounds`` of inverse iteration, x ← A⁻¹A⁻ᴴx, from the right vectors ``start`` (b, k, order).
         """
-        from gearwhine.rotors.numerics import banded_kernels as kernels
+        from gearwhine.numerics import banded_kernels as kernels
 
         right = np.array(start, dtype=np.complex128, order="C")
         left = np.empty_like(right)
@@ -86,6 +86,6 @@ class BandPattern:
 
     def forms(self, values: ComplexArray, left: ComplexArray, right: ComplexArray) -> ComplexArray:
         """Small matrices Lᴴ A R, (b, k, k), of vectors (b, k, order)."""
-        from gearwhine.rotors.numerics import banded_kernels as kernels
+        from gearwhine.numerics import banded_kernels as kernels
 
         return np.asarray(kernels.forms(self.rows, self.columns, values, left, right))

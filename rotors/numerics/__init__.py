@@ -1,1 +1,0 @@
-"""Numerical methods that the room shares: compiled kernels, banded matrices, Gauss rules, trust regions."""
