@@ -6,7 +6,7 @@ import json
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
+    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
@@ -33,7 +35,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
-    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -204,6 +205,35 @@ class MachineStudy:
             machine = of_machine.machine_under_load(self.machine, self.title, plan.run, self.progress)
         return of_machine.simulate(machine, plan, tracking, self.progress)
 
+    def sound(self, acoustics: Acoustics | None = None, /, **settings: Any) -> Result[SolvedSound]:
+        """Find the sound that the housing radiates: of its modes, and of the lines of the steady motion.
+
+        Parameters
+        ----------
+        acoustics : Acoustics, optional
+            Method and medium, floor and microphones; or its attributes by name: ``method="erp", floor=-0.02``. By
+            default boundary elements in free air.
+        **settings
+            See :class:`gearwhine.coupling.sound.acoustics.Acoustics`.
+
+        Raises
+        ------
+        gearwhine.coupling.errors.AcousticsError
+            Where the machine has no housing with a mesh, or the acoustics do not fit it.
+        gearwhine.coupling.PeriodicError
+            Where no periodic motion is found.
+        gearwhine.housing.HousingError
+            Where a solution fails its proofs.
+        """
+        from gearwhine.analyses import of_machine
+        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound.motion_lines import left_out_warnings
+
+        acoustics = Acoustics(**settings) if acoustics is None else acoustics
+        housing = of_machine.radiating_housing(self.machine, acoustics, self.title)
+        warnings = left_out_warnings(base_moves=self.machine.base is not None, speed_changes=False)
+        return of_machine.sound(housing, None if warnings else self._loaded(), warnings, self.progress)
+
     def _loaded(self) -> MachineUnderLoad:
         """Return the machine about its operating point at constant speed, assembled once."""
         with self._lock:
@@ -289,8 +319,8 @@ class Study:
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         with self._kept.lock:
             if self._kept.solved is None and self.case.housing is not None:
+                from gearwhine.solve.acoustics import check_before_modes
                 from gearwhine.solve.housing_modes import solve_housing
-                from gearwhine.solve.sound import check_before_modes
 
                 before = check_before_modes(self.case) if with_sound else None
                 self._kept.solved = solve_housing(self.case, self.progress, before=before)
@@ -305,8 +335,10 @@ class Study:
         from gearwhine.solve.machine import described_machine, reduce_housing
 
         solved = self.housing
-        part = None if solved is None else reduce_housing(self.case, solved, self.progress)
-        return described_machine(self.case, part)
+        if solved is None:
+            return described_machine(self.case, None)
+        part = reduce_housing(self.case, solved, self.progress)
+        return described_machine(self.case, replace(part, displacement_field=solved.displacement_field))
 
     def check(self) -> Result[CheckedCase]:
         """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""
@@ -462,7 +494,7 @@ class Study:
     def run(self) -> Result[RunSolution]:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
         from gearwhine.analyses import run
-        from gearwhine.solve.sound import is_in_run
+        from gearwhine.solve.acoustics import is_in_run
 
         housing = self._solved_housing(with_sound=is_in_run(self.case))
         return run.run(self.case, housing=housing, pictures=False, progress=self.progress)

@@ -7,25 +7,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses import of_machine
-from gearwhine.analyses.of_machine import MachineUnderLoad
+from gearwhine.analyses.of_machine import MachineUnderLoad, RadiatingHousing
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
-from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
-from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.from_case.machine import require_machine
-from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
+from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.result_warnings import warning
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
-from gearwhine.results.housing import HOUSING, origin_document
+from gearwhine.results.housing import origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document
 from gearwhine.results.rotors import ROTORS, rotors_document
-from gearwhine.results.sound import SOUND, sound_document
+from gearwhine.solve.acoustics import acoustics_of, check_before_modes, refused_by_key, sound_left_out
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import PairAnalysis, aims_at_sensor, analyse_pairs, relief_aims, solve_over_torques
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
@@ -43,12 +42,11 @@ from gearwhine.solve.plausibility import (
 )
 from gearwhine.solve.rotors import SolvedRotor, solve_rotors, write_ross_files
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
-from gearwhine.solve.sound import check_before_modes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.solve.sound.solution import SolvedSound
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
 
@@ -393,50 +391,19 @@ def sound(
         Where the power through the surface and in the far field differ by more than 10 %, or a known source inside is
         lost at a vertex of the surface.
     """
-    # The acoustics' kernels are for this analysis alone.
-    from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_steady
-    from gearwhine.solve.sound.solution import highest_estimated, solve_sound
-
     require(case, "housing", command="sound")
-    if case.acoustics is None:
-        case = case.model_copy(update={"acoustics": Acoustics()})
+    acoustics = acoustics_of(case)
     if housing is None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
     elif (refuse := check_before_modes(case)) is not None:
         refuse(case, housing.mesh)
-    machine, motion = None, None
-    further_warnings: list[dict[str, Any]] = []
-    steady = case.model_copy(update={"transient": None})
-    if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
-        loaded = _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
-        machine, further_warnings = loaded.coupled, list(loaded.warnings)
-        steady_state = solve_steady(machine, progress)
-        motion = lines_of_steady(steady_state, highest_estimated(case, housing))
-    solved = solve_sound(case, housing, motion, machine, progress)
-    document = {"title": case.title} | sound_document(solved)
-    add_warnings(document, [*solved.warnings(), *further_warnings])
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_sound
-
-        progress("drawing the sound")
-        yield from draw_sound(case.title, solved)
-
-    def files(place: Path, *, pictures: bool) -> None:
-        if pictures:
-            add_warnings(result.document, draw_sound_pictures(solved, place, progress, housing.up))
-
-    result = Result(
-        "sound",
-        case,
-        solved,
-        joined(document, origin_document(housing)),
-        _arrays=lambda: labelled(labels_of(case), (HOUSING, housing), (SOUND, solved)),
-        _figures=figures,
-        _files=files,
-        _housing=housing,
-    )
-    return result
+    machine, warnings = None, list[ResultWarning]()
+    if case.rotor and case.operation is not None:
+        warnings = sound_left_out(case.model_copy(update={"transient": None}))
+        machine = None if warnings else _loaded_case(case, housing, folder, progress, fresh=fresh, varies=False)
+    radiating = RadiatingHousing(housing.displacement_field, acoustics, labels_of(case), housing.up, case, housing)
+    with refused_by_key(acoustics):
+        return of_machine.sound(radiating, machine, warnings, progress)
 
 
 def sweep(

@@ -41,6 +41,7 @@ from gearwhine.results.run import (
 )
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.system import SYSTEM, system_document
+from gearwhine.solve.acoustics import acoustics_of, check_before_modes, is_in_run, refused_by_key, sound_left_out
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
@@ -55,7 +56,6 @@ from gearwhine.solve.plausibility import (
     unstable_modes_warnings,
 )
 from gearwhine.solve.rotors import solve_rotors
-from gearwhine.solve.sound import check_before_modes, is_in_run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,12 +65,12 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.signature import SolvedSignature
     from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation import Comparison
     from gearwhine.solve.gear_pairs import PairAnalysis
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.rotors import SolvedRotor
-    from gearwhine.solve.sound.solution import SolvedSound
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -203,16 +203,22 @@ def run(
     if case.acoustics is not None and not is_in_run(case):
         document["sound_not_solved"] = SOUND_LEFT_OUT
     if is_in_run(case) and housing is not None:
-        from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_run
-        from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
+        from gearwhine.coupling.sound.motion_lines import AUDIBLE, lines_of_run
+        from gearwhine.coupling.sound.solution import solve_sound, with_histories
+        from gearwhine.solve.kept_radiation import kept_radiation
 
         begin = time.perf_counter()
+        acoustics, field = acoustics_of(case), housing.displacement_field
         lines, without = None, []
-        if transient is not None and not (without := left_out_warnings(case)):
-            lines = lines_of_run(transient, highest_estimated(case, housing))
-        sound = solve_sound(case, housing, lines, machine, progress)
-        if transient is not None:
-            sound, housing = with_histories(case, housing, sound, transient, progress)
+        if transient is not None and not (without := sound_left_out(case)):
+            lines = lines_of_run(transient, acoustics.estimated_below_hz(field))
+        with refused_by_key(acoustics):
+            sound = solve_sound(acoustics, field, lines, machine, progress)
+        # A moving base drives the housing beside its bearings.
+        if transient is not None and sound.microphones and case.operation is not None and case.operation.base is None:
+            between = AUDIBLE, sound.limit_hz
+            transfer, housing = kept_radiation(acoustics, housing, sound.radiation, sound.places, between, progress)
+            sound = with_histories(sound, transient, transfer)
         document["sound"] = sound_document(sound)
         add_warnings(document, [*without, *sound.warnings()])
         timed("sound", begin)

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from gearwhine.progress import in_order, shown
+from gearwhine.numerics.progress import in_order
+from gearwhine.progress import shown
 from gearwhine.rotors.numerics import compiled
 
 
