@@ -7,6 +7,10 @@ class CouplingError(RefusedPartError):
     """The components, connectors or loads do not fit each other; the message says what was expected."""
 
 
+class AcousticsError(CouplingError):
+    """Acoustics that do not fit each other, their method or the housing; the message says what was expected."""
+
+
 class DeflectionError(CouplingError):
     """A motion beyond the deflection that the parts can follow: teeth compressed too far."""
 

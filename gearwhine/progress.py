@@ -1,43 +1,15 @@
-"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet; work on two threads."""
+"""Progress of long work: a live line on a terminal, plain lines elsewhere, nothing when quiet."""
 
 import logging
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TypeVar
 
 from gearwhine.numerics.progress import Progress, silent
 
-Item = TypeVar("Item")
-Solution = TypeVar("Solution")
-
-_THREADS = 2
 _OFTEN = 30.0  # seconds between reports of long work
 _WORTH_SAYING = 5.0  # least time left that is shown [s]
-
-
-def in_order(
-    solve: Callable[[Item], Solution], items: Sequence[Item], message: str, progress: Progress = silent
-) -> tuple[Solution, ...]:
-    """Solve for each item on two threads under the progress; the results are in the order of the items.
-
-    Parameters
-    ----------
-    solve : callable
-        Solution of one item; it releases the interpreter in its long work.
-    items : sequence
-    message : str
-        The work in words.
-    progress : callable
-    """
-    results: list[Solution] = []
-    with ThreadPoolExecutor(_THREADS) as pool:
-        for result in pool.map(solve, items):
-            results.append(result)
-            progress(message, len(results) / len(items))
-    return tuple(results)
 
 
 @contextmanager

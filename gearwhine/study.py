@@ -7,7 +7,7 @@ import math
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -114,18 +115,22 @@ class Settings:
         Windows of the orders along a run.
     speeds : sequence of float
         Signed speeds of the first driver's shaft for analyses over speed [rad/s].
+    acoustics : Acoustics, optional
+        Method and medium, floor and microphones of the sound.
     """
 
     title: str = ""
     transient: TransientPlan | None = None
     tracking: OrderTracking | None = None
     speeds: Sequence[float] = ()
+    acoustics: Acoustics | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check each of them."""
         from gearwhine.coupling.analyses.recording import TransientPlan
         from gearwhine.coupling.analyses.run_up import OrderTracking
         from gearwhine.coupling.errors import CouplingError
+        from gearwhine.coupling.sound.acoustics import Acoustics
 
         keep_tuples(self, "speeds")
         rules: dict[str, Rule] = {
@@ -133,6 +138,7 @@ class Settings:
             "transient": Instance(TransientPlan, "a TransientPlan, or None", optional=True),
             "tracking": Instance(OrderTracking, "an OrderTracking, or None", optional=True),
             "speeds": Numbers(each=Number(unit="rad/s")),
+            "acoustics": Instance(Acoustics, "an Acoustics, or None", optional=True),
         }
         refuse(attribute_findings(("settings", self.title), self, **rules), CouplingError)
 
@@ -291,6 +297,37 @@ class Study:
         rotors = self.rotors().solved
         return of_machine.run(self.machine, self._loaded(plan), rotors, plan, self.settings.tracking, self.progress)
 
+    def sound(self, acoustics: Acoustics | None = None, /, **settings: Any) -> Result[SolvedSound]:
+        """Find the sound that the housing radiates: of its modes, and of the lines of the steady motion.
+
+        Parameters
+        ----------
+        acoustics : Acoustics, optional
+            Method and medium, floor and microphones; or its attributes by name: ``method="erp", floor=-0.02``. By
+            default those of the settings, else boundary elements in free air.
+        **settings
+            See :class:`gearwhine.coupling.sound.acoustics.Acoustics`.
+
+        Raises
+        ------
+        gearwhine.coupling.errors.AcousticsError
+            Where the machine has no housing with a mesh, or the acoustics do not fit it.
+        gearwhine.coupling.PeriodicError
+            Where no periodic motion is found.
+        gearwhine.housing.HousingError
+            Where a solution fails its proofs.
+        """
+        from gearwhine.analyses import of_machine
+        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound.motion_lines import left_out_warnings
+
+        if acoustics is None:
+            given = self.settings.acoustics
+            acoustics = Acoustics(**settings) if given is None or settings else given
+        housing = of_machine.radiating_housing(self.machine, acoustics, self.settings.title)
+        warnings = left_out_warnings(base_moves=self.machine.base is not None, speed_changes=False)
+        return of_machine.sound(housing, None if warnings else self._loaded(), warnings, self.progress)
+
     def _diagram_speeds(self) -> tuple[float, ...]:
         """Return the signed speeds of a diagram of the machine [rad/s], ascending in size."""
         from gearwhine.numerics.speed_ranges import campbell_speeds
@@ -402,8 +439,8 @@ class CaseStudy(Study):
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         with self._kept.lock:
             if self._kept.solved is None and self.case.housing is not None:
+                from gearwhine.solve.acoustics import check_before_modes
                 from gearwhine.solve.housing_modes import solve_housing
-                from gearwhine.solve.sound import check_before_modes
 
                 before = check_before_modes(self.case) if with_sound else None
                 self._kept.solved = solve_housing(self.case, self.progress, before=before)
@@ -418,19 +455,23 @@ class CaseStudy(Study):
         from gearwhine.solve.machine import described_machine, reduce_housing
 
         solved = self.housing
-        part = None if solved is None else reduce_housing(self.case, solved, self.progress)
-        return described_machine(self.case, part)
+        if solved is None:
+            return described_machine(self.case, None)
+        part = reduce_housing(self.case, solved, self.progress)
+        return described_machine(self.case, replace(part, displacement_field=solved.displacement_field))
 
     @property
     def settings(self) -> Settings:
         """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
         from gearwhine.case.speeds_and_torques import with_sense_of_operation
+        from gearwhine.solve.acoustics import acoustics_of
         from gearwhine.solve.machine import plan_of, tracking_of
 
         case = self.case
         plan = None if case.transient is None else plan_of(case)
         speeds = () if case.sweep is None else with_sense_of_operation(case, case.sweep.speeds)
-        return Settings(case.title, plan, tracking_of(case), speeds)
+        acoustics = None if case.acoustics is None else acoustics_of(case)
+        return Settings(case.title, plan, tracking_of(case), speeds, acoustics)
 
     def check(self) -> Result[CheckedCase]:
         """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""
@@ -571,11 +612,17 @@ class CaseStudy(Study):
             progress=self.progress,
         )
 
-    def sound(self) -> Result[SolvedSound]:
-        """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`."""
-        from gearwhine.analyses import machine
+    def sound(self, acoustics: Acoustics | None = None, /, **settings: Any) -> Result[SolvedSound]:
+        """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`.
 
-        return machine.sound(self.case, housing=self._solved_housing(with_sound=True), progress=self.progress)
+        An object, or its attributes by name, take the place of the case's `[acoustics]`.
+        """
+        from gearwhine.analyses import machine
+        from gearwhine.coupling.sound.acoustics import Acoustics
+
+        acoustics = Acoustics(**settings) if settings else acoustics
+        housing = self._solved_housing(with_sound=acoustics is None)
+        return machine.sound(self.case, acoustics=acoustics, housing=housing, progress=self.progress)
 
     def simulate(self, plan: TransientPlan | None = None, /, **stretch: Any) -> Result[RunSolution]:
         """Integrate the motion over time, by default of `[transient]`; see :func:`gearwhine.analyses.run.simulate`.
@@ -591,7 +638,7 @@ class CaseStudy(Study):
     def run(self) -> Result[RunSolution]:
         """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
         from gearwhine.analyses import run
-        from gearwhine.solve.sound import is_in_run
+        from gearwhine.solve.acoustics import is_in_run
 
         housing = self._solved_housing(with_sound=is_in_run(self.case))
         return run.run(self.case, housing=housing, pictures=False, progress=self.progress)

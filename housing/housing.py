@@ -26,6 +26,7 @@ from gearwhine.housing.modes.discretisation_error import discretisation_errors, 
 from gearwhine.housing.modes.effective_mass import damping_ratios, modal_damping
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from gearwhine.housing.modes.health import HealthReport, health_report
+from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
 from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
 from gearwhine.meshes.box.surface_points import point_off_box
@@ -426,6 +427,12 @@ class HousingModes:
     def frequencies_hz(self) -> FloatArray:
         """Natural frequencies [Hz], shape (n_modes,)."""
         return self.mode_set.frequencies_hz
+
+    @property
+    def displacement_field(self) -> HousingField:
+        """Its mesh, and the shapes of modes and residual modes on that."""
+        bores = [seat.diameter for seat in self.housing.seats if seat.diameter is not None]
+        return HousingField(self.housing.mesh, self.mode_set, max(bores, default=None))
 
     @property
     def damping_ratios(self) -> FloatArray:

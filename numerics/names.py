@@ -1,7 +1,8 @@
-"""Names that look alike: what a reader sees of a name, whatever characters it is made of."""
+"""Names: those that look alike, whatever characters they are made of, and those to choose from."""
 
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 
 # Cyrillic and Greek letters with the look of Latin ones (Unicode TS 39, confusables), most of them capital.
 _LOOKS = dict(
@@ -42,3 +43,19 @@ def twin_of(name: str, names: Iterable[str]) -> str | None:
     """Return another name that looks the same as this one; None where there is none."""
     look = look_of(name)
     return next((other for other in names if other != name and look_of(other) == look), None)
+
+
+def did_you_mean(word: str, candidates: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest candidate, or nothing."""
+    near = get_close_matches(word, list(candidates), n=1, cutoff=0.6)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+_MOST_NAMES = 12
+
+
+def one_of(what: str, word: str, names: Sequence[str]) -> str:
+    """Return ``what (a, b, c, and 5 more)`` with the names to choose from, and the nearest to a word among them all."""
+    further = len(names) - _MOST_NAMES
+    listed = ", ".join(names[:_MOST_NAMES]) + (f", and {further} more" if further > 0 else "")
+    return f"{what} ({listed or 'there is none'}){did_you_mean(word, names)}"

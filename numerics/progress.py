@@ -1,6 +1,13 @@
-"""Progress of long work: what an analysis tells its caller while it works."""
+"""Progress of long work: what an analysis tells its caller while it works; work on two threads."""
 
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Protocol, TypeVar
+
+Item = TypeVar("Item")
+Solution = TypeVar("Solution")
+
+_THREADS = 2
 
 
 class Progress(Protocol):
@@ -15,3 +22,25 @@ class Progress(Protocol):
 
 def silent(message: str, fraction: float | None = None) -> None:
     """Say nothing."""
+
+
+def in_order(
+    solve: Callable[[Item], Solution], items: Sequence[Item], message: str, progress: Progress = silent
+) -> tuple[Solution, ...]:
+    """Solve for each item on two threads under the progress; the results are in the order of the items.
+
+    Parameters
+    ----------
+    solve : callable
+        Solution of one item; it releases the interpreter in its long work.
+    items : sequence
+    message : str
+        The work in words.
+    progress : callable
+    """
+    results: list[Solution] = []
+    with ThreadPoolExecutor(_THREADS) as pool:
+        for result in pool.map(solve, items):
+            results.append(result)
+            progress(message, len(results) / len(items))
+    return tuple(results)

@@ -14,7 +14,7 @@ ALLOWED = {
     "meshes": {"numerics"},
     "rotors": {"numerics"},
     "housing": {"numerics", "meshes"},
-    "coupling": {"numerics", "housing", "rotors"},
+    "coupling": {"numerics", "meshes", "housing", "rotors"},
     "gearwhine": {"numerics", "meshes", "rotors", "housing", "coupling"},
 }
 

@@ -12,7 +12,7 @@ its ports; by virtual work a force F along it adds F d to f.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears.stiffness.wheel_modes import PlateMode
 from gearwhine.coupling.machine.gear_bodies import GearBody, RimSpring
 from gearwhine.housing import HousingModes, ModeSet
+from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.numerics.findings import Finding, refuse
 from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.rotors import ModalRotor, Pedestal
@@ -103,6 +104,8 @@ class HousingComponent(Component):
         Warnings about the housing's model.
     seat_reach : mapping of str to float
         Distance along z from a seat's centre within which a bearing sits in it [m], where it is known.
+    displacement_field : HousingField or None
+        Mesh and shapes of its coordinates, which sound needs; None of a reduced housing.
 
     Raises
     ------
@@ -121,6 +124,7 @@ class HousingComponent(Component):
     coarser: "HousingComponent | None" = None
     warnings: tuple[ResultWarning, ...] = ()
     seat_reach: Mapping[str, float] = field(default_factory=dict)
+    displacement_field: HousingField | None = None
 
     def __post_init__(self) -> None:
         """Check that the matrices and motions are those of a housing."""
@@ -408,7 +412,7 @@ def housing_component(
 def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
     """Make the housing's component from its natural modes, see :meth:`gearwhine.housing.Housing.modes`."""
     seats = {seat.name: seat.center for seat in modes.housing.seats}
-    return housing_component(
+    component = housing_component(
         modes.mode_set,
         np.full(len(modes.mode_set.frequencies), modes.housing.damping_ratio),
         seats=modes.seats,
@@ -421,6 +425,7 @@ def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingC
         participation=modes.participation,
         name=name,
     )
+    return replace(component, displacement_field=modes.displacement_field)
 
 
 @dataclass(frozen=True)

@@ -7,27 +7,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses import of_machine
-from gearwhine.analyses.of_machine import MachineUnderLoad
+from gearwhine.analyses.of_machine import MachineUnderLoad, RadiatingHousing
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
-from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
-from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
+from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.from_case.machine import require_machine
-from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
+from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.result_warnings import warning
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.dataset import labelled, labels_of
 from gearwhine.output.quantity import add_warnings, joined
-from gearwhine.results.housing import HOUSING, origin_document
+from gearwhine.results.housing import origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document
-from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+from gearwhine.solve.acoustics import acoustics_of, check_before_modes, refused_by_key, sound_left_out
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import aims_at_sensor, analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
@@ -42,13 +41,13 @@ from gearwhine.solve.operating_point import (
 )
 from gearwhine.solve.rotors import solve_rotors, write_ross_files
 from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
-from gearwhine.solve.sound import check_before_modes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
-    from gearwhine.solve.sound.solution import SolvedSound
     from gearwhine.sweep.run import SweptPoint
 
 
@@ -346,6 +345,7 @@ def steady(
 def sound(
     case: Case,
     *,
+    acoustics: "Acoustics | None" = None,
     housing: SolvedHousing | None = None,
     folder: Path | None = None,
     fresh: bool = False,
@@ -358,6 +358,8 @@ def sound(
     case : Case
         Case with `[housing]`; without `[acoustics]` boundary elements in free air are taken. Without rotors and an
         operation the sound is that of the modes alone.
+    acoustics : Acoustics, optional
+        Method and medium, floor and microphones, in place of those of `[acoustics]`.
     housing, folder, fresh, progress
         As :func:`gearwhine.analyses.housing.modes`.
 
@@ -369,49 +371,28 @@ def sound(
         Where the power through the surface and in the far field differ by more than 10 %, or a known source inside is
         lost at a vertex of the surface.
     """
-    # The acoustics' kernels are for this analysis alone.
-    from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_steady
-    from gearwhine.solve.sound.solution import highest_estimated, solve_sound
+    # The checks of the surface are for this analysis alone.
+    from gearwhine.coupling.sound.acoustics_checks import require_acoustics
 
     require(case, "housing", command="sound")
-    if case.acoustics is None:
-        case = case.model_copy(update={"acoustics": Acoustics()})
+    refuse = check_before_modes(case) if acoustics is None else None
     if housing is None:
-        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=check_before_modes(case))
-    elif (refuse := check_before_modes(case)) is not None:
+        housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
+    elif refuse is not None:
         refuse(case, housing.mesh)
-    machine, motion = None, None
-    further_warnings: list[dict[str, Any]] = []
-    steady = case.model_copy(update={"transient": None})
-    if case.rotor and case.operation is not None and not (further_warnings := left_out_warnings(steady)):
-        require_machine(case)
-        loaded = loaded_case(case, housing, None, progress)
-        machine, further_warnings = loaded.coupled, list(loaded.warnings)
-        steady_state = solve_steady(machine, progress)
-        motion = lines_of_steady(steady_state, highest_estimated(case, housing))
-    solved = solve_sound(case, housing, motion, machine, progress)
-    document = {"title": case.title} | sound_document(solved)
-    add_warnings(document, [*solved.warnings(), *further_warnings])
-
-    def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
-        from gearwhine.figures import draw_sound
-
-        progress("drawing the sound")
-        yield from draw_sound(case.title, solved)
-
-    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
-        return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
-
-    return Result(
-        "sound",
-        case,
-        solved,
-        joined(document, origin_document(housing)),
-        _arrays=lambda: labelled(labels_of(case), (HOUSING, housing), (SOUND, solved)),
-        _figures=figures,
-        _files=files,
-        _housing=housing,
-    )
+    field = housing.displacement_field
+    if acoustics is not None:
+        require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
+    acoustics = acoustics or acoustics_of(case)
+    machine, warnings = None, list[ResultWarning]()
+    if case.rotor and case.operation is not None:
+        warnings = sound_left_out(case.model_copy(update={"transient": None}))
+        if not warnings:
+            require_machine(case)
+            machine = loaded_case(case, housing, None, progress)
+    radiating = RadiatingHousing(field, acoustics, labels_of(case), housing.up, case, housing)
+    with refused_by_key(acoustics):
+        return of_machine.sound(radiating, machine, warnings, progress)
 
 
 def sweep(

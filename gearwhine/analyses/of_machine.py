@@ -6,7 +6,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
@@ -33,9 +36,11 @@ from gearwhine.coupling.analyses.transient import (
     solve_transient,
 )
 from gearwhine.coupling.description.excitation import Run
+from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.statics.mean_mesh import mean_contact
+from gearwhine.mode_pictures import draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.dataset import Labels, labelled, labels_of
@@ -48,6 +53,7 @@ from gearwhine.results.run import (
     run_signature_document,
     transient_document,
 )
+from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
@@ -71,7 +77,10 @@ from gearwhine.solve.plausibility import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.solve.housing_modes import SolvedHousing
 
 
@@ -519,4 +528,116 @@ def simulate(
         _figures=partial(solved.figures, machine.title),
         _housing=machine.housing,
         _title=machine.title,
+    )
+
+
+@dataclass(frozen=True)
+class RadiatingHousing:
+    """A housing whose sound is sought, with what the results say beside their own numbers.
+
+    Attributes
+    ----------
+    field : HousingField
+    acoustics : Acoustics
+    labels : Labels
+        Labels of the files.
+    up : sequence of float
+        Unit vector that points upwards in pictures.
+    case : Case or None
+        The case that describes it; None where Python does.
+    solved : SolvedHousing or None
+        The solved housing of the case.
+    """
+
+    field: HousingField
+    acoustics: Acoustics
+    labels: Labels
+    up: Sequence[float]
+    case: Case | None = None
+    solved: SolvedHousing | None = None
+
+
+def radiating_housing(machine: Machine, acoustics: Acoustics, title: str = "") -> RadiatingHousing:
+    """Return the housing of a machine of Python, checked for its sound.
+
+    Raises
+    ------
+    gearwhine.coupling.errors.AcousticsError
+        Where the machine has no housing with a mesh, or the acoustics do not fit it.
+    """
+    from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+
+    component = machine.housing_component
+    field = None if component is None else component.displacement_field
+    if field is None:
+        has = "no housing" if component is None else "a reduced housing, of motions at its seats and sensors alone"
+        raise AcousticsError(
+            "the sound of a machine: expected a housing with its mesh and the mode shapes on it, as "
+            f"gearwhine.Housing.modes() gives; the machine has {has}"
+        )
+    require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
+    weight = np.zeros(3) if machine.gravity is None else np.array(machine.gravity)
+    up = -weight / np.linalg.norm(weight) if weight.any() else np.array([0.0, 1.0, 0.0])
+    return RadiatingHousing(field, acoustics, Labels(title, machine.speed), tuple(up.tolist()))
+
+
+def sound(
+    housing: RadiatingHousing,
+    machine: MachineUnderLoad | None,
+    warnings: Sequence[ResultWarning] = (),
+    progress: Progress = silent,
+) -> Result[SolvedSound]:
+    """Find the sound that a housing radiates: of its modes, and of the lines of the steady motion of a machine in it.
+
+    Parameters
+    ----------
+    housing : RadiatingHousing
+    machine : MachineUnderLoad or None
+        None where the sound is that of the modes alone.
+    warnings : sequence of dict
+        Warnings beside those of the sound and of the operating point.
+    progress : callable
+
+    Raises
+    ------
+    gearwhine.coupling.errors.AcousticsError
+        Where the housing cannot be wrapped, or a microphone is inside it or under the floor.
+    gearwhine.coupling.PeriodicError
+        Where no periodic motion is found.
+    gearwhine.housing.HousingError
+        Where a solution fails its proofs.
+    """
+    # The acoustics' kernels are for this analysis alone.
+    from gearwhine.coupling.sound.motion_lines import lines_of_steady
+    from gearwhine.coupling.sound.solution import solve_sound
+
+    field, acoustics, coupled, motion = housing.field, housing.acoustics, None, None
+    if machine is not None:
+        coupled = machine.coupled
+        motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
+        warnings = [*warnings, *machine.warnings]
+    solved = solve_sound(acoustics, field, motion, coupled, progress)
+    title = housing.labels.title
+    document = {"title": title} | sound_document(solved)
+    add_warnings(document, [*solved.warnings(), *warnings])
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_sound
+
+        progress("drawing the sound")
+        yield from draw_sound(title, solved)
+
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
+
+    return Result(
+        "sound",
+        housing.case,
+        solved,
+        joined(document, {} if housing.solved is None else origin_document(housing.solved)),
+        _arrays=lambda: labelled(housing.labels, (HOUSING, housing.solved), (SOUND, solved)),
+        _figures=figures,
+        _files=files,
+        _housing=housing.solved,
+        _title=title,
     )

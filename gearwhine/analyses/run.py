@@ -34,13 +34,13 @@ from gearwhine.results.run import (
     SOUND_LEFT_OUT,
 )
 from gearwhine.results.sound import sound_document
+from gearwhine.solve.acoustics import acoustics_of, check_before_modes, is_in_run, refused_by_key, sound_left_out
 from gearwhine.solve.comparison import compare_housing, comparison_warnings, require_comparable
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import plan_of, tracking_of
 from gearwhine.solve.operating_shapes import highest_lines
 from gearwhine.solve.rotors import solve_rotors
-from gearwhine.solve.sound import check_before_modes, is_in_run
 
 if TYPE_CHECKING:
     from gearwhine.coupling.analyses.recording import TransientPlan
@@ -169,17 +169,23 @@ def run(
     if case.acoustics is not None and not is_in_run(case):
         document["sound_not_solved"] = SOUND_LEFT_OUT
     if is_in_run(case) and housing is not None:
-        from gearwhine.solve.sound.motion_lines import left_out_warnings, lines_of_run
-        from gearwhine.solve.sound.solution import highest_estimated, solve_sound, with_histories
+        from gearwhine.coupling.sound.motion_lines import AUDIBLE, lines_of_run
+        from gearwhine.coupling.sound.solution import solve_sound, with_histories
+        from gearwhine.solve.kept_radiation import kept_radiation
 
         begin = time.perf_counter()
+        acoustics, field = acoustics_of(case), housing.displacement_field
         lines, without = None, []
-        if transient is not None and not (without := left_out_warnings(case)):
-            lines = lines_of_run(transient, highest_estimated(case, housing))
+        if transient is not None and not (without := sound_left_out(case)):
+            lines = lines_of_run(transient, acoustics.estimated_below_hz(field))
         machine = None if loaded is None else loaded.coupled
-        sound = solve_sound(case, housing, lines, machine, progress)
-        if transient is not None:
-            sound, housing = with_histories(case, housing, sound, transient, progress)
+        with refused_by_key(acoustics):
+            sound = solve_sound(acoustics, field, lines, machine, progress)
+        # A moving base drives the housing beside its bearings.
+        if transient is not None and sound.microphones and case.operation is not None and case.operation.base is None:
+            between = AUDIBLE, sound.limit_hz
+            transfer, housing = kept_radiation(acoustics, housing, sound.radiation, sound.places, between, progress)
+            sound = with_histories(sound, transient, transfer)
         document["sound"] = sound_document(sound)
         add_warnings(document, [*without, *sound.warnings()])
         timed("sound", begin)

@@ -23,7 +23,7 @@ Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in ra
 
 from gearwhine.case.bearings import Bearing, MatrixDamping, RollingStiffness, StopStiffness
 from gearwhine.case.box import Box
-from gearwhine.case.errors import CaseError, Problem, one_of
+from gearwhine.case.errors import CaseError, Problem
 from gearwhine.case.fixtures import Joint, LumpedMass, Mount, amounts
 from gearwhine.case.gears import Gear, GearPair, shaft_of
 from gearwhine.case.housing import CadFile, Housing, Material, MeshFile, Seat, Sensor, Support
@@ -105,7 +105,6 @@ __all__ = [
     "force_origins",
     "load_case",
     "mesh_frequencies",
-    "one_of",
     "pair_torques",
     "parse_case",
     "require",

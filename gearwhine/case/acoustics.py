@@ -5,7 +5,7 @@ Attributes are named as the keys of the case file and are in SI; frequencies are
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
@@ -22,6 +22,9 @@ from gearwhine.case.fields import (
     Table,
     Whole,
 )
+
+if TYPE_CHECKING:
+    from gearwhine.coupling.sound.acoustics import Acoustics as BuiltAcoustics
 
 SpeedOfSound = Annotated[float, Quantity(units.VELOCITY, above=0.0)]
 
@@ -78,3 +81,18 @@ class Acoustics(Table):
     def is_in_run(self) -> bool:
         """Whether `run` finds the sound of its motion."""
         return self.method != "boundary-elements" if self.in_run is None else self.in_run
+
+    def build(self) -> BuiltAcoustics:
+        """Build the settings of the sound.
+
+        Raises
+        ------
+        gearwhine.coupling.errors.AcousticsError
+            Where a choice does not fit the method.
+        """
+        from gearwhine.coupling.sound.acoustics import Acoustics as BuiltAcoustics
+        from gearwhine.coupling.sound.acoustics import Microphone as BuiltMicrophone
+
+        settings = {key: getattr(self, key) for key in type(self).model_fields if key not in ("microphone", "in_run")}
+        places = tuple(BuiltMicrophone(one.name, one.position) for one in self.microphone)
+        return BuiltAcoustics(microphone=places, **settings)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 
 Location = tuple[str | int, ...]
 """Where a value stands in a case file: table keys and list indices from the top."""
@@ -52,22 +51,6 @@ def key_of(location: Location) -> str:
             bare = step != "" and all(c.isalnum() or c in "_-*" for c in step)
             text += ("." if text else "") + (step if bare else show_value(step))
     return text or "the case"
-
-
-def did_you_mean(word: str, candidates: Iterable[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the nearest candidate, or nothing."""
-    near = get_close_matches(word, list(candidates), n=1, cutoff=0.6)
-    return f"; did you mean {near[0]!r}?" if near else ""
-
-
-_MOST_NAMES = 12
-
-
-def one_of(what: str, word: str, names: Sequence[str]) -> str:
-    """Return ``what (a, b, c, and 5 more)`` with the names to choose from, and the nearest to a word among them all."""
-    further = len(names) - _MOST_NAMES
-    listed = ", ".join(names[:_MOST_NAMES]) + (f", and {further} more" if further > 0 else "")
-    return f"{what} ({listed or 'there is none'}){did_you_mean(word, names)}"
 
 
 _LONGEST_SHOWN = 200  # characters of a key path or of a change

@@ -20,11 +20,12 @@ from pydantic_core import ErrorDetails
 
 from gearwhine.case.checks.plausible import library_findings
 from gearwhine.case.checks.whole_case import check, warnings_of, without_changed
-from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, did_you_mean, problem_of
+from gearwhine.case.errors import NOTHING, UNSAID, CaseError, Finding, Location, Problem, problem_of
 from gearwhine.case.fields import OverSpeed, Quantity, Table, Whole
 from gearwhine.case.input_files import InputFiles
 from gearwhine.case.model import Case, case_document, draft_of_case, draft_of_document
 from gearwhine.case.overrides import apply_overrides
+from gearwhine.numerics.names import did_you_mean
 
 _SUFFIX = ".toml"
 

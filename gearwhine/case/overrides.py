@@ -9,7 +9,8 @@ from copy import deepcopy
 from typing import Any
 
 from gearwhine.case.box import wall_by_face
-from gearwhine.case.errors import NOTHING, CaseError, Location, Problem, did_you_mean, key_of, look_up
+from gearwhine.case.errors import NOTHING, CaseError, Location, Problem, key_of, look_up
+from gearwhine.numerics.names import did_you_mean
 
 _STEP = re.compile(r"""\[(\d{1,9})\]|\.?(?:"([^"]*)"|'([^']*)'|([^.\[\]"']+))""")
 

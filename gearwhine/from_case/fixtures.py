@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support, one_of
+from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.mesh import cover_joints
 from gearwhine.housing import HousingError
@@ -14,6 +14,7 @@ from gearwhine.housing.fem.matrices import Additions, Matrices
 from gearwhine.housing.model.fixtures import Fixture
 from gearwhine.housing.model.seats import sensor_port
 from gearwhine.meshes import GeometryError, Mesh
+from gearwhine.numerics.names import one_of
 
 FloatArray = npt.NDArray[np.float64]
 

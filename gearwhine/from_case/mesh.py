@@ -10,7 +10,7 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.box import FACES
 from gearwhine.case.checks.housing import box_geometry
-from gearwhine.case.errors import UNSAID, one_of
+from gearwhine.case.errors import UNSAID
 from gearwhine.case.housing import Region
 from gearwhine.case.input_files import ChangedFileError
 from gearwhine.housing import Joint, Material
@@ -22,6 +22,7 @@ from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.meshes.errors import MeshSizeError
 from gearwhine.meshes.lengths import UNITS, length_text
 from gearwhine.meshes.quality import WaveCarrier
+from gearwhine.numerics.names import one_of
 
 
 def ignore_warning(warning: str) -> None:

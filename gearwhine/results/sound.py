@@ -23,8 +23,8 @@ from gearwhine.output.sections import (
 from gearwhine.results.line_columns import MECHANISMS, line_frequency
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
     from gearwhine.housing.acoustics.known_source import SourceError
-    from gearwhine.solve.sound.solution import SolvedSound, SoundLine
 
 _METHODS = {
     "boundary-elements": "boundary elements over the whole surface",

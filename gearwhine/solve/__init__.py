@@ -14,7 +14,7 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 - :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
 - :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
   and sound at that equilibrium; changes of the housing, and the model of the lines.
-- :mod:`gearwhine.solve.sound`: the sound of modes and lines.
+- :mod:`~gearwhine.solve.acoustics`: settings of the sound, which is solved in :mod:`gearwhine.coupling.sound`.
 - :mod:`~gearwhine.solve.operating_shapes`: operating shapes of the machine's motion.
 - :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """

@@ -24,11 +24,11 @@ from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.machine import described_machine
 from gearwhine.solve.part_fits import fit_warnings
 from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
-from gearwhine.solve.sound import check_before_modes
 
 
 @dataclass(frozen=True)
@@ -161,12 +161,12 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
     """
     if (refuse := check_before_modes(case)) is None:
         return []
-    from gearwhine.solve.sound.acoustics_checks import acoustics_warnings
+    from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
 
     assert case.housing is not None
     mesh = preview.mesh or build_mesh(case, order=1)
     refuse(case, mesh)
-    return acoustics_warnings(case, mesh.bounds, case.housing.frequency_limit)
+    return acoustics_warnings(acoustics_of(case), mesh.bounds, case.housing.frequency_limit)
 
 
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:

@@ -48,6 +48,7 @@ from gearwhine.housing.model.seats import SensorPort
 from gearwhine.housing.modes.dominance import Dominance, dominance
 from gearwhine.housing.modes.effective_mass import EffectiveMass
 from gearwhine.housing.modes.effective_mass import damping_ratios as housing_damping_ratios
+from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.modes.receptance import Selection, select_modes
 from gearwhine.housing.storage.mesh_arrays import mesh_digest
 from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
@@ -196,6 +197,8 @@ class SolvedHousing:
         Warnings, as in the documents.
     up : tuple of float
         Unit vector that points upwards in pictures.
+    widest_bore : float or None
+        Diameter of its widest seat [m]; None without seats.
     """
 
     mesh: Mesh
@@ -217,11 +220,17 @@ class SolvedHousing:
     source_holds: bool = False
     warnings: list[dict[str, Any]] = field(default_factory=list)
     up: tuple[float, ...] = (0.0, 1.0, 0.0)
+    widest_bore: float | None = None
 
     @property
     def trusted_limit_hz(self) -> float:
         """Frequency below which the modes are complete [Hz]."""
         return self.modes.certificate.limit / _TWO_PI
+
+    @property
+    def displacement_field(self) -> HousingField:
+        """Its mesh, and the shapes of modes and residual modes on that."""
+        return HousingField(self.mesh, self.modes, self.widest_bore)
 
     @property
     def total_damping_ratios(self) -> FloatArray:
@@ -430,6 +439,7 @@ def _solve_on_one_mesh(
         source=None if cached is None or folder is None else folder / MODE_CACHE_FILE,
         source_holds=cached is not None and cached.sensors == record.sensors,
         up=_upwards(case),
+        widest_bore=max((seat.diameter for seat in table.seat), default=None),
         warnings=warnings
         + _health_warnings(checks)
         + list(surface_point_warnings(case, mesh))

@@ -531,7 +531,7 @@ def sensitivity_warnings(ranked: LoadSensitivity) -> Iterator[dict[str, Any]]:
     if not ranked.loudest_lines:
         return
     # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound.proofs import doubts
+    from gearwhine.coupling.sound.proofs import doubts
 
     for harmonic in ranked.loudest_lines:
         yield from doubts(harmonic.sound, "a mesh harmonic")

@@ -21,7 +21,7 @@ from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.frequency_response import superposed
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
 from gearwhine.coupling.signals.spectrum import decibels
-from gearwhine.solve.sound.motion_lines import pulsating_efficiency
+from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -13,9 +13,9 @@ from gearwhine.failures import WorkersError
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
+from gearwhine.solve.acoustics import check_before_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.solve.sound import check_before_modes
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import (
     PointFailure,

@@ -30,6 +30,7 @@ from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
+from gearwhine.solve.acoustics import acoustics_of, sound_left_out
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
@@ -188,11 +189,7 @@ def _reduced(
     mean_forces = mean_bearing_forces(solved)
     add_warnings(document, bearing_load_warnings(solved.machine.bearings, mean_forces, known=warnings_of_load))
     forces = solved.histories.bearing_load
-    frequencies, rates, names = np.empty(0), np.empty((0, 0, 2)), list[LineName]()
-    if case.acoustics is not None and solved.machine.housing is not None:
-        from gearwhine.solve.sound.motion_lines import strongest_lines
-
-        frequencies, rates, names = strongest_lines(case, solved)
+    frequencies, rates, names = sounding_lines(case, solved)
     return PointResult(
         document=document,
         orders=lines[:count] / turning_hz,
@@ -208,6 +205,18 @@ def _reduced(
         line_kinds=tuple(line.kind for line in names),
         resonances=find_resonances(case, solved.machine, solved.trusted_limit),
     )
+
+
+def sounding_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray, list[LineName]]:
+    """Return the strongest lines of a point's motion, for its sound; none where that is left out.
+
+    See :func:`gearwhine.coupling.sound.motion_lines.strongest_lines`.
+    """
+    if case.acoustics is None or solved.machine.housing is None or sound_left_out(case):
+        return np.empty(0), np.empty((0, 0, 2)), []
+    from gearwhine.coupling.sound.motion_lines import strongest_lines
+
+    return strongest_lines(acoustics_of(case), solved)
 
 
 POINTS = "points"

@@ -17,16 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case.speeds_and_torques import mesh_frequencies
-from gearwhine.housing import HousingError
-from gearwhine.housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from gearwhine.housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
-from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
-from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.quantity import document_of
-from gearwhine.progress import in_order
-from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
-from gearwhine.solve.sound.proofs import (
+from gearwhine.coupling.sound.proofs import (
     doubts,
     gathered,
     interior_pressure,
@@ -35,6 +26,14 @@ from gearwhine.solve.sound.proofs import (
     microphone_doubts,
     power_balance_db,
 )
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics.modal_radiation import POINTS, ModalRadiation
+from gearwhine.housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
+from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
+from gearwhine.numerics.progress import Progress, in_order, silent
+from gearwhine.numerics.result_warnings import warning
+from gearwhine.output.quantity import document_of
+from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
 from gearwhine.sweep.resolution import RadiatedLevel
 from gearwhine.sweep.solution import PointResult
 
@@ -87,13 +86,14 @@ def add_sound(
     Raises
     ------
     CaseError, gearwhine.housing.HousingError
-        As :func:`gearwhine.solve.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
+        As :func:`gearwhine.coupling.sound.solution.solve_sound`; where a line fails its proofs, if one does at every
         point. A single point is left without sound, with a warning.
     """
-    from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, microphones_of
-    from gearwhine.solve.sound.kept_radiation import kept_radiation
-    from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
-    from gearwhine.solve.sound.solution import build_radiation, highest_frequency
+    from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
+    from gearwhine.coupling.sound.motion_lines import AUDIBLE, pulsating_efficiency
+    from gearwhine.coupling.sound.solution import build_radiation
+    from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+    from gearwhine.solve.kept_radiation import kept_radiation
 
     # Keys that name no part of the housing change its modes too, such as the place of a bearing or a material.
     if len({swept_point.point.modes_key for swept_point in swept}) > 1 or any(
@@ -104,9 +104,11 @@ def add_sound(
     silent_points, warnings = _without_lines(keys, swept)
     if silent_points == len(swept):
         return warnings, housing, None
-    warnings += acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
-    radiation = build_radiation(case, housing, progress)
-    positions, _ = microphones_of(case, housing.mesh)
+    acoustics, field = acoustics_of(case), housing.displacement_field
+    warnings += acoustics_warnings(acoustics, housing.mesh.bounds, housing.trusted_limit_hz)
+    with refused_by_key(acoustics):
+        radiation = build_radiation(acoustics, field, progress)
+    positions, _ = acoustics.microphones(housing.mesh.bounds)
     places = np.array(list(positions.values())).reshape(-1, 3)
     natural = len(housing.modes.frequencies_hz)
     jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates
@@ -123,8 +125,8 @@ def add_sound(
 
     table = None
     if radiation.method != "erp" and len(jobs) > POINTS:
-        between = AUDIBLE, highest_frequency(case, housing)
-        table, housing = kept_radiation(case, housing, radiation, places, between, progress)
+        between = AUDIBLE, acoustics.limit_hz(field)
+        table, housing = kept_radiation(acoustics, housing, radiation, places, between, progress)
 
     def solve(job: tuple[int, int, float, Any]) -> _Line:
         *_, hertz, rates = job
@@ -168,13 +170,13 @@ def add_sound(
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
-    warnings = [*gathered(warnings), *_beyond_warnings(keys, swept, highest_frequency(case, housing))]
+    warnings = [*gathered(warnings), *_beyond_warnings(keys, swept, acoustics.limit_hz(field))]
     return warnings, housing, partial(_radiated, radiation, table)
 
 
 def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: float, rates: ComplexArray) -> float:
     """Sound power level of rates of the housing's coordinates without a solution [dB]."""
-    from gearwhine.solve.sound.motion_lines import pulsating_efficiency
+    from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
 
     if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _LARGEST_INTERPOLATION_ERROR:
         return float(power_level(table.power(hertz, rates)[0]))
@@ -202,11 +204,11 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
 
 def _without_lines(keys: Sequence[SweptKey], swept: Sequence[SweptPoint]) -> tuple[int, list[dict[str, Any]]]:
     """Return the number of points whose motion has no lines that drive the housing, and the warnings that say why."""
-    from gearwhine.solve.sound.motion_lines import left_out_warnings
+    from gearwhine.solve.acoustics import sound_left_out
 
     reasons: dict[str, list[Point]] = {}
     for swept_point in swept:
-        for entry in left_out_warnings(swept_point.point.case):
+        for entry in sound_left_out(swept_point.point.case):
             reasons.setdefault(str(entry["message"]), []).append(swept_point.point)
     warnings = []
     for message, points in reasons.items():

@@ -1,7 +1,7 @@
 """Surface of a housing: integration by quadrature, and its flat faces."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -103,6 +103,17 @@ def flat_faces(mesh: Mesh) -> list[FlatFace]:
         unit = normal / np.linalg.norm(normal)
         faces.append(FlatFace(pick_facets(boundary, chosen), area, center, unit, names[number].name))
     return faces
+
+
+def flat_face_of_surface(mesh: Mesh, name: str) -> FlatFace | None:
+    """Return a named surface of a mesh as a flat face; None where it is not flat."""
+    wanted = {tuple(sorted(nodes)) for block in mesh.surfaces[name] for nodes in block.nodes.tolist()}
+    for face in flat_faces(mesh):
+        facets = [tuple(sorted(nodes)) for block in face.facets for nodes in block.nodes.tolist()]
+        if wanted & set(facets):
+            chosen = np.array([nodes in wanted for nodes in facets])
+            return None if len(wanted) > chosen.sum() else replace(face, facets=pick_facets(face.facets, chosen))
+    return None
 
 
 def flat_face_numbers(mesh: Mesh) -> IntArray:

@@ -8,7 +8,7 @@ import numpy as np
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
-from gearwhine.solve.sound.solution import SolvedSound, SoundLine
+from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
 
 PLACES = [("1.2 m", "0.3 m", "0 m"), ("0 m", "1.3 m", "0 m"), ("0.1 m", "0.2 m", "-1.4 m")]
 COARSE: dict[str, Any] = {

@@ -76,5 +76,5 @@ def heard_run() -> Result[RunSolution]:
     changes = {"housing.box.mesh_size": "45 mm", "transient.revolutions": 16.0, "transient.discard": 8.0}
     with pytest.MonkeyPatch.context() as patch:
         # Fewer frequencies than of a user's run, whose sound over time is the closer.
-        patch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 25)
+        patch.setattr("gearwhine.solve.kept_radiation.POINTS", 25)
         return gw.load("small-gearbox", TOP | changes).run()

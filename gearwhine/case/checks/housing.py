@@ -10,11 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from gearwhine.case.box import FACES, Box
-from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, one_of
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.fields import Patch
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
 from gearwhine.numerics.findings import in_mm
+from gearwhine.numerics.names import one_of
 
 if TYPE_CHECKING:
     from gearwhine.meshes import BoxGeometry

@@ -15,10 +15,10 @@ from gearwhine.case.checks.housing import check_box, check_housing_form
 from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
 from gearwhine.case.checks.measured import check_measured
 from gearwhine.case.checks.plausible import case_warnings, library_findings
-from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, did_you_mean, key_of, look_up, show_value
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, key_of, look_up, show_value
 from gearwhine.case.model import Case, Draft, case_document
 from gearwhine.case.overrides import parse_key_path, place_in_list
-from gearwhine.numerics.names import twin_of
+from gearwhine.numerics.names import did_you_mean, twin_of
 
 if TYPE_CHECKING:
     from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport

@@ -40,8 +40,8 @@ from gearwhine.figures.style import (
 from gearwhine.housing.acoustics.sound_levels import a_weighting, pressure_level
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
     from gearwhine.housing.acoustics.boundary_elements import SoundField
-    from gearwhine.solve.sound.solution import SolvedSound, SoundLine
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from gearwhine.coupling.linear.line_sensitivity import Line
 from gearwhine.solve.sensitivity.line_model import SolvedLines
 
 if TYPE_CHECKING:
-    from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
+    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -29,13 +29,14 @@ from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.updating import modal_sensitivities
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.numerics.progress import Progress
+from gearwhine.solve.acoustics import acoustics_of, refused_by_key
 from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
 from gearwhine.solve.machine import full_housing_component, run_of
 from gearwhine.solve.sensitivity.housing_changes import HousingChange
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.housing.acoustics.radiation import HousingRadiation
-    from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -214,9 +215,11 @@ def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "Housi
     if case.acoustics is None:
         return None
     # The acoustics' kernels are for these cases alone.
-    from gearwhine.solve.sound.solution import build_radiation
+    from gearwhine.coupling.sound.solution import build_radiation
 
-    return build_radiation(case, housing, progress)
+    acoustics = acoustics_of(case)
+    with refused_by_key(acoustics):
+        return build_radiation(acoustics, housing.displacement_field, progress)
 
 
 def _sound(
@@ -230,14 +233,12 @@ def _sound(
     """Solve for the loudest lines with the modes of a housing, or for those of known frequencies [rad/s]."""
     if radiation is None:
         return ()
-    from gearwhine.solve.sound.mesh_harmonics import loudest_lines
-    from gearwhine.solve.sound.solution import highest_frequency
+    from gearwhine.coupling.sound.mesh_harmonics import loudest_lines
 
     progress("sound of the lines")
-    assert housing.modes.residual_modes is not None
-    shapes = np.concatenate([housing.modes.shapes, housing.modes.residual_modes.shapes])
-    limit = min(highest_frequency(case, housing), housing.trusted_limit_hz)
-    return loudest_lines(model, radiation.with_shapes(shapes), _TWO_PI * limit, heard)
+    field = housing.displacement_field
+    limit = min(acoustics_of(case).limit_hz(field), field.complete_below_hz)
+    return loudest_lines(model, radiation.with_shapes(field.shapes), _TWO_PI * limit, heard)
 
 
 def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:

@@ -7,7 +7,8 @@ import time
 import pytest
 
 from gearwhine.numerics import compiled
-from gearwhine.progress import in_order, shown
+from gearwhine.numerics.progress import in_order
+from gearwhine.progress import shown
 
 
 def test_compilation_is_news_of_the_present_work(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,10 +10,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from sounding_box import sound_of_lines, sound_of_modes
 
+from gearwhine.coupling.sound.solution import SolvedSound
 from gearwhine.figures import draw_sound, draw_sweep
 from gearwhine.housing.acoustics.sound_levels import a_weighting
 from gearwhine.mode_pictures import _intensity_shapes, _radiating_surface, draw_sound_pictures
-from gearwhine.solve.sound.solution import SolvedSound
 
 pytestmark = pytest.mark.slow
 

@@ -8,6 +8,9 @@ import pytest
 from sounding_box import COARSE, sound_of_lines, sound_of_modes
 
 import gearwhine as gw
+from gearwhine.coupling.sound.motion_lines import LeftOut
+from gearwhine.coupling.sound.proofs import doubts
+from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
 from gearwhine.housing.acoustics.boundary_elements import SoundField
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.output.dataset import labelled, labels_of
@@ -16,9 +19,6 @@ from gearwhine.results import chapters_of, run
 from gearwhine.results.first_page import first_page
 from gearwhine.results.sound import SOUND, known_source_sentence, left_out_sentence, sections, sound_document
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.sound.motion_lines import LeftOut
-from gearwhine.solve.sound.proofs import doubts
-from gearwhine.solve.sound.solution import SolvedSound, SoundLine
 
 
 @pytest.fixture(scope="module")

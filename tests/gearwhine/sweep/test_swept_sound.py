@@ -9,7 +9,8 @@ import pytest
 from sounding_gearbox import QUICK, sounding_gearbox, sounding_housing, swept_point
 
 from gearwhine.case.swept_keys import swept_keys
-from gearwhine.solve.sound.solution import build_radiation
+from gearwhine.coupling.sound.solution import build_radiation
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import _interpolated, add_sound
 
@@ -38,7 +39,7 @@ def together(levels: npt.ArrayLike) -> float:
 def sounds() -> list[dict[str, Any]]:
     """Two points of four lines, one of them too faint to be solved: neither the first nor the last."""
     case = sounding_gearbox(QUICK).case
-    size = build_radiation(case, sounding_housing()).modal[0].shape[1]
+    size = build_radiation(acoustics_of(case), sounding_housing().displacement_field).modal[0].shape[1]
     swept = []
     for speed, lines in zip(SPEEDS, LINES, strict=True):
         rates = np.zeros((len(lines), size, 2))

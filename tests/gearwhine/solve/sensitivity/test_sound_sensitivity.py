@@ -13,6 +13,8 @@ from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.sound import solution
+from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.from_case.machine import describe_machine
@@ -31,8 +33,6 @@ from gearwhine.solve.machine import full_housing_component
 from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
 from gearwhine.solve.sensitivity.influences import LineChange
 from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
-from gearwhine.solve.sound import solution
-from gearwhine.solve.sound.mesh_harmonics import HarmonicSound
 
 FloatArray = npt.NDArray[np.float64]
 

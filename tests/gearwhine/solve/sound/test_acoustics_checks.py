@@ -8,9 +8,8 @@ import pytest
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
 from gearwhine.cli.command_line import run_command
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.results.run import sections
-from gearwhine.solve.sound.acoustics_checks import acoustics_warnings, require_acoustics
+from gearwhine.solve.acoustics import check_before_modes
 
 INSIDE = {"name": "in", "position": ["0 mm", "80 mm", "0 mm"]}
 UNDER = {"name": "under", "position": ["1 m", "-30 mm", "0 m"]}
@@ -75,7 +74,7 @@ def test_a_run_solves_boundary_elements_where_the_case_says_so(
     monkeypatch: pytest.MonkeyPatch, changes: dict[str, Any], *, sounds: bool
 ) -> None:
     coarse = {"housing.box.mesh_size": "45 mm", "acoustics.mesh_size": "50 mm", "acoustics.highest_frequency": "1 kHz"}
-    monkeypatch.setattr("gearwhine.solve.sound.solution.solve_sound", None)
+    monkeypatch.setattr("gearwhine.coupling.sound.solution.solve_sound", None)
     study = gw.load("steel-box", coarse | changes)
     if sounds:
         with pytest.raises(TypeError, match="NoneType"):
@@ -187,9 +186,8 @@ def test_a_sound_beyond_the_modes_is_warned_of() -> None:
 
 def test_a_case_without_acoustics_has_nothing_to_tell() -> None:
     case = load_case("small-gearbox").case
-    mesh = build_mesh(case, order=1)
-    require_acoustics(case, mesh)
-    assert acoustics_warnings(case, mesh.bounds, 100.0) == []
+    assert check_before_modes(case) is None
+    assert told({}) == {}
 
 
 def test_the_exit_code_is_that_of_bad_input(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,8 +7,8 @@ from sounding_gearbox import sounding_machine
 
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.signals.transfer_paths import housing_paths
+from gearwhine.coupling.sound.microphones import FADE, fading_weights, microphone_histories
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
-from gearwhine.solve.sound.microphones import FADE, fading_weights, microphone_histories
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,14 +11,14 @@ from sounding_gearbox import EAR, QUICK, TOP, quick_run, sounding_gearbox, sound
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case, swept_keys
 from gearwhine.coupling.signals.spectrum import amplitude_spectrum
+from gearwhine.coupling.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
+from gearwhine.coupling.sound.solution import build_radiation, solve_sound
 from gearwhine.housing.pictures.drawn_shapes import drawn_housing
 from gearwhine.results.motion import _line as motion_words
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.operating_shapes import highest_lines, operating_shape_of_line
-from gearwhine.solve.sound.acoustics_checks import microphones_of
-from gearwhine.solve.sound.motion_lines import lines_of_run, lines_of_steady, strongest_lines, tones_of
-from gearwhine.solve.sound.solution import build_radiation, solve_sound
 from gearwhine.sweep import SweptPoint, sweep_points
-from gearwhine.sweep.solution import PointResult
+from gearwhine.sweep.solution import PointResult, sounding_lines
 from gearwhine.sweep.sound import add_sound
 
 FloatArray = npt.NDArray[np.float64]
@@ -99,7 +99,7 @@ def test_a_sweep_takes_the_strongest_lines_of_a_run(revolutions: float) -> None:
     assert solved.transient is not None
     assert solved.sound is not None
     case = gw.load("small-gearbox", QUICK | {"acoustics.lines": 5}).case
-    frequencies, rates, names = strongest_lines(case, solved.transient)
+    frequencies, rates, names = strongest_lines(acoustics_of(case), solved.transient)
     named = {line.frequency_hz: line.name for line in solved.sound.lines}
     assert [one.name for one in names] == [named[hertz] for hertz in frequencies.tolist()]
     lines = {line.frequency_hz: line for line in solved.sound.lines}
@@ -149,7 +149,8 @@ def test_lines_beyond_the_wanted_number_and_frequency_are_named() -> None:
     case = study.case
     transient = result.solved.transient
     assert transient is not None
-    found = solve_sound(case, sounding_housing(), lines_of_run(transient, 3000.0), transient.machine)
+    field = sounding_housing().displacement_field
+    found = solve_sound(acoustics_of(case), field, lines_of_run(transient, 3000.0), transient.machine)
     # Powers by the same estimate: that of the walls' velocity, times the efficiency of a sphere that pulsates.
     radius = np.sqrt(every.lines[0].sound.area / (4.0 * np.pi))
     squares = {line.name: (2.0 * np.pi * line.frequency_hz / 343.2 * radius) ** 2 for line in every.lines}
@@ -184,7 +185,7 @@ BASE = {"operation.base": {"harmonic": [{"frequency": "300 Hz", "y": "3 m/s^2"}]
 @pytest.mark.slow
 def test_a_run_up_has_no_lines_but_microphones_over_time(monkeypatch: pytest.MonkeyPatch) -> None:
     # Fewer frequencies than of a user's run: that there is a sound over time, not how close it is, counts here.
-    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 17)
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 17)
     result = sounding_gearbox(TOP | RUN_UP).run()
     sound = result.solved.sound
     assert sound is not None
@@ -218,7 +219,7 @@ def test_a_sweep_leaves_out_what_a_run_leaves_out(changes: dict[str, Any]) -> No
     assert told["name"] == "sound_left_out"
     solved = quick_run(24.0).solved.transient
     assert solved is not None
-    assert len(strongest_lines(case, solved)[0]) == 0
+    assert len(sounding_lines(case, solved)[0]) == 0
 
 
 def test_a_sweep_tells_which_of_its_points_have_no_lines() -> None:
@@ -255,7 +256,8 @@ def test_points_of_a_sweep_share_the_modes_that_radiate(over: str) -> None:
     case = load_case("small-gearbox", settings).case
     keys = swept_keys(case, [over])
     points = sweep_points(load_case("small-gearbox", settings).source, keys)
-    rates = np.zeros((1, build_radiation(case, sounding_housing()).modal[0].shape[1], 2))
+    radiation = build_radiation(acoustics_of(case), sounding_housing().displacement_field)
+    rates = np.zeros((1, radiation.modal[0].shape[1], 2))
     rates[0, 4] = [1e-3, 2e-3]
     named: Any = {"line_names": ("10× input",), "line_kinds": ("other",)}
     swept = [
@@ -278,7 +280,7 @@ def test_the_box_of_microphones_stands_on_the_floor() -> None:
     """Nine places 1 m from the reference box, which reaches down to the floor (ISO 3744:2010, 7.2.4)."""
     case = gw.load("small-gearbox", {"acoustics.floor": "-200 mm", "acoustics.microphone_box": "1 m"}).case
     housing = sounding_housing()
-    places, area = microphones_of(case, housing.mesh)
+    places, area = acoustics_of(case).microphones(housing.mesh.bounds)
     low, high = housing.mesh.bounds
     sides, height = high - low + 2.0, high[1] + 1.0 + 0.2
     assert area == pytest.approx(sides[0] * sides[2] + 2.0 * height * (sides[0] + sides[2]))

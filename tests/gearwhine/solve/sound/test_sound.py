@@ -12,13 +12,14 @@ from sounding_gearbox import swept_point
 import gearwhine as gw
 from gearwhine.case import CaseError, swept_keys
 from gearwhine.cli.command_line import run_command
+from gearwhine.coupling.sound.microphones import microphone_histories
+from gearwhine.coupling.sound.solution import build_radiation
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 from gearwhine.output.export import write_sounds
 from gearwhine.output.files import staging
+from gearwhine.solve.acoustics import acoustics_of, refused_by_key
 from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
-from gearwhine.solve.sound.kept_radiation import kept_radiation
-from gearwhine.solve.sound.microphones import microphone_histories
-from gearwhine.solve.sound.solution import build_radiation
+from gearwhine.solve.kept_radiation import kept_radiation
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 
@@ -88,7 +89,7 @@ def test_document_and_arrays_hold_the_solution(sound):
 def run(study):
     with pytest.MonkeyPatch.context() as patch:
         # Fewer frequencies than of a user's run, whose sound over time is the closer.
-        patch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 25)
+        patch.setattr("gearwhine.solve.kept_radiation.POINTS", 25)
         return study.changed({"acoustics.in_run": True}).run()
 
 
@@ -111,7 +112,7 @@ def test_known_sources_at_microphones_count_over_time_too(run, monkeypatch):
     told = [one["known_source_error"] for one in run.document["sound"]["microphones"]]
     assert told == pytest.approx(np.maximum(of_lines, over_time))
     assert "microphone_known_source" not in [one["name"] for one in solved.warnings()]
-    monkeypatch.setattr("gearwhine.solve.sound.proofs.SOURCE_HEARD", 0.99 * over_time.max())
+    monkeypatch.setattr("gearwhine.coupling.sound.proofs.SOURCE_HEARD", 0.99 * over_time.max())
     (doubt,) = [one for one in solved.warnings() if one["name"] == "microphone_known_source"]
     assert (doubt["relative"], doubt["frequency_hz"]) == (over_time.max(), solved.histories.source_frequency_hz)
     assert list(solved.microphones)[int(over_time.argmax())] in doubt["message"]
@@ -208,8 +209,9 @@ def test_refuses_choices_that_do_not_fit(changes, message):
 def test_triangles_of_no_use_are_refused_by_the_radiation_itself(study):
     """Where nothing was checked before: a sweep's points, whose housing may have changed."""
     case = study.changed({"acoustics.mesh_size": "90 mm"}).case
-    with pytest.raises(CaseError, match=r"^acoustics\.mesh_size: .* too large for 2800 Hz: .*, got '90 mm'"):
-        build_radiation(case, study.housing)
+    acoustics, message = acoustics_of(case), r"^acoustics\.mesh_size: .* too large for 2800 Hz: .*, got '90 mm'"
+    with pytest.raises(CaseError, match=message), refused_by_key(acoustics):
+        build_radiation(acoustics, study.housing.displacement_field)
 
 
 @pytest.mark.parametrize(
@@ -234,7 +236,7 @@ def test_refuses_what_is_not_there(study, changes, message):
 
 def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monkeypatch, tmp_path):
     """Lines of a point by the table and by solutions agree; the file of modes holds the table for the next sweep."""
-    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 17)
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 17)
     microphone = {"name": "ear", "position": ["0.5 m", "1 m", "0.1 m"]}
     # The mesh frequency is 2333 Hz, below the highest of the sound.
     low = COARSE | {"acoustics.mesh_size": "34 mm", "acoustics.highest_frequency": "2.5 kHz"}
@@ -279,7 +281,7 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     with staging(tmp_path / "out") as place:
         write_mode_cache(place, kept)
     again = solve_housing(study.case, folder=tmp_path / "out")
-    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)  # needs no solution
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)  # needs no solution
     assert heard(5, again)[0] == interpolated
     # A file of a version without known sources, whose key is another one, too: its radiation is solved anew.
     sources = [name for name in again.record.extras if "source" in name]
@@ -288,17 +290,17 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
     record = replace(again.record, extras=earlier, notes={**again.record.notes, "radiation": "of an earlier version"})
     with pytest.raises(TypeError):
         heard(5, replace(again, record=record))
-    deaf = gw.load("small-gearbox", low).case
+    deaf, field = acoustics_of(gw.load("small-gearbox", low).case), again.displacement_field
     monkeypatch.undo()
-    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.POINTS", 5)
-    without, same = kept_radiation(deaf, again, build_radiation(deaf, again), np.zeros((0, 3)), (900.0, 2400.0))
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.POINTS", 5)
+    without, same = kept_radiation(deaf, again, build_radiation(deaf, field), np.zeros((0, 3)), (900.0, 2400.0))
     assert len(without.delays) == 0
     read, _ = kept_radiation(deaf, same, None, np.zeros((0, 3)), (900.0, 2400.0))
     assert len(read.delays) == 0  # no microphones of the table before
-    monkeypatch.setattr("gearwhine.solve.sound.kept_radiation.ModalRadiation.solve", None)
-    louder = gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case
+    monkeypatch.setattr("gearwhine.solve.kept_radiation.ModalRadiation.solve", None)
+    louder = acoustics_of(gw.load("small-gearbox", low | {"acoustics.mesh_size": "33 mm"}).case)
     with pytest.raises(TypeError):
-        kept_radiation(louder, again, build_radiation(louder, again), np.zeros((0, 3)), (20.0, 3000.0))
+        kept_radiation(louder, again, build_radiation(louder, field), np.zeros((0, 3)), (20.0, 3000.0))
 
 
 def test_sweep_sounds_as_its_points_do(swept_here, tmp_path):

@@ -10,11 +10,8 @@ from sounding_gearbox import TOP, sounding_gearbox, sounding_housing, sounding_m
 
 import gearwhine as gw
 from gearwhine.case import Case, swept_keys
-from gearwhine.housing import HousingError
-from gearwhine.housing.acoustics import boundary_elements, radiation, wrapping
-from gearwhine.housing.acoustics.radiation import counting
-from gearwhine.solve.sound.motion_lines import MotionLines
-from gearwhine.solve.sound.proofs import (
+from gearwhine.coupling.sound.motion_lines import MotionLines
+from gearwhine.coupling.sound.proofs import (
     doubts,
     gathered,
     interior_pressure,
@@ -23,7 +20,11 @@ from gearwhine.solve.sound.proofs import (
     microphone_doubts,
     power_balance_db,
 )
-from gearwhine.solve.sound.solution import build_radiation, solve_sound
+from gearwhine.coupling.sound.solution import build_radiation, solve_sound
+from gearwhine.housing import HousingError
+from gearwhine.housing.acoustics import boundary_elements, radiation, wrapping
+from gearwhine.housing.acoustics.radiation import counting
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.sweep.solution import PointResult
 from gearwhine.sweep.sound import add_sound
 
@@ -41,7 +42,7 @@ def test_an_estimate_has_no_proof_and_a_face_no_inside() -> None:
     for method, known in (("erp", False), ("rayleigh", True)):
         changes = {"acoustics.method": "erp", "acoustics.mesh_size": "24 mm"} if method == "erp" else TOP
         case = sounding_gearbox(changes).case
-        solved = build_radiation(case, sounding_housing())
+        solved = build_radiation(acoustics_of(case), sounding_housing().displacement_field)
         rates = np.zeros((solved.modal[0].shape[1], 1))
         rates[4] = 1.0
         one = solved.solve(2524.0, rates)
@@ -101,7 +102,7 @@ def test_a_vertex_that_is_lost_on_the_default_triangles_is_told_and_refused(monk
     monkeypatch.setattr(wrapping, "_HALVED_EDGE", np.inf)
 
     def solved() -> Any:
-        wrapped = build_radiation(case, housing)
+        wrapped = build_radiation(acoustics_of(case), housing.displacement_field)
         rates = np.zeros((wrapped.modal[0].shape[1], 1))
         rates[4] = 1.0
         return wrapped.solve(2500.0, rates)
@@ -144,18 +145,18 @@ def test_every_line_that_counts_is_held_against_its_powers(monkeypatch: pytest.M
     forces = {one.name: np.zeros((2, one.directions.shape[1]), dtype=complex) for one in machine.system.linear}
     forces["input-back"][:, 1] = [100.0, 1.0]
     motion = MotionLines(np.array([800.0, 810.0]), forces, 0.1)
-    solved = solve_sound(case, sounding_housing(), motion, machine)
+    solved = solve_sound(acoustics_of(case), sounding_housing().displacement_field, motion, machine)
     lines = solved.lines
     assert (len(solved.modes), len(lines)) == (0, 2)
     agree = abs(lines[0].sound.surface_power / lines[0].sound.power - 1.0)
     monkeypatch.setattr(radiation, "POWERS_AGREE", 0.5 * agree)
     with pytest.raises(HousingError, match="through the surface"):
-        solve_sound(case, sounding_housing(), motion, machine)
+        solve_sound(acoustics_of(case), sounding_housing().displacement_field, motion, machine)
 
 
 def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) -> None:
     case = sounding_gearbox(TOP).case
-    size = build_radiation(case, sounding_housing()).modal[0].shape[1]
+    size = build_radiation(acoustics_of(case), sounding_housing().displacement_field).modal[0].shape[1]
     rates = np.zeros((2, size, 2))
     rates[0, 4], rates[1, 4] = [1e-3, 2e-3], [-1e-3, 0.0]
     outcome = PointResult(
@@ -189,7 +190,7 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
 
 def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest.MonkeyPatch) -> None:
     case = sounding_gearbox(TOP).case
-    size = build_radiation(case, sounding_housing()).modal[0].shape[1]
+    size = build_radiation(acoustics_of(case), sounding_housing().displacement_field).modal[0].shape[1]
     outcomes = []
     for frequency, mode in ((900.0, 4), (2400.0, 7)):
         rates = np.zeros((1, size, 2))

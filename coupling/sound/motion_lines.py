@@ -7,12 +7,10 @@ are its tones, see :mod:`gearwhine.coupling.signals.tones`.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine, amplitude_spectrum
 from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.analyses.transient import SolvedTransient
@@ -21,7 +19,8 @@ from gearwhine.coupling.signals.line_names import LineName, line_names
 from gearwhine.coupling.signals.spectrum import Spectrum, at_time_zero
 from gearwhine.coupling.signals.tones import hann_tones
 from gearwhine.coupling.signals.transfer_paths import HousingPaths, housing_paths
-from gearwhine.numerics.result_warnings import warning
+from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -98,23 +97,22 @@ class LeftOut:
     share: float | None
 
 
-def without_lines(case: Case) -> str:
-    """Return why the motion of a case has no lines that drive the housing by its bearings alone; empty where it has.
+def without_lines(*, base_moves: bool, speed_changes: bool) -> str:
+    """Return why a motion has no lines that drive the housing by its bearings alone; empty where it has.
 
     The sound of a moving base is unknown at microphones, too: the base drives the housing by its inertia.
     """
-    if case.operation is not None and case.operation.base is not None:
+    if base_moves:
         return "the base moves, which drives the housing beside its bearings (operation.base)"
-    if case.transient is not None and case.transient.run is not None:
+    if speed_changes:
         return "the speed changes, so that the record has no steady lines (transient.run)"
     return ""
 
 
-def left_out_warnings(case: Case) -> list[dict[str, Any]]:
+def left_out_warnings(*, base_moves: bool, speed_changes: bool) -> list[ResultWarning]:
     """Return the warning that the sound of a motion's lines is left out, and why; none where it is not."""
-    why = without_lines(case)
-    moves = case.operation is not None and case.operation.base is not None
-    subject = "the sound of the motion" if moves else "the sound of lines"
+    why = without_lines(base_moves=base_moves, speed_changes=speed_changes)
+    subject = "the sound of the motion" if base_moves else "the sound of lines"
     return [warning("sound_left_out", f"{subject} is left out: {why}")] if why else []
 
 
@@ -206,28 +204,26 @@ def _lines_of(spectra: Mapping[str, Spectrum], tolerance: float) -> MotionLines:
     return MotionLines(next(iter(spectra.values())).frequencies[1:], forces, tolerance)
 
 
-def strongest_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray, list[LineName]]:
-    """Return a motion's strongest lines: frequencies, rates of the housing's coordinates, and names.
+def strongest_lines(acoustics: Acoustics, solved: SolvedTransient) -> tuple[FloatArray, FloatArray, list[LineName]]:
+    """Return the strongest lines of a motion at steady speed on a base at rest.
 
     Returns
     -------
     frequencies : ndarray, shape (l,)
         Frequencies [Hz].
     rates : ndarray, shape (l, n, 2)
-        Real and imaginary parts.
+        Real and imaginary parts of the rates of the housing's coordinates.
     names : list of LineName
     """
-    assert case.acoustics is not None
-    limit = case.acoustics.highest_frequency or solved.trusted_limit
-    nothing = MotionLines(np.zeros(0), {}, _EXACT)
-    motion = nothing if without_lines(case) else lines_of_run(solved, limit).between(AUDIBLE, limit)
+    limit = acoustics.highest_frequency or solved.trusted_limit
+    motion = lines_of_run(solved, limit).between(AUDIBLE, limit)
     if solved.machine.housing is None or not len(motion.frequencies):
         return np.zeros(0), np.zeros((0, 0, 2)), []
     rates = motion.rates(motion.paths(solved.machine)).sum(axis=1)
     # The surface is not known here: a body of a square metre stands for it.
-    efficiency = pulsating_efficiency(motion.frequencies, 1.0, case.acoustics.speed_of_sound)
+    efficiency = pulsating_efficiency(motion.frequencies, 1.0, acoustics.speed_of_sound)
     estimate = (np.abs(rates) ** 2).sum(axis=1) * efficiency
-    chosen = np.sort(np.argsort(-estimate, kind="stable")[: case.acoustics.lines])
+    chosen = np.sort(np.argsort(-estimate, kind="stable")[: acoustics.lines])
     names = line_names(solved.machine, motion.frequencies[chosen].tolist(), motion.tolerance)
     return motion.frequencies[chosen], np.stack([rates[chosen].real, rates[chosen].imag], axis=-1), names
 

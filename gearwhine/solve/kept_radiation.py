@@ -1,20 +1,19 @@
 """Radiation of a housing's modes over frequency, kept in the mode cache beside the modes that radiate."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case
+from gearwhine.coupling.sound.acoustics import Acoustics
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.source_digest import source_digest
-from gearwhine.progress import in_order
 from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,14 +22,15 @@ _NOTE = "radiation"
 _CODE = (
     "gearwhine.housing.acoustics",
     "gearwhine.housing.storage",
-    "gearwhine.solve.sound.solution",
-    "gearwhine.solve.sound.kept_radiation",
+    "gearwhine.coupling.sound.acoustics",
+    "gearwhine.coupling.sound.solution",
+    "gearwhine.solve.kept_radiation",
 )
-_WITHOUT_EFFECT = {"lines", "in_run", "microphone", "microphone_box"}
+_WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}
 
 
 def kept_radiation(
-    case: Case,
+    acoustics: Acoustics,
     housing: SolvedHousing,
     radiation: HousingRadiation,
     places: FloatArray,
@@ -41,11 +41,10 @@ def kept_radiation(
 
     Parameters
     ----------
-    case : Case
-        Case with `[acoustics]`.
+    acoustics : Acoustics
     housing : SolvedHousing
     radiation : HousingRadiation
-        Radiation of the case's housing.
+        Radiation of the housing.
     places : ndarray, shape (m, 3)
         Places of the microphones [m].
     between : tuple of float
@@ -58,7 +57,7 @@ def kept_radiation(
     SolvedHousing
         The housing, whose record holds it.
     """
-    key = _key(case, places, between)
+    key = _key(acoustics, housing.widest_bore, places, between)
     record = housing.record
     if record.notes.get(_NOTE) == key:
         return ModalRadiation.of_arrays(record.extras), housing
@@ -74,13 +73,11 @@ def _each(solve: Any, frequencies: Sequence[float], progress: Progress) -> tuple
     return in_order(solve, frequencies, "radiation of the modes over frequency", progress)
 
 
-def _key(case: Case, places: FloatArray, between: tuple[float, float]) -> str:
-    assert case.acoustics is not None
-    seats = [] if case.housing is None else [seat.diameter for seat in case.housing.seat]
+def _key(acoustics: Acoustics, widest_bore: float | None, places: FloatArray, between: tuple[float, float]) -> str:
     return content_key(
         {
-            "acoustics": case.acoustics.model_dump(mode="json", exclude=_WITHOUT_EFFECT),
-            "seats": seats,
+            "acoustics": {name: value for name, value in asdict(acoustics).items() if name not in _WITHOUT_EFFECT},
+            "widest_bore": widest_bore,
             "places": places.tolist(),
             "between": list(between),
             "source": source_digest(*_CODE),

@@ -14,10 +14,10 @@ import numpy.typing as npt
 from gearwhine.coupling.linear.line_outputs import SoundPower
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.linear.mesh_harmonics import Response
+from gearwhine.coupling.sound.motion_lines import AUDIBLE, pulsating_efficiency
 from gearwhine.housing.acoustics.power_gradient import PowerGradient
 from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound
 from gearwhine.housing.acoustics.sound_levels import a_weighting
-from gearwhine.solve.sound.motion_lines import AUDIBLE, pulsating_efficiency
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

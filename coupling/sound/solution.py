@@ -1,25 +1,50 @@
-"""Sound of a case: radiation efficiency of the housing's modes, and the sound of the lines of a motion.
+"""Sound of a machine: radiation efficiency of the housing's modes, and the sound of the lines of a motion.
 
-The bearings' forces move the housing at each line (:mod:`gearwhine.solve.sound.motion_lines`);
+The bearings' forces move the housing at each line (:mod:`gearwhine.coupling.sound.motion_lines`);
 :func:`gearwhine.coupling.signals.transfer_paths.housing_paths` gives the motion by each bearing, exactly, and
 :class:`gearwhine.housing.acoustics.radiation.HousingRadiation` its sound.
 """
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.transient import SolvedTransient
+from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS, LineMechanisms
 from gearwhine.coupling.signals.line_names import line_names
+from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.coupling.sound.acoustics_checks import (
+    acoustics_warnings,
+    microphone_findings,
+    radiating_faces,
+    surface_findings,
+    unwrapped,
+)
+from gearwhine.coupling.sound.microphones import MicrophoneHistories, microphone_histories
+from gearwhine.coupling.sound.motion_lines import (
+    AUDIBLE,
+    LeftOut,
+    MotionLines,
+    left_out_lines,
+    loud_lines,
+    pulsating_efficiency,
+)
+from gearwhine.coupling.sound.proofs import (
+    gathered,
+    interior_pressure,
+    known_source,
+    known_source_at,
+    microphone_doubts,
+    power_balance_db,
+    require_proofs,
+)
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics.known_source import SourceError
-from gearwhine.housing.acoustics.medium import Medium
+from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 from gearwhine.housing.acoustics.radiation import COUNTS, HousingRadiation, RadiatedSound, counting
 from gearwhine.housing.acoustics.sound_levels import (
     BOX_MICROPHONES,
@@ -29,38 +54,10 @@ from gearwhine.housing.acoustics.sound_levels import (
     sum_of_levels,
     third_octave_bands,
 )
-from gearwhine.housing.errors import TriangleSizeError
-from gearwhine.numerics.progress import Progress, silent
-from gearwhine.numerics.result_warnings import warning
-from gearwhine.progress import in_order
-from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.sound.acoustics_checks import (
-    acoustics_warnings,
-    flat_face,
-    microphone_problems,
-    microphones_of,
-    surface_names,
-    wrap_settings,
-)
-from gearwhine.solve.sound.kept_radiation import kept_radiation
-from gearwhine.solve.sound.microphones import MicrophoneHistories, microphone_histories
-from gearwhine.solve.sound.motion_lines import (
-    AUDIBLE,
-    LeftOut,
-    MotionLines,
-    left_out_lines,
-    loud_lines,
-    pulsating_efficiency,
-)
-from gearwhine.solve.sound.proofs import (
-    gathered,
-    interior_pressure,
-    known_source,
-    known_source_at,
-    microphone_doubts,
-    power_balance_db,
-    require_proofs,
-)
+from gearwhine.housing.modes.housing_field import HousingField
+from gearwhine.numerics.findings import refuse
+from gearwhine.numerics.progress import Progress, in_order, silent
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -84,7 +81,7 @@ class SoundLine:
     microphones : ndarray of complex, shape (n_microphones,)
         Sound pressure [Pa].
     microphone_errors : ndarray or None, shape (n_microphones,)
-        Error of known sources there, see :func:`gearwhine.solve.sound.proofs.known_source_at`.
+        Error of known sources there, see :func:`gearwhine.coupling.sound.proofs.known_source_at`.
     mechanism_powers : dict of str to float
         Equivalent radiated power of the motion by each mechanism alone [W], linear about the mean load, see
         :mod:`gearwhine.coupling.linear.line_mechanisms`.
@@ -115,17 +112,17 @@ class SoundLine:
 
     @property
     def power_balance_db(self) -> float | None:
-        """Proof, see :func:`gearwhine.solve.sound.proofs.power_balance_db`."""
+        """Proof, see :func:`gearwhine.coupling.sound.proofs.power_balance_db`."""
         return power_balance_db(self.sound)
 
     @property
     def interior_pressure(self) -> float | None:
-        """Proof, see :func:`gearwhine.solve.sound.proofs.interior_pressure`."""
+        """Proof, see :func:`gearwhine.coupling.sound.proofs.interior_pressure`."""
         return interior_pressure(self.sound)
 
     @property
     def known_source(self) -> SourceError | None:
-        """Proof, see :func:`gearwhine.solve.sound.proofs.known_source`."""
+        """Proof, see :func:`gearwhine.coupling.sound.proofs.known_source`."""
         return known_source(self.sound)
 
 
@@ -197,8 +194,13 @@ class SolvedSound:
     box_area: float | None
     limit_hz: float
     left_out: tuple[LeftOut, ...] = ()
-    told: tuple[dict[str, Any], ...] = ()
+    told: tuple[ResultWarning, ...] = ()
     histories: MicrophoneHistories | None = None
+
+    @property
+    def places(self) -> FloatArray:
+        """Positions of the microphones [m], shape (n_microphones, 3)."""
+        return np.array(list(self.microphones.values())).reshape(-1, 3)
 
     @property
     def total_db(self) -> float:
@@ -290,7 +292,7 @@ class SolvedSound:
         lines = [line for line in self.lines if id(line.sound) in counted]
         return [*lines, *(mode for mode in self.modes if mode.radiation_efficiency > COUNTS)]
 
-    def warnings(self) -> list[dict[str, Any]]:
+    def warnings(self) -> list[ResultWarning]:
         """Warnings of solutions that are doubtful."""
         entries = list(self.told)
         if self.histories is not None and self.histories.error > _ROUGH:
@@ -304,10 +306,10 @@ class SolvedSound:
             )
         return gathered([*entries, *self._microphone_doubts()])
 
-    def _microphone_doubts(self) -> list[dict[str, Any]]:
+    def _microphone_doubts(self) -> list[ResultWarning]:
         """Warnings of microphones at which known sources are off, of lines that count and of the sound over time."""
         counted = {id(sound) for sound in counting([line.sound for line in self.lines])}
-        entries: list[dict[str, Any]] = []
+        entries: list[ResultWarning] = []
         for line in self.lines:
             if line.microphone_errors is not None and id(line.sound) in counted:
                 errors = dict(zip(self.microphones, line.microphone_errors.tolist(), strict=True))
@@ -318,59 +320,45 @@ class SolvedSound:
         return entries
 
 
-def build_radiation(case: Case, housing: SolvedHousing, progress: Progress = silent) -> HousingRadiation:
-    """Make the radiating surface of a case's housing, with its modes and residual modes.
+def build_radiation(acoustics: Acoustics, housing: HousingField, progress: Progress = silent) -> HousingRadiation:
+    """Make the radiating surface of a housing, with its modes and residual modes.
 
     Raises
     ------
-    CaseError
-        Where the housing cannot be wrapped as the case says, its triangles are too large or too many, or a face is not
-        there or not flat.
+    AcousticsError
+        Where the housing cannot be wrapped as the acoustics say, its triangles are too large or too many, or a face is
+        not there or not flat.
     """
-    assert case.acoustics is not None
-    acoustics = case.acoustics
-    shapes = housing.modes.shapes
-    if housing.modes.residual_modes is not None:
-        shapes = np.concatenate([shapes, housing.modes.residual_modes.shapes])
-    medium = Medium(acoustics.density, acoustics.speed_of_sound)
-    if problems := surface_names(case, housing.mesh):
-        raise CaseError(problems)
+    refuse(surface_findings(acoustics, housing.mesh), AcousticsError)
     if acoustics.method == "rayleigh":
         progress("the flat faces that radiate")
-        faces = {name: flat_face(housing.mesh, name, place) for place, name in enumerate(acoustics.faces)}
-        return HousingRadiation.of_faces(housing.mesh, shapes, faces, medium=medium)
-    limit = highest_frequency(case, housing)
-    edge, holes, floor = wrap_settings(case, limit)
+        faces = radiating_faces(acoustics, housing.mesh)
+        return HousingRadiation.of_faces(housing.mesh, housing.shapes, faces, medium=acoustics.medium)
+    limit = acoustics.limit_hz(housing)
+    edge = acoustics.edge(limit)
     progress(f"wrapping the housing in triangles of {1e3 * edge:.3g} mm")
     try:
         return HousingRadiation.of_surface(
             housing.mesh,
-            shapes,
+            housing.shapes,
             edge=edge,
-            close_holes=holes,
+            close_holes=acoustics.closed_holes(edge, housing.widest_bore),
             resting_caps=acoustics.caps == "rest",
             method=acoustics.method,
-            medium=medium,
-            floor=floor,
+            medium=acoustics.medium,
+            floor=acoustics.floor_plane,
             still=acoustics.still,
             natural_modes=len(housing.modes.shapes),
             highest_frequency=limit,
         )
-    except TriangleSizeError as error:
-        raise CaseError([Problem("acoustics.mesh_size", f"{1e3 * edge:.4g} mm", f"another edge; {error}")]) from error
     except HousingError as error:
-        raise CaseError([Problem("acoustics", acoustics.method, f"a housing that can be wrapped; {error}")]) from error
-
-
-def highest_frequency(case: Case, housing: SolvedHousing) -> float:
-    """Return the highest frequency of a case's sound [Hz]: as given, else where the modes are complete."""
-    assert case.acoustics is not None
-    return case.acoustics.highest_frequency or housing.trusted_limit_hz
+        refuse([unwrapped(acoustics, edge, error)], AcousticsError)
+        raise
 
 
 def solve_sound(
-    case: Case,
-    housing: SolvedHousing,
+    acoustics: Acoustics,
+    housing: HousingField,
     motion: MotionLines | None = None,
     machine: CoupledMachine | None = None,
     progress: Progress = silent,
@@ -379,32 +367,29 @@ def solve_sound(
 
     Parameters
     ----------
-    case : Case
-        Case with `[acoustics]`.
-    housing : SolvedHousing
+    acoustics : Acoustics
+    housing : HousingField
     motion : MotionLines, optional
-        Lines of the machine's motion, up to :func:`highest_estimated` so that lines left out can be reported.
+        Lines of the machine's motion, up to :meth:`Acoustics.estimated_below_hz` so that lines left out can be
+        reported.
     machine : CoupledMachine, optional
         Machine that moves.
     progress : callable
 
     Raises
     ------
-    CaseError
+    AcousticsError
         Where the radiating surface cannot be made, or a microphone is inside it or under the floor.
     gearwhine.housing.HousingError
         Where a solution fails its proofs, see
         :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
-    assert case.acoustics is not None
-    radiation = build_radiation(case, housing, progress)
-    limit = highest_frequency(case, housing)
-    positions, area = microphones_of(case, housing.mesh)
-    places = np.array(list(positions.values())).reshape(-1, 3)
+    radiation = build_radiation(acoustics, housing, progress)
+    limit = acoustics.limit_hz(housing)
+    positions, area = acoustics.microphones(housing.mesh.bounds)
     # Before the work; all of them.
-    if problems := list(microphone_problems(case, positions, radiation.require_in_air)):
-        raise CaseError(problems)
-    warnings = acoustics_warnings(case, housing.mesh.bounds, housing.trusted_limit_hz)
+    refuse(microphone_findings(acoustics, positions, radiation.require_in_air), AcousticsError)
+    warnings = acoustics_warnings(acoustics, housing.mesh.bounds, housing.complete_below_hz)
 
     def of_mode(number: int) -> tuple[ModeSound, RadiatedSound]:
         rates = np.zeros((radiation.modal[0].shape[1], 1))
@@ -432,17 +417,17 @@ def solve_sound(
     estimate = radiation.equivalent_power(rates.sum(axis=1).T) * pulsating_efficiency(
         motion.frequencies, radiation.area, radiation.medium.speed_of_sound
     )
-    chosen = loud_lines(motion.frequencies, estimate, limit, case.acoustics.lines)
+    chosen = loud_lines(motion.frequencies, estimate, limit, acoustics.lines)
     names = line_names(machine, motion.frequencies[chosen].tolist(), motion.tolerance, None)
     mechanisms = LineMechanisms(machine)
 
     def of_line(place: int) -> SoundLine:
         number, hertz = chosen[place], float(motion.frequencies[chosen[place]])
         sound = radiation.solve(hertz, rates[number].T)
-        heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
+        heard = sound.pressure_at(solved.places) if positions else np.zeros(0, dtype=np.complex128)
         powers = _mechanism_powers(mechanisms, radiation, _TWO_PI * hertz, _TWO_PI * motion.tolerance)
         return SoundLine(
-            hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, places), powers
+            hertz, names[place].name, names[place].order, sound, heard, known_source_at(sound, solved.places), powers
         )
 
     lines = in_order(of_line, range(len(chosen)), "sound of the lines", progress)
@@ -453,7 +438,7 @@ def solve_sound(
         lines=lines,
         bearings=paths.bearings,
         covered=float(estimate[chosen].sum()) / total if total > 0.0 else 0.0,
-        left_out=left_out_lines(machine, motion, estimate, chosen, limit, highest_estimated(case, housing)),
+        left_out=left_out_lines(machine, motion, estimate, chosen, limit, acoustics.estimated_below_hz(housing)),
         told=tuple(warnings),
     )
 
@@ -473,44 +458,21 @@ def _mechanism_powers(
     return {name: powers[name] for name in MECHANISMS if name in powers}
 
 
-def highest_estimated(case: Case, housing: SolvedHousing) -> float:
-    """Return the frequency up to which the sound of lines is estimated [Hz]: at least where the modes are complete."""
-    return max(highest_frequency(case, housing), housing.trusted_limit_hz)
-
-
-def with_histories(
-    case: Case,
-    housing: SolvedHousing,
-    solved: SolvedSound,
-    transient: SolvedTransient,
-    progress: Progress = silent,
-) -> tuple[SolvedSound, SolvedHousing]:
+def with_histories(solved: SolvedSound, transient: SolvedTransient, transfer: ModalRadiation) -> SolvedSound:
     """Add the sound pressure over time at the microphones, of the record of a transient at once.
 
     Parameters
     ----------
-    case : Case
-        Case without a moving base, which would drive the housing beside its bearings.
-    housing : SolvedHousing
     solved : SolvedSound
-        Solved sound; without microphones it is returned unchanged.
+        Sound with microphones.
     transient : SolvedTransient
-        Motion of the machine; the last stretch of a long record is taken.
-
-    Returns
-    -------
-    SolvedSound
-    SolvedHousing
-        The housing, whose record holds the radiation over frequency.
+        Motion of the machine on a base at rest; the last stretch of a long record is taken.
+    transfer : ModalRadiation
+        Radiation with the microphones as its points, from `AUDIBLE` up to the sound's limit.
     """
-    places = np.array(list(solved.microphones.values()))
-    moves = case.operation is not None and case.operation.base is not None
-    if not len(places) or moves:
-        return solved, housing
-    transfer, housing = kept_radiation(case, housing, solved.radiation, places, (AUDIBLE, solved.limit_hz), progress)
     histories = transient.histories
     repeats = transient.speed_profile is None and transient.record.sampling.window == "uniform"
     heard = microphone_histories(
         transient.machine, transfer, histories.times, histories.bearing_reaction, repeats=repeats
     )
-    return replace(solved, histories=heard), housing
+    return replace(solved, histories=heard)

@@ -1,7 +1,6 @@
 """Proofs of a sound: power by two ways, the pressure inside, and the error of known sources inside."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +9,7 @@ from gearwhine.housing.acoustics.boundary_elements import SoundField
 from gearwhine.housing.acoustics.known_source import SourceError
 from gearwhine.housing.acoustics.radiation import SOURCE_HEARD, EquivalentField, RadiatedSound, require_proved
 from gearwhine.housing.acoustics.sound_levels import power_level
-from gearwhine.numerics.result_warnings import warning
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -50,7 +49,7 @@ def _is_closed(sound: RadiatedSound) -> bool:
     return any(isinstance(field, SoundField) and not field.baffled for field in sound.fields)
 
 
-def doubts(sound: RadiatedSound, source: str) -> list[dict[str, Any]]:
+def doubts(sound: RadiatedSound, source: str) -> list[ResultWarning]:
     """Return warnings where the pressure inside or known sources do not prove the sound of a line or a mode."""
     warnings = []
     error = known_source(sound)
@@ -64,7 +63,7 @@ def doubts(sound: RadiatedSound, source: str) -> list[dict[str, Any]]:
     return warnings
 
 
-def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[dict[str, Any]]:
+def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[ResultWarning]:
     """Return a warning where the pressure at a microphone is doubtful, since that of a known source is.
 
     Parameters
@@ -83,7 +82,7 @@ def microphone_doubts(frequency_hz: float, errors: Mapping[str, float]) -> list[
     return [warning("microphone_known_source", message, frequency_hz=frequency_hz, relative=errors[name])]
 
 
-def gathered(warnings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def gathered(warnings: Sequence[ResultWarning]) -> list[ResultWarning]:
     """Merge the warnings of known sources into the worst one, with the number of the others.
 
     Parameters
@@ -106,7 +105,7 @@ def gathered(warnings: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def require_proofs(
     sounds: Sequence[RadiatedSound], source: str = "a line", *, alone: bool = False
-) -> list[dict[str, Any]]:
+) -> list[ResultWarning]:
     """Check sounds by their proofs, except those too weak to count.
 
     Parameters

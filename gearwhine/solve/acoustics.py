@@ -1,0 +1,100 @@
+"""Acoustics of a case: `[acoustics]` as settings of the sound, and their refusals by the keys of the case."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from gearwhine.case import Case, CaseError, Problem
+from gearwhine.case.acoustics import Acoustics
+from gearwhine.case.errors import UNSAID, key_of
+from gearwhine.coupling.errors import AcousticsError
+from gearwhine.coupling.sound.acoustics import Acoustics as AcousticsSettings
+from gearwhine.meshes import Mesh
+from gearwhine.numerics.findings import Finding, in_mm
+from gearwhine.numerics.result_warnings import ResultWarning
+
+_LENGTHS = ("mesh_size", "floor", "microphone_box", "position")
+
+
+def is_in_run(case: Case) -> bool:
+    """Whether `run` finds the sound of a case's motion."""
+    return case.housing is not None and case.acoustics is not None and case.acoustics.is_in_run
+
+
+def acoustics_of(case: Case) -> AcousticsSettings:
+    """Return the settings of a case's sound; without `[acoustics]` boundary elements in free air."""
+    return (case.acoustics or Acoustics()).build()
+
+
+def check_before_modes(case: Case) -> Callable[[Case, Mesh], None] | None:
+    """Return what refuses a case's `[acoustics]` on its mesh; None where it has none."""
+    return None if case.acoustics is None else require_acoustics_of_case
+
+
+def require_acoustics_of_case(case: Case, mesh: Mesh) -> None:
+    """Refuse a radiating surface or microphones that cannot be, before the modes are solved.
+
+    Parameters
+    ----------
+    case : Case
+        Case with a housing.
+    mesh : Mesh
+        Mesh of its housing; straight elements suffice.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    # The acoustics' kernels are for these cases alone.
+    from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+
+    assert case.housing is not None
+    acoustics = acoustics_of(case)
+    bore = max((seat.diameter for seat in case.housing.seat), default=None)
+    with refused_by_key(acoustics):
+        require_acoustics(acoustics, mesh, bore, acoustics.highest_frequency or case.housing.frequency_limit)
+
+
+def sound_left_out(case: Case) -> list[ResultWarning]:
+    """Return the warning that the sound of the lines of a case's motion is left out; none where it is not."""
+    from gearwhine.coupling.sound.motion_lines import left_out_warnings
+
+    base_moves = case.operation is not None and case.operation.base is not None
+    speed_changes = case.transient is not None and case.transient.run is not None
+    return left_out_warnings(base_moves=base_moves, speed_changes=speed_changes)
+
+
+@contextmanager
+def refused_by_key(acoustics: AcousticsSettings) -> Iterator[None]:
+    """Refuse acoustics that do not fit the housing by the keys of a case.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    try:
+        yield
+    except AcousticsError as error:
+        raise CaseError([_problem(acoustics, finding) for finding in error.findings]) from error
+
+
+def _problem(acoustics: AcousticsSettings, finding: Finding) -> Problem:
+    kind, name = finding.part
+    if kind == "microphone":
+        number = [microphone.name for microphone in acoustics.microphone].index(name)
+        place = key_of(("acoustics", "microphone", number, finding.attribute))
+        return Problem(f'{place} (microphone "{name}")', _value(finding), finding.expected)
+    steps = [int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step]
+    return Problem(key_of(("acoustics", *steps)), _value(finding), finding.expected)
+
+
+def _value(finding: Finding) -> Any:
+    """Return the value of a finding as a case would have it."""
+    if finding.value is None:
+        return UNSAID
+    if finding.attribute not in _LENGTHS:
+        return finding.value
+    lengths = finding.value if isinstance(finding.value, tuple) else (finding.value,)
+    return ", ".join(in_mm(length) for length in lengths)
