@@ -56,7 +56,7 @@ def words_of_case(changes: dict[str, Any]) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def study() -> gw.Study:
+def study() -> gw.CaseStudy:
     return gw.load("small-gearbox", COARSE)
 
 
