@@ -16,6 +16,7 @@ from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.report import MovingShape
 from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
+from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
@@ -37,23 +38,6 @@ _SHOWN_PART = 0.98  # quantile of a density that ends its scale, since densities
 _DECADES = 1.0 / np.log(10.0)  # decades of a relative change
 _LOUDEST, _HEARD = 3, 1e-3  # lines whose intensity is drawn, and their least part of the loudest one's power
 _MOST_MODES = 5000
-View = Literal[
-    "auto",
-    "iso",
-    "front",
-    "back",
-    "left",
-    "right",
-    "top",
-    "iso-left",
-    "iso-back",
-    "iso-back-left",
-    "iso-below",
-    "iso-left-below",
-    "iso-back-below",
-    "iso-opposite",
-]
-"""Directions of view, see :mod:`gearwhine.housing.pictures.views`."""
 
 _DOMINANT = 8
 _OPPOSITE = {"iso": "iso-opposite"}  # opposite view, for pictures of both sides

@@ -381,9 +381,6 @@ class Operation(Table):
     """Constant forces on the shafts, such as the pull of a belt."""
 
 
-_SHORTEST_RECORD = 0.01  # revolutions
-
-
 def _half_the_run(data: dict[str, Any]) -> float:
     return float(data.get("revolutions") or 0.0) / 2.0
 
@@ -426,8 +423,10 @@ class Transient(Table):
             return self
         if self.discard >= self.revolutions:
             raise wrong(f"fewer revolutions than the {self.revolutions:g} of the run", "discard")
-        if self.revolutions - self.discard < _SHORTEST_RECORD:
-            expected = f"{_SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
+        from gearwhine.coupling.analyses.recording import SHORTEST_RECORD
+
+        if self.revolutions - self.discard < SHORTEST_RECORD:
+            expected = f"{SHORTEST_RECORD:g} or more revolutions than 'discard', which are recorded"
             raise wrong(expected, "revolutions")
         return self
 

@@ -6,6 +6,7 @@ from cyclopts import Parameter
 from cyclopts.validators import Number
 
 from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, Fresh, on_case, results_folder, written
+from gearwhine.view_names import View
 
 if TYPE_CHECKING:
     from gearwhine.case import Case
@@ -150,22 +151,7 @@ def render(
         bool, Parameter(name=["--measured"], negative=(), help="Draw measured shapes beside the model's.")
     ] = False,
     view: Annotated[
-        Literal[
-            "auto",
-            "iso",
-            "front",
-            "back",
-            "left",
-            "right",
-            "top",
-            "iso-left",
-            "iso-back",
-            "iso-back-left",
-            "iso-below",
-            "iso-left-below",
-            "iso-back-below",
-            "iso-opposite",
-        ],
+        View,
         Parameter(help="Direction of view; 'auto': for each shape the corner from which most of its motion is seen."),
     ] = "auto",
     format: Annotated[  # noqa: A002 - the name of the option

@@ -2,6 +2,8 @@
 
 Within the region the surrogate is searched from many starts by Gauss-Newton steps on the modes that are paired there;
 the best end point is solved in full. Where that lessens the misfit it is the next design, else the region shrinks.
+scipy's ``least_squares`` on the solved designs takes twice the solutions and pairs 3 or 4 of 12 housings wrongly, since
+it does not know of modes that change partners between two designs: ``benchmarks/update_search.py``.
 """
 
 from collections.abc import Callable, Sequence
