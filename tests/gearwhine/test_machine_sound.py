@@ -19,7 +19,6 @@ from gearwhine.solve.housing_modes import bearing_places, describe_housing
 COARSE: dict[str, Any] = {
     "housing.box.mesh_size": "45 mm",
     "operation.speed": "2500 rpm",
-    "rotor.0.unbalance": [{"at": "100 mm", "moment": "5e-2 kg*m"}],
     "transient": "",
 }
 EAR = (1.0, 0.3, 0.2)
