@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
-    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
@@ -214,7 +214,7 @@ class MachineStudy:
             Method and medium, floor and microphones; or its attributes by name: ``method="erp", floor=-0.02``. By
             default boundary elements in free air.
         **settings
-            See :class:`gearwhine.coupling.sound.acoustics.Acoustics`.
+            See :class:`gearwhine.coupling.sound.Acoustics`.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class MachineStudy:
             Where a solution fails its proofs.
         """
         from gearwhine.analyses import of_machine
-        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound import Acoustics
         from gearwhine.coupling.sound.motion_lines import left_out_warnings
 
         acoustics = Acoustics(**settings) if acoustics is None else acoustics
