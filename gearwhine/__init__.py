@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.gears import Gear as Gear
     from gearwhine.coupling.gears import GearError as GearError
     from gearwhine.coupling.gears.loaded.gear_pair import GearPair as GearPair
-    from gearwhine.coupling.sound.acoustics import Acoustics as Acoustics
-    from gearwhine.coupling.sound.acoustics import Microphone as Microphone
     from gearwhine.housing import STEEL as STEEL
     from gearwhine.housing import Housing as Housing
     from gearwhine.housing import HousingError as HousingError
@@ -77,7 +75,6 @@ _HOMES = {
     "gearwhine.coupling.analyses.recording": ("TransientPlan",),
     "gearwhine.coupling.gears": ("Gear", "GearError"),
     "gearwhine.coupling.gears.loaded.gear_pair": ("GearPair",),
-    "gearwhine.coupling.sound.acoustics": ("Acoustics", "Microphone"),
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
-    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
@@ -130,7 +130,7 @@ class Settings:
         from gearwhine.coupling.analyses.recording import TransientPlan
         from gearwhine.coupling.analyses.run_up import OrderTracking
         from gearwhine.coupling.errors import CouplingError
-        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound import Acoustics
 
         keep_tuples(self, "speeds")
         rules: dict[str, Rule] = {
@@ -306,7 +306,7 @@ class Study:
             Method and medium, floor and microphones; or its attributes by name: ``method="erp", floor=-0.02``. By
             default those of the settings, else boundary elements in free air.
         **settings
-            See :class:`gearwhine.coupling.sound.acoustics.Acoustics`.
+            See :class:`gearwhine.coupling.sound.Acoustics`.
 
         Raises
         ------
@@ -318,7 +318,7 @@ class Study:
             Where a solution fails its proofs.
         """
         from gearwhine.analyses import of_machine
-        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound import Acoustics
         from gearwhine.coupling.sound.motion_lines import left_out_warnings
 
         if acoustics is None:
@@ -618,7 +618,7 @@ class CaseStudy(Study):
         An object, or its attributes by name, take the place of the case's `[acoustics]`.
         """
         from gearwhine.analyses import machine
-        from gearwhine.coupling.sound.acoustics import Acoustics
+        from gearwhine.coupling.sound import Acoustics
 
         acoustics = Acoustics(**settings) if settings else acoustics
         housing = self._solved_housing(with_sound=acoustics is None)

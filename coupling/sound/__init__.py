@@ -8,3 +8,6 @@
 - :mod:`~gearwhine.coupling.sound.solution`: sound of modes and lines.
 - :mod:`~gearwhine.coupling.sound.mesh_harmonics`: loudest mesh harmonics, with the gradient of their power.
 """
+
+from gearwhine.coupling.sound.acoustics import Acoustics as Acoustics
+from gearwhine.coupling.sound.acoustics import Microphone as Microphone
