@@ -19,26 +19,20 @@ from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, analyse_machine, default_aims, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine, point_of_flanks
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem, solve_system
-from gearwhine.coupling.analyses.recording import Blocks, TransientPlan
+from gearwhine.coupling.analyses.motion import MachineMotion, solve_motion
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import (
     OrderTracking,
-    RunSignature,
     run_signature_warnings,
-    solve_run_signature,
 )
 from gearwhine.coupling.analyses.shafts_alone import solve_shafts
-from gearwhine.coupling.analyses.signature import SolvedSignature, solve_signature
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import (
-    SolvedTransient,
-    has_traced_lines,
     mean_bearing_forces,
-    solve_transient,
 )
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
-from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.mode_pictures import draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -390,48 +384,6 @@ def steady(
         _options=(STEADY_OPTIONS, STEADY_SAME),
         _title=machine.title,
     )
-
-
-@dataclass(frozen=True)
-class MachineMotion:
-    """Motion of a machine over time, and what is read off its record.
-
-    Attributes
-    ----------
-    transient : SolvedTransient
-    signature : SolvedSignature or None
-        Lines of sensors and mesh forces by their origin; None along a run, and where the base moves.
-    run_signature : RunSignature or None
-        Spectra and orders along a run.
-    tracking : OrderTracking
-    """
-
-    transient: SolvedTransient
-    signature: SolvedSignature | None
-    run_signature: RunSignature | None
-    tracking: OrderTracking
-
-
-def solve_motion(
-    machine: LoadedMachine,
-    plan: TransientPlan,
-    tracking: OrderTracking,
-    modes: CoupledModes,
-    progress: Progress = silent,
-    *,
-    keep: Callable[[str], Blocks] | None = None,
-) -> MachineMotion:
-    """Integrate the motion of a machine, and trace the lines and the orders of its record.
-
-    The parameters are those of :func:`gearwhine.coupling.analyses.transient.solve_transient`; ``modes`` are those of
-    the coupled system, which lines are named after.
-    """
-    transient = solve_transient(machine.coupled, plan, progress, keep=keep)
-    signature = None
-    if has_traced_lines(machine.coupled):
-        housing = machine.coupled.housing
-        signature = solve_signature(transient, modes, None if housing is None else housing.frequencies_hz)
-    return MachineMotion(transient, signature, solve_run_signature(transient, tracking), tracking)
 
 
 def add_motion(

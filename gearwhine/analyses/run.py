@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.machine import loaded_case
-from gearwhine.analyses.of_machine import add_motion, modes_of_run, solve_motion
+from gearwhine.analyses.of_machine import add_motion, modes_of_run
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
+from gearwhine.coupling.analyses.motion import solve_motion
 from gearwhine.coupling.errors import TransientError
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import require_machine

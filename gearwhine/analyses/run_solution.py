@@ -19,9 +19,9 @@ from gearwhine.results.system import SYSTEM
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.analyses.of_machine import MachineMotion
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.run_up import RunSignature
     from gearwhine.coupling.analyses.signature import SolvedSignature
     from gearwhine.coupling.analyses.transient import SolvedTransient

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gearwhine.analyses.run import RunSolution, run_arrays
+from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.analyses.signature import solve_signature
 from gearwhine.coupling.analyses.transient import solve_transient
-from gearwhine.output.dataset import arrays_of
+from gearwhine.output.dataset import arrays_of, labels_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
@@ -68,7 +68,7 @@ def write_whole(file: Path) -> set[str]:
     whole = RunSolution(
         rotors, analyse_pairs(case, pairs, load.point), housing, None, system, transient, signature, None, load
     )
-    run_arrays(case, whole).write(file)
+    whole.arrays(labels_of(case)).write(file)
     return set(arrays_of(LOAD, load))
 
 

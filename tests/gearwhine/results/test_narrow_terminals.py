@@ -56,6 +56,7 @@ def test_a_point_of_a_sweep_shows_the_largest_force_of_its_teeth() -> None:
     document = {
         "points": [point, {"status": "failed", "settings": {"torque": "9 N*m"}, "failure": "it stalls"}],
         "axes": [{"name": "torque", "unit": "N m"}],
+        "missed_peaks": [],
         "resumed": 0,
         "failed": 1,
         "done": 1,
