@@ -8,6 +8,7 @@ from cyclopts import App, CycloptsError
 
 from gearwhine import __version__
 from gearwhine.cli import case, housing, machine
+from gearwhine.failures import explain
 from gearwhine.interruption import interruptible, was_interrupted
 
 app = App(
@@ -61,14 +62,11 @@ def _show_warning(message: Warning | str, category: type[Warning], *_: object, *
 
 
 def _run_command(arguments: list[str]) -> int:
-    from gearwhine.failures import explain
-
-    for stream in (sys.stdout, sys.stderr):
-        # A character that the terminal's encoding lacks, such as µ in ASCII, is shown as ?.
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-
     try:
+        for stream in (sys.stdout, sys.stderr):
+            # A character that the terminal's encoding lacks, such as µ in ASCII, is shown as ?.
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         sys.stderr.write(f"gearwhine: {error}\nTry 'gearwhine --help'.\n")
