@@ -1,7 +1,7 @@
 """Commands on rotors, gear pairs and the coupled machine: rotors, gears, load, system, steady, sound, sweep.
 
-Each calls a function of :mod:`gearwhine.analyses.machine`, which solves by :mod:`gearwhine.solve`; ``run`` is in
-:mod:`gearwhine.cli.case`.
+Each calls a function of :mod:`gearwhine.analyses.machine`, which makes the machine of the case and solves it by
+:mod:`gearwhine.coupling.analyses` and :mod:`gearwhine.rotors.analyses`; ``run`` is in :mod:`gearwhine.cli.case`.
 """
 
 from typing import TYPE_CHECKING, Annotated, Any
