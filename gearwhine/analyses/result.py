@@ -154,18 +154,23 @@ class Result(Generic[Solved]):
         Parameters
         ----------
         name : str, optional
-            One of the names that :meth:`figures` yields; the first one by default.
+            One of the names that :meth:`figures` yields, or the end of one alone, ``campbell`` of
+            ``rotor-input-campbell``; the first one by default.
 
         Raises
         ------
         KeyError
             Where there is no figure of that name; the message lists those there are.
         """
-        names = []
+        names, ending = [], []
         for figure_name, figure in self.figures():
             if name in (None, figure_name):
                 return figure
+            if figure_name.endswith(f"-{name}"):
+                ending.append(figure)
             names.append(figure_name)
+        if len(ending) == 1:
+            return ending[0]
         listed = ", ".join(names) or "none"
         raise KeyError(f"no figure {name!r} of {self.command!r}; there are: {listed}")
 

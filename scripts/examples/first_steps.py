@@ -8,8 +8,9 @@ run = study.run()  # rotors, gears, coupled modes, motion over time
 
 frequencies = modes.dataset["housing_frequency"]  # xarray, with units
 print(frequencies.values.round(1), frequencies.units, modes.proofs["certificate"])
-spectrum = run.dataset["sensor_spectrum"].sel(sensor="top", frequency=slice(0.0, 3000.0))
-print(spectrum.to_series().nlargest(3))  # peak amplitudes, m/s² over Hz
+top = run.document["sensors"][0]  # its lines by name, the highest first
+for line in top["peaks"][:3]:
+    print(line["frequency_hz"], line["amplitude_m_per_s2"], line["name"])
 
 run.plot("spectrum").savefig("spectrum.png")
 run.write("results", pictures=False)

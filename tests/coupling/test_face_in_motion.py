@@ -59,7 +59,7 @@ def mid_span(sense: int) -> Machine:
     """Shafts, teeth and places of the bundled case ``helical-pair``, with even flanks of a given stiffness."""
     apart = distance(23, 41, 1.0)
     shafts = [
-        Shaft(Rotor(name, [Segment(0.24, 0.04, 0.0, STEEL)]), (x, 0.0), start=-0.12)
+        Shaft(Rotor(name, [Segment(0.24, 0.04, 0.0, STEEL)]), (x, 0.0), start=-0.12, damping_ratio=0.0)
         for name, x in (("in", -0.5 * apart), ("out", 0.5 * apart))
     ]
     gears = [
@@ -76,7 +76,11 @@ def overhung(sense: int, stiffness: ConstantStiffness | SquareStiffness) -> Mach
     apart = distance(23, 41, 1.0)
     shafts = [
         Shaft(Rotor("in", [Segment(0.25, 0.035, 0.0, STEEL)]), (0.0, 0.0), damping_ratio=0.0),
-        Shaft(Rotor("out", [Segment(0.25, 0.04, 0.0, STEEL)]), (apart * np.cos(0.5), apart * np.sin(0.5))),
+        Shaft(
+            Rotor("out", [Segment(0.25, 0.04, 0.0, STEEL)]),
+            (apart * np.cos(0.5), apart * np.sin(0.5)),
+            damping_ratio=0.0,
+        ),
     ]
     gears = [
         ShaftGear(toothed("pinion", 23, 1.0, WIDTH), "in", 0.21, (1.2, 8e-4, 6e-4)),
@@ -96,10 +100,10 @@ def power_split(sense: int, stiffness: ConstantStiffness) -> Machine:
     x = (apart**2 + first**2 - second**2) / (2.0 * apart)
     y = float(np.sqrt(first**2 - x**2))
     shafts = [
-        Shaft(Rotor("in", [Segment(0.22, 0.03, 0.0, STEEL)])),
-        Shaft(Rotor("one", [Segment(0.22, 0.03, 0.0, STEEL)]), (x, y)),
-        Shaft(Rotor("two", [Segment(0.22, 0.045, 0.0, STEEL)]), (x, -y)),
-        Shaft(Rotor("out", [Segment(0.22, 0.05, 0.0, STEEL)]), (apart, 0.0)),
+        Shaft(Rotor("in", [Segment(0.22, 0.03, 0.0, STEEL)]), damping_ratio=0.0),
+        Shaft(Rotor("one", [Segment(0.22, 0.03, 0.0, STEEL)]), (x, y), damping_ratio=0.0),
+        Shaft(Rotor("two", [Segment(0.22, 0.045, 0.0, STEEL)]), (x, -y), damping_ratio=0.0),
+        Shaft(Rotor("out", [Segment(0.22, 0.05, 0.0, STEEL)]), (apart, 0.0), damping_ratio=0.0),
     ]
     names = {"in": ("pinion", 20, (1.0, 5e-4, 4e-4)), "one": ("upper", 30, (1.8, 2e-3, 1.3e-3))}
     names |= {"two": ("lower", 30, (1.8, 2e-3, 1.3e-3)), "out": ("wheel", 40, (3.0, 6e-3, 4e-3))}

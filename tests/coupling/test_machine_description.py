@@ -329,7 +329,9 @@ def test_the_analyses_of_a_machine_are_its_methods() -> None:
 def test_the_steady_force_on_teeth_is_torque_over_radius() -> None:
     """The gears are light: at this speed the teeth of the first pair part, and a disturbance of the motion grows."""
     pairs = [replace(pair, damping_ratio=0.03) for pair in square_pairs()]
-    steady = two_stages(gear_pairs=pairs, speed=305.0).steady(tolerance=1e-5)
+    machine = two_stages(gear_pairs=pairs, speed=305.0)
+    undamped = [replace(one, damping_ratio=0.0) for one in machine.shafts]
+    steady = replace(machine, shafts=undamped).steady(tolerance=1e-5)
     assert steady.contact_loss[0] > 0.02
     assert not steady.stable
     assert steady.period == pytest.approx(2.0 * math.pi / (305.0 * 2.5), rel=1e-12)  # of 20 and 12.5 a turn

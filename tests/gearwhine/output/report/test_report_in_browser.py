@@ -85,6 +85,9 @@ DOCUMENT = {
         "faces_w": {"top": 1e-5},
         "modes": [],
         "microphones": [],
+        "left_out": [],
+        "known_source_error": None,
+        "known_source_rms": None,
         "box_power_db": None,
     },
 }
