@@ -244,7 +244,7 @@ class Study:
         return of_machine.system(
             self._loaded(),
             mesh_phase=mesh_phase,
-            over_speed=self._diagram_speeds() if campbell or self.settings.speeds else (),
+            over_speed=self._diagram_speeds() if campbell or len(self.settings.speeds) > 1 else (),
             sidebands=sidebands,
             mesh_harmonics=mesh_harmonics,
             progress=self.progress,

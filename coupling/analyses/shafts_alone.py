@@ -26,8 +26,8 @@ def solve_shafts(
     machine : Machine
         Its speed is that of operation; its gravity, forces, unbalances and bows load the shafts.
     speeds : sequence of float
-        Signed speeds of the first driver's shaft over which the Campbell diagrams and responses go [rad/s]; by default
-        up to 1.5 times the speed of operation.
+        Signed speeds of the first driver's shaft at which whirl modes are solved, and over which the Campbell diagrams
+        and responses go [rad/s]; by default the speed of operation, and up to 1.5 times that.
     progress : callable
     **settings
         Attributes of :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings` for all shafts, such as
@@ -58,10 +58,11 @@ def shaft_settings(
     """Return the loads of a shaft of a machine, and the speeds of its analyses; see :func:`solve_shafts`."""
     shaft, operation = machine.shaft(name), machine.speeds[name]
     ratio = float(machine.train.ratios.get(name, 0.0))
-    diagram = tuple(sorted(ratio * speed for speed in speeds))
-    diagram = diagram or campbell_speeds(operation, table_range(bearings))
+    whirl = tuple(ratio * speed for speed in speeds)
+    diagram = whirl or campbell_speeds(operation, table_range(bearings))
     settings = RotorSettings(
         operation=operation,
+        whirl_speeds=whirl,
         diagram_speeds=sorted(set(diagram)),
         response_speeds=response_speeds(sorted(set(diagram))),
         forces=[StaticForce(one.at, *one.force) for one in machine.forces if one.rotor == name],

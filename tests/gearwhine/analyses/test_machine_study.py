@@ -208,6 +208,11 @@ def test_speeds_of_the_settings_are_those_of_diagrams_and_branches(machine: gw.S
         gw.Settings(speeds=[float("nan")])
 
 
+def test_rotors_over_the_speeds_of_a_sweep_are_those_of_the_case() -> None:
+    study = gw.load("spur-pair", {"sweep.speed": ["2000 rpm", "4000 rpm", "6000 rpm"]})
+    equal(gw.Study(study.machine, study.settings).rotors(), study.rotors())
+
+
 def test_rotors_take_their_own_settings(machine: gw.Study) -> None:
     speeds = [50.0, 100.0, 150.0]
     over = gw.Study(machine.machine, gw.Settings(speeds=speeds))
