@@ -10,12 +10,12 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.report import MovingShape
-from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def check_request(
 
 
 def draw_modes(
-    housing: SolvedHousing,
+    housing: HousingModes,
     comparison: "Comparison | None",
     which: str,
     view: str,
@@ -99,7 +99,7 @@ def draw_modes(
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     comparison : Comparison or None
         Comparison with measured modes; modes with a measured partner count as the dominant ones, as the picture notes.
     which : str
@@ -124,7 +124,7 @@ def draw_modes(
     if which == "all":
         numbers = list(range(1, count + 1))
     elif which == "dominant":
-        numbers = sorted(notes) if notes else strongest_modes(housing, _DOMINANT)
+        numbers = sorted(notes) if notes else housing.strongest_modes(_DOMINANT)
     else:
         numbers = parse_numbers(which, count)
     numbers = sorted({*numbers, *besides})
@@ -142,7 +142,7 @@ def draw_modes(
 
 
 def draw_lines(
-    housing: SolvedHousing,
+    housing: HousingModes,
     folder: Path,
     frequencies: Sequence[float],
     view: str,
@@ -166,7 +166,7 @@ def draw_lines(
 
 
 def draw_operating_shapes(
-    housing: SolvedHousing,
+    housing: HousingModes,
     lines: "Sequence[RunLine]",
     view: str,
     mode_format: ModeFormat,
@@ -212,7 +212,7 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
 
 
 def draw_load_pictures(
-    housing: SolvedHousing | None, solved: "SolvedLoad", place: Path, progress: Progress
+    housing: HousingModes | None, solved: "SolvedLoad", place: Path, progress: Progress
 ) -> list[dict[str, Any]]:
     """Draw a housing at an operating point, and its sensitivity where that is known; return warnings.
 
@@ -234,13 +234,13 @@ def draw_load_pictures(
 
 
 def draw_deflection(
-    housing: SolvedHousing, coordinates: FloatArray, view: str, place: Path, progress: Progress
+    housing: HousingModes, coordinates: FloatArray, view: str, place: Path, progress: Progress
 ) -> list[str]:
     """Draw the housing under a static load as ``load-housing.png``, from two opposite sides.
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     coordinates : ndarray, shape (n_modes + n_residual,)
         Coordinates of its modes and its residual modes.
     view : str
@@ -269,7 +269,7 @@ def draw_deflection(
 
 
 def draw_sensitivity(
-    housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
+    housing: HousingModes, solved: "SolvedLoad", view: str, place: Path, progress: Progress
 ) -> list[str]:
     """Draw where material on the housing changes the misalignment of each pair, a sensor's line and the sound power.
 
@@ -278,7 +278,7 @@ def draw_sensitivity(
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     solved : SolvedLoad
         Operating point in this housing, with its sensitivity.
     view : str
@@ -461,7 +461,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
 
 def draw_measured(
     case: Case,
-    housing: SolvedHousing,
+    housing: HousingModes,
     comparison: "Comparison | None",
     survey: "MappedSurvey | None",
     view: str,

@@ -7,7 +7,7 @@ import math
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
     from gearwhine.mode_pictures import ModeFormat, View
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
@@ -368,7 +368,7 @@ class Study:
 class _KeptHousing:
     """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
 
-    solved: SolvedHousing | None = None
+    solved: HousingModes | None = None
     lock: threading.RLock = field(default_factory=threading.RLock)
 
 
@@ -424,18 +424,18 @@ class CaseStudy(Study):
         """
         study = CaseStudy(self._source.changed(_texts(changes)), self.progress)
         if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import housing_key
+            from gearwhine.solve.housing_modes import given_housing, housing_key
 
-            if housing_key(self.case) == housing_key(study.case):
+            if housing_key(given_housing(self.case)) == housing_key(given_housing(study.case)):
                 study._kept = self._kept
         return study
 
     @property
-    def housing(self) -> SolvedHousing | None:
+    def housing(self) -> HousingModes | None:
         """The solved housing, which the first call meshes and solves; None in a case without one."""
         return self._solved_housing(with_sound=False)
 
-    def _solved_housing(self, *, with_sound: bool) -> SolvedHousing | None:
+    def _solved_housing(self, *, with_sound: bool) -> HousingModes | None:
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         with self._kept.lock:
             if self._kept.solved is None and self.case.housing is not None:
@@ -452,13 +452,9 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine, reduce_housing
+        from gearwhine.solve.machine import described_machine
 
-        solved = self.housing
-        if solved is None:
-            return described_machine(self.case, None)
-        part = reduce_housing(self.case, solved, self.progress)
-        return described_machine(self.case, replace(part, displacement_field=solved.displacement_field))
+        return described_machine(self.case, self.housing)
 
     @property
     def settings(self) -> Settings:
@@ -485,7 +481,7 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(self, *, detail: bool = False) -> Result[SolvedHousing]:
+    def modes(self, *, detail: bool = False) -> Result[HousingModes]:
         """Find the natural modes of the housing, certified complete; see :func:`gearwhine.analyses.housing.modes`."""
         from gearwhine.analyses import housing
 
@@ -516,7 +512,7 @@ class CaseStudy(Study):
         view: View = "auto",
         mode_format: ModeFormat = "png",
         measured: bool = False,
-    ) -> Result[SolvedHousing]:
+    ) -> Result[HousingModes]:
         """Draw mode shapes, which the result writes; see :func:`gearwhine.analyses.housing.render`."""
         from gearwhine.analyses import housing
 

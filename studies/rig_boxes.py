@@ -49,7 +49,8 @@ from gearwhine.housing.acoustics.boundary_elements import surface_product
 from gearwhine.housing.acoustics.surface_velocity import face_surface
 from gearwhine.housing.updating.mesh_bias import MeshBias
 from gearwhine.solve.comparison import compare_housing
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.housing import HousingModes
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.updating import update_housing, updated_case
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "validation"))
@@ -119,7 +120,7 @@ def start_of_stiff_walls() -> dict[str, Any]:
     return document
 
 
-def top_bending(solved: SolvedHousing, mode: int) -> float:
+def top_bending(solved: HousingModes, mode: int) -> float:
     """Part of the top in the mean-square normal motion of the six outer faces, of a mode from 0."""
     moving = {}
     for name in ("top", *_WALLS):

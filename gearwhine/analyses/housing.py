@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, require
-from gearwhine.from_case import mesh_health
-from gearwhine.from_case.mesh import build_mesh
-from gearwhine.housing import HousingError
+from gearwhine.case.model import housing_table
+from gearwhine.from_case.fixtures import build_fixtures
+from gearwhine.from_case.mesh import build_mesh, material_of
+from gearwhine.from_case.mesh_health import allowed_defects
+from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
+from gearwhine.housing.model_warnings import defect_warnings, resolution_warnings
 from gearwhine.meshes import Mesh
 from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
 from gearwhine.numerics.progress import Progress, silent
@@ -34,7 +37,7 @@ from gearwhine.solve.comparison import (
     require_comparable,
     write_plan,
 )
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,11 +64,13 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     from gearwhine.meshes import write_mesh
     from gearwhine.results.mesh import mesh_document
 
+    table = housing_table(case, "mesh")
     progress("meshing the housing")
     remarks: list[str] = []
-    meshed = build_mesh(case, remarks.append)
-    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, meshed)
-    warnings += mesh_health.resolution_warnings(case, meshed, case.housing.frequency_limit if case.housing else None)
+    meshed = build_mesh(table, case.material, case.input_files, remarks.append)
+    defects = allowed_defects(table, build_fixtures(table, case.material), meshed)
+    warnings = [warning("geometry", remark) for remark in remarks] + defect_warnings(defects)
+    warnings += resolution_warnings(meshed, material_of(case.material, table.material), table.frequency_limit)
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_mesh(meshed, place / f"mesh.{suffix}")
@@ -78,11 +83,11 @@ def modes(
     case: Case,
     *,
     detail: bool = False,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
-) -> Result[SolvedHousing]:
+) -> Result[HousingModes]:
     """Find the natural modes of the housing, certified complete.
 
     Parameters
@@ -90,7 +95,7 @@ def modes(
     case : Case
     detail : bool
         Whether to report effective masses, supports, and the modes that carry the bearings' forces as well.
-    housing : SolvedHousing, optional
+    housing : HousingModes, optional
         Solved housing, where it exists already.
     folder : path, optional
         Results folder, whose modes of the same housing are read in place of solving.
@@ -125,7 +130,7 @@ def modes(
 def compare(
     case: Case,
     *,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -187,7 +192,7 @@ def survey(
     *,
     sensors: int,
     modes: int | None = None,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -272,11 +277,11 @@ def render(
     mode_format: ModeFormat = "png",
     lines: Sequence[float] = (),
     measured: bool = False,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
-) -> Result[SolvedHousing]:
+) -> Result[HousingModes]:
     """Draw mode shapes, the housing's motion at lines of a run, or measured shapes beside the model's.
 
     Parameters
@@ -331,8 +336,8 @@ def render(
 
 
 def _solved(
-    case: Case, command: str, housing: SolvedHousing | None, folder: Path | None, progress: Progress, *, fresh: bool
-) -> SolvedHousing:
+    case: Case, command: str, housing: HousingModes | None, folder: Path | None, progress: Progress, *, fresh: bool
+) -> HousingModes:
     if housing is not None:
         return housing
     return solve_housing(case, progress, command=command, folder=folder, fresh=fresh)

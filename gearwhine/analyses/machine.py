@@ -18,6 +18,7 @@ from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.from_case.machine import require_machine
+from gearwhine.housing import HousingModes
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -29,8 +30,8 @@ from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes, refused_by_key, sound_left_out
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import aims_at_sensor, analyse_pairs, relief_aims
-from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
+from gearwhine.solve.housing_modes import kept_housing, solve_housing
+from gearwhine.solve.machine import described_machine, run_of, solve_pairs
 from gearwhine.solve.operating_point import (
     SolvedLoad,
     find_load,
@@ -90,7 +91,7 @@ def gears(
     case: Case,
     *,
     aims: Sequence[ReliefAim] = (),
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     progress: Progress = silent,
 ) -> Result[tuple[PairAnalysis, ...]]:
@@ -101,7 +102,7 @@ def gears(
     case : Case
     aims : sequence of ReliefAim, optional
         Objective of the best relief of each pair, in place of those of the case.
-    housing : SolvedHousing, optional
+    housing : HousingModes, optional
         Housing where it is solved already. It is solved here for a tip relief whose aim names a sensor alone; without
         one a misalignment that is found is that of rigid seats, with a warning, and the best relief aims at no
         sensor.
@@ -140,7 +141,7 @@ def operating_point(
     sensitivity: bool = False,
     line: str | None = None,
     rigid_seats: bool = False,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -178,8 +179,7 @@ def operating_point(
     elif housing is None and case.housing is not None:
         refuse = check_before_modes(case) if ranked else None
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
-    part = None if housing is None else reduce_housing(case, housing, progress)
-    machine = described_machine(case, part)
+    machine = described_machine(case, housing)
     solved = load_of_case(case, machine, progress, over_torque=over_torque, over_hunting_period=True)
     warnings = load_warnings(solved)
     if ranked:
@@ -210,22 +210,21 @@ def operating_point(
 
 
 def loaded_case(
-    case: Case, housing: SolvedHousing | None, run: Run | None, progress: Progress = silent
+    case: Case, housing: HousingModes | None, run: Run | None, progress: Progress = silent
 ) -> MachineUnderLoad:
     """Find the operating point of a case in its solved housing, and assemble its machine about that.
 
     ``run`` is the course of speed and torques over time; without one, they are those of operation.
     """
-    part = None if housing is None else reduce_housing(case, housing, progress)
-    machine = described_machine(case, part)
+    machine = described_machine(case, housing)
     load, warnings = find_load(case, machine, progress)
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
     return MachineUnderLoad(case.title, loaded, load, warnings, case, housing)
 
 
 def _housing_of(
-    case: Case, housing: SolvedHousing | None, folder: Path | None, progress: Progress, *, fresh: bool
-) -> SolvedHousing | None:
+    case: Case, housing: HousingModes | None, folder: Path | None, progress: Progress, *, fresh: bool
+) -> HousingModes | None:
     """Return the solved housing of a case whose parts make a machine; None without one."""
     require_machine(case)
     if housing is None and case.housing is not None:
@@ -240,7 +239,7 @@ def system(
     campbell: bool = False,
     sidebands: int = 0,
     mesh_harmonics: int = MESH_HARMONICS,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -292,7 +291,7 @@ def steady(
     down: bool = False,
     points: int = 100,
     exact: bool = False,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -346,7 +345,7 @@ def sound(
     case: Case,
     *,
     acoustics: "Acoustics | None" = None,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     progress: Progress = silent,
@@ -379,7 +378,7 @@ def sound(
     if housing is None:
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
     elif refuse is not None:
-        refuse(case, housing.mesh)
+        refuse(housing.mesh)
     field = housing.displacement_field
     if acoustics is not None:
         require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))

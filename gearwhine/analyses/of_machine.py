@@ -74,8 +74,8 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.modes.housing_field import HousingField
-    from gearwhine.solve.housing_modes import SolvedHousing
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class MachineUnderLoad:
         Warnings of the operating point.
     case : Case or None
         The case that describes it; None where Python does.
-    housing : SolvedHousing or None
+    housing : HousingModes or None
         The solved housing of the case.
     """
 
@@ -101,7 +101,7 @@ class MachineUnderLoad:
     load: SolvedLoad | None
     warnings: Sequence[ResultWarning]
     case: Case | None = None
-    housing: SolvedHousing | None = None
+    housing: HousingModes | None = None
 
     @property
     def coupled(self) -> CoupledMachine:
@@ -497,7 +497,7 @@ class RadiatingHousing:
         Unit vector that points upwards in pictures.
     case : Case or None
         The case that describes it; None where Python does.
-    solved : SolvedHousing or None
+    solved : HousingModes or None
         The solved housing of the case.
     """
 
@@ -506,7 +506,7 @@ class RadiatingHousing:
     labels: Labels
     up: Sequence[float]
     case: Case | None = None
-    solved: SolvedHousing | None = None
+    solved: HousingModes | None = None
 
 
 def radiating_housing(machine: Machine, acoustics: Acoustics, title: str = "") -> RadiatingHousing:

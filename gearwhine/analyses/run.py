@@ -46,7 +46,7 @@ from gearwhine.solve.rotors import solve_rotors
 if TYPE_CHECKING:
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -55,7 +55,7 @@ def run(
     case: Case,
     *,
     plan: TransientPlan | None = None,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     fresh: bool = False,
     pictures: bool = True,
@@ -69,7 +69,7 @@ def run(
     case : Case
     plan : TransientPlan, optional
         Stretch of the motion over time, in place of that of `[transient]`.
-    housing : SolvedHousing, optional
+    housing : HousingModes, optional
         Solved housing, where it exists already.
     folder : path, optional
         Results folder: modes of the same housing cached there are read, and the blocks of the transient are stored
@@ -237,7 +237,7 @@ def simulate(
     case: Case,
     *,
     plan: TransientPlan | None = None,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
     progress: Progress = silent,
 ) -> Result[RunSolution]:
@@ -267,7 +267,7 @@ def run_into(
     case: Case,
     folder: Path,
     *,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     fresh: bool = False,
     pictures: bool = True,
     progress: Progress = silent,

@@ -16,8 +16,7 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.measured import Measured
 from gearwhine.case.measured import Pairing as PairingTable
-from gearwhine.from_case.fixtures import build_supports
-from gearwhine.housing import HousingError, ModeSet
+from gearwhine.housing import HousingError, HousingModes, ModeSet, Support
 from gearwhine.housing.correlation import frac, synthesised_responses
 from gearwhine.housing.correlation.comparison import (
     Comparison,
@@ -49,7 +48,6 @@ from gearwhine.housing.measured import (
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -148,18 +146,18 @@ def map_measured(case: Case, mesh: Mesh, geometry: MeasuredGeometry) -> MappedSu
         raise CaseError([Problem(f"measured.{key}", UNSAID, f"a survey of this housing; {error}")]) from error
 
 
-def mapped_shapes(solved: SolvedHousing, survey: MappedSurvey) -> FloatArray:
+def mapped_shapes(solved: HousingModes, survey: MappedSurvey) -> FloatArray:
     """Return the model's modes at the survey's degrees of freedom, mass-normalised, shape (n_modes, n_dofs)."""
     return survey.shapes(solved.modes.shapes)
 
 
-def compare_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> Comparison:
+def compare_housing(case: Case, solved: HousingModes, progress: Progress = silent) -> Comparison:
     """Pair the model's modes with the case's measured ones; see :func:`compare_with_survey`."""
     return compare_with_survey(case, solved, progress)[0]
 
 
 def compare_with_survey(
-    case: Case, solved: SolvedHousing, progress: Progress = silent
+    case: Case, solved: HousingModes, progress: Progress = silent
 ) -> tuple[Comparison, MappedSurvey | None]:
     """Pair the model's modes with the case's measured ones, as `[measured] pairing` says.
 
@@ -271,14 +269,14 @@ class ResponseCorrelation:
 
 
 def compare_responses(
-    case: Case, solved: SolvedHousing, survey: MappedSurvey, responses: MeasuredResponses
+    case: Case, solved: HousingModes, survey: MappedSurvey, responses: MeasuredResponses
 ) -> ResponseCorrelation:
     """Compare the model's responses, with its own damping, with measured ones up to where its modes are complete.
 
     Parameters
     ----------
     case : Case
-    solved : SolvedHousing
+    solved : HousingModes
     survey : MappedSurvey
         Degrees of freedom of the motions on the model.
     responses : MeasuredResponses
@@ -315,7 +313,7 @@ def compare_responses(
 
 
 def compare_responses_document(
-    case: Case, solved: SolvedHousing, survey: MappedSurvey
+    case: Case, solved: HousingModes, survey: MappedSurvey
 ) -> ResponseCorrelation | str | None:
     """Correlation of a case's frequency responses, or the reason why there is none; None without measured responses."""
     measured = case.measured
@@ -329,7 +327,7 @@ def compare_responses_document(
 
 
 def pair_modes(
-    solved: SolvedHousing,
+    solved: HousingModes,
     measured: MeasuredModes,
     shapes: FloatArray | None = None,
     rule: PairingRule | None = None,
@@ -340,7 +338,7 @@ def pair_modes(
 
     Parameters
     ----------
-    solved : SolvedHousing
+    solved : HousingModes
     measured : housing.measured.MeasuredModes
     shapes : ndarray, shape (n_modes, n_dofs), optional
         The model's shapes at the measured degrees of freedom [1/√kg], where ``measured`` has shapes.
@@ -371,7 +369,7 @@ def pair_modes(
     return comparison if shapes is None else with_shapes(comparison, model, shapes, measured)
 
 
-def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Comparison:
+def _compare_by_dominance(solved: HousingModes, frequencies: FloatArray) -> Comparison:
     if solved.strengths is None:
         raise CaseError(
             [Problem("housing.seat", (), "bearing seats: dominance is the strength between seats and skin")]
@@ -379,7 +377,7 @@ def _compare_by_dominance(solved: SolvedHousing, frequencies: FloatArray) -> Com
     return compare_by_dominance(frequencies, solved.strengths)
 
 
-def _require_modes_up_to(solved: SolvedHousing, highest: float) -> None:
+def _require_modes_up_to(solved: HousingModes, highest: float) -> None:
     limit = solved.modes.certificate.limit
     if limit < highest:
         raise CaseError([_low_limit(limit / _TWO_PI, highest / _TWO_PI)])
@@ -408,13 +406,13 @@ class PlannedSurvey:
     frequencies_hz: npt.NDArray[np.float64]
 
 
-def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | None = None) -> PlannedSurvey:
+def plan_housing(case: Case, solved: HousingModes, sensors: int, modes: int | None = None) -> PlannedSurvey:
     """Plan a survey of the lowest modes that bend the housing.
 
     Parameters
     ----------
     case : Case
-    solved : SolvedHousing
+    solved : HousingModes
     sensors : int
     modes : int, optional
         Number of modes; all that are known where not given. Rigid motions of a free housing are left out.
@@ -425,8 +423,10 @@ def plan_housing(case: Case, solved: SolvedHousing, sensors: int, modes: int | N
         Where the sensors cannot separate the modes.
     """
     elastic = np.flatnonzero(solved.modes.frequencies > 0.0)[:modes]
-    seats = [block for name in solved.seats for block in solved.mesh.surface(name)]
-    supported = [block for support in build_supports(case) for block in support.facets(solved.mesh)]
+    housing = solved.housing
+    seats = [block for seat in housing.seats for block in solved.mesh.surface(seat.name)]
+    supports = [fixture for fixture in housing.fixtures if isinstance(fixture, Support)]
+    supported = [block for support in supports for block in support.facets(solved.mesh)]
     try:
         candidates = candidate_points(solved.mesh, max(_FEWEST, _PLACES * sensors), without=(*seats, *supported))
         shapes = map_survey(solved.mesh, candidates).shapes(solved.modes.shapes[elastic])

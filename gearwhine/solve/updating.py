@@ -31,6 +31,7 @@ from scipy import sparse
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
 from gearwhine.case.checks.whole_case import without_changed
 from gearwhine.case.errors import UNSAID, Location, key_of
+from gearwhine.case.model import housing_table
 from gearwhine.case.units import si_unit
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import (
@@ -145,7 +146,8 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
         )
         raise CaseError([Problem("measured.file", UNSAID, expected)])
     # Aligned once: an alignment that followed each design would hide its changes of size.
-    alignment = map_measured(case, build_mesh(case), geometry).alignment
+    mesh = build_mesh(housing_table(case, "update"), case.material, case.input_files)
+    alignment = map_measured(case, mesh, geometry).alignment
     tolerance = case.measured.tolerance
 
     def observer(mesh: Mesh) -> sparse.csr_array:

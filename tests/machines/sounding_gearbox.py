@@ -13,7 +13,7 @@ from gearwhine.analyses.result import Result
 from gearwhine.analyses.run import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.housing import HousingModes
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
@@ -38,7 +38,7 @@ def small_gearbox() -> gw.CaseStudy:
     return gw.load("small-gearbox")
 
 
-def sounding_housing() -> SolvedHousing:
+def sounding_housing() -> HousingModes:
     """Its solved housing."""
     housing = small_gearbox().housing
     assert housing is not None

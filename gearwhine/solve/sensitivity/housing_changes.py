@@ -14,38 +14,37 @@ from scipy import sparse
 
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
+from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import Adjoint
-from gearwhine.from_case.mesh import materials_of
+from gearwhine.from_case.housing import bearing_places, build_seats
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
+from gearwhine.housing import HousingModes
 from gearwhine.housing.fem.surface import flat_faces
-from gearwhine.housing.housing import bearing_port
 from gearwhine.housing.material import element_constants
-from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.model.seats import bearing_port, seat_matrix, sensor_port
 from gearwhine.housing.updating import ModelSensitivity
 from gearwhine.housing.updating.static_sensitivity import PortRates, StaticSensitivity
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.box.morph import MorphError, with_middles
-from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
 
 FloatArray = npt.NDArray[np.float64]
 
+_COMMAND = "load --sensitivity"
 _LEAST_FACE = 0.01  # part of the whole surface from which a flat face is a parameter
 
 
-def housing_fields(
-    case: Case, housing: SolvedHousing, point: OperatingPoint, adjoints: Sequence[Adjoint]
-) -> StaticSensitivity:
+def housing_fields(housing: HousingModes, point: OperatingPoint, adjoints: Sequence[Adjoint]) -> StaticSensitivity:
     """Return the displacements of a housing's nodes at an operating point and of adjoint states, with their forces."""
     assert point.housing is not None
-    parted, material, materials = materials_of(case, housing.mesh)
+    described = housing.housing
     every = np.arange(len(housing.mesh.points))
     gravity = point.shafts[0].gravity
     return StaticSensitivity(
         housing.mesh,
-        element_constants(parted, material, materials),
+        element_constants(described.mesh, described.material, described.materials),
         housing.modes.displacement(point.housing, every),
         np.array([housing.modes.displacement(adjoint.housing, every) for adjoint in adjoints]),
         {bearing.name: bearing.force for bearing in point.bearings},
@@ -129,7 +128,7 @@ def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequen
     return by_changes(fields, case_changes(case, fields.mesh, parameters))
 
 
-def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], str | None]:
+def housing_changes(case: Case, housing: HousingModes) -> tuple[tuple[HousingChange, ...], str | None]:
     """Differentiate the model of a case's housing by the parameters that are ranked.
 
     Returns
@@ -138,14 +137,15 @@ def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], 
     str or None
         Why flat faces stand in place of walls, where they do.
     """
+    mesh, seats = housing.mesh, [seat.name for seat in housing.housing.seats]
     parameters = housing_parameters(case)
     if not parameters:
-        return face_changes(case, mesh), None
+        return face_changes(mesh, seats), None
     try:
         return case_changes(case, mesh, parameters), None
     except MorphError as error:
         note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
-        return face_changes(case, mesh), note
+        return face_changes(mesh, seats), note
 
 
 def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) -> tuple[HousingChange, ...]:
@@ -195,10 +195,9 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     facets of its surface and by the nearest point of the surface to a sensor, and so has no formula of its own.
     """
     above, below = meshed.beside(number)
-    assert above.housing is not None
-    assert below.housing is not None
     is_rigid = rate.velocity is None
-    if is_rigid and above.housing.seat == below.housing.seat and above.housing.sensor == below.housing.sensor:
+    tables = [housing_table(case, _COMMAND) for case in (above, below)]
+    if is_rigid and tables[0].seat == tables[1].seat and tables[0].sensor == tables[1].sensor:
         return {}, {}
     meshes = [meshed.mesh] * 2
     if rate.velocity is not None:
@@ -213,26 +212,23 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
 
 def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[str, sparse.csr_array]]:
     """Assemble the ports of a case's bearings and of its sensors on a mesh."""
-    assert case.housing is not None
-    seats = {seat.name: seat.build() for seat in case.housing.seat}
-    places = bearing_places(case)
+    table = housing_table(case, _COMMAND)
+    seats = {seat.name: seat for seat in build_seats(table)}
+    places = bearing_places(table.seat, case.bearing, case.rotor)
     return (
         {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in case.housing.sensor},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in table.sensor},
     )
 
 
-def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
-    """Differentiate the model of a case's housing by material on the large flat faces of its surface.
+def face_changes(mesh: Mesh, seats: Sequence[str]) -> tuple[HousingChange, ...]:
+    """Differentiate the model of a housing by material on the large flat faces of its surface.
 
     A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named as
     :func:`gearwhine.housing.fem.surface.flat_face_names` has it, such as ``inside of bottom at 0, 10, 0 mm``.
     """
-    assert case.housing is not None
-    seats = [mesh.surface(seat.name) for seat in case.housing.seat]
-    held_nodes = np.unique(
-        np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)])
-    )
+    held = [block.nodes.ravel() for seat in seats for block in mesh.surface(seat)]
+    held_nodes = np.unique(np.concatenate(held or [np.empty(0, int)]))
     faces = flat_faces(mesh)
     whole = sum(face.area for face in faces)
     changes = []

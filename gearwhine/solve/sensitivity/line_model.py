@@ -20,18 +20,17 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.fixtures import attach_all
 from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.housing import ModeSet, modal_damping
+from gearwhine.housing import HousingModes, ModeSet, modal_damping
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.updating import modal_sensitivities
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.numerics.progress import Progress
 from gearwhine.solve.acoustics import acoustics_of, refused_by_key
-from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
-from gearwhine.solve.machine import full_housing_component, run_of
+from gearwhine.solve.machine import run_of
 from gearwhine.solve.sensitivity.housing_changes import HousingChange
 
 if TYPE_CHECKING:
@@ -58,14 +57,14 @@ class SolvedLines:
         Lines of the sensors, the highest first.
     sound : tuple of HarmonicSound
         Lines of the sound, the loudest by their A-weighted power first.
-    housing : SolvedHousing
+    housing : HousingModes
         Housing with residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
     of_sensors: tuple[Line, ...]
     sound: "tuple[HarmonicSound, ...]"
-    housing: SolvedHousing
+    housing: HousingModes
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -149,7 +148,7 @@ def solve_lines(
     case: Case,
     machine: Machine,
     point: OperatingPoint,
-    housing: SolvedHousing | None,
+    housing: HousingModes | None,
     progress: Progress,
     *,
     count: int = LINES,
@@ -163,7 +162,7 @@ def solve_lines(
         Machine of the case.
     point : OperatingPoint
         Operating point of the machine.
-    housing : SolvedHousing or None
+    housing : HousingModes or None
         Housing that the machine stands in.
     progress : callable
     count : int
@@ -181,7 +180,7 @@ def solve_lines(
     if not housing.loaded or not (housing.sensors or case.acoustics):
         return None
     progress("residual modes of the sensors")
-    matrices = attach_all(case, housing.mesh, describe_housing(case, housing.mesh).free_matrices())
+    matrices = housing.housing.matrices()
     extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
@@ -191,12 +190,13 @@ def solve_lines(
     pairs = solve_gears(case, progress, {pair.names: pair.station_gap for pair in point.pairs})
     components = about.rotor_components(progress=progress)
     misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
-    radiation = _radiation(case, replace(housing, modes=modes), progress)
+    radiation = _radiation(case, housing.with_modes(modes, None), progress)
 
     def solved(modes: ModeSet, heard: Sequence[float] | None = None) -> SolvedLines:
         damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
-        extended = replace(housing, modes=modes, damping_matrix=damping)
-        stands = replace(about, housing=full_housing_component(case, extended, progress))
+        extended = housing.with_modes(modes, damping)
+        part = component_of_housing(extended, participates=about.moves_housing_as_a_body, with_coarser=False)
+        stands = replace(about, housing=part)
         model = LineModel(stands.assemble(pairs, components, run_of(case)), point, pairs, misalignment_is_found)
         lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
         return SolvedLines(model, lines, _sound(case, extended, model, radiation, heard, progress), extended)
@@ -210,7 +210,7 @@ def solve_lines(
     return solved(exact, [sound.line.frequency for sound in first.sound])
 
 
-def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "HousingRadiation | None":
+def _radiation(case: Case, housing: HousingModes, progress: Progress) -> "HousingRadiation | None":
     """Return the radiating surface of a case with acoustics."""
     if case.acoustics is None:
         return None
@@ -224,7 +224,7 @@ def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "Housi
 
 def _sound(
     case: Case,
-    housing: SolvedHousing,
+    housing: HousingModes,
     model: LineModel,
     radiation: "HousingRadiation | None",
     heard: Sequence[float] | None,

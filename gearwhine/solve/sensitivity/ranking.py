@@ -18,9 +18,9 @@ from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
+from gearwhine.housing import HousingModes
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing
 from gearwhine.solve.sensitivity.housing_changes import (
     HousingChange,
     by_changes,
@@ -265,7 +265,7 @@ def solve_load_sensitivity(
     case: Case,
     machine: Machine,
     point: OperatingPoint,
-    housing: SolvedHousing | None,
+    housing: HousingModes | None,
     progress: Progress = silent,
     *,
     line: str | None = None,
@@ -279,7 +279,7 @@ def solve_load_sensitivity(
         Machine of the case.
     point : OperatingPoint
         Operating point of the machine.
-    housing : SolvedHousing or None
+    housing : HousingModes or None
         Housing that the machine stands in.
     progress : callable
     line : str, optional
@@ -303,9 +303,9 @@ def solve_load_sensitivity(
     density, line_density, sound_density, note = None, None, None, None
     if ranking.adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
-        fields = housing_fields(case, housing, point, ranking.adjoints)
+        fields = housing_fields(housing, point, ranking.adjoints)
         density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
-        changes, note = housing_changes(case, fields.mesh)
+        changes, note = housing_changes(case, housing)
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import mesh_of
 
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
@@ -113,9 +114,8 @@ def test_modes_are_found_in_a_file_of_responses(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def rig_mesh() -> Mesh:
-    from gearwhine.from_case.mesh import build_mesh
 
-    return build_mesh(load_case("nasa-gear-noise-rig", ['housing.box.mesh_size="60 mm"']).case)
+    return mesh_of(load_case("nasa-gear-noise-rig", ['housing.box.mesh_size="60 mm"']).case)
 
 
 def test_the_survey_is_laid_on_the_housing(tmp_path: Path, rig_mesh: Mesh) -> None:
