@@ -384,9 +384,13 @@ class CaseStudy(Study):
             Where no renderer or encoder is available.
         """
         from gearwhine.analyses import housing
+        from gearwhine.case import CaseError, Problem
         from gearwhine.mode_pictures import check_request
         from gearwhine.solve.comparison import require_comparable
 
+        if line and self.folder is None:
+            expected = "the results folder of a run, such as `gearwhine.load(case, folder=...)`"
+            raise CaseError([Problem("render: line", list(line), expected)])
         modes = modes or (None if line or measured else "dominant")
         check_request(self.case, modes, mode_format, line, measured=measured)
         if measured:
@@ -701,11 +705,13 @@ class CaseStudy(Study):
 
         return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
 
-    def solved_housing(self, *, with_sound: bool = False) -> "SolvedHousing | None":
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        return None if self.case.housing is None else self._required_housing("modes", with_sound=with_sound)
+        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
 
-    def _required_housing(self, command: str, *, with_sound: bool = False) -> "SolvedHousing":
+    def _required_housing(
+        self, command: str, folder: Path | None = None, *, with_sound: bool = False
+    ) -> "SolvedHousing":
         """Return the solved housing; a case without one is refused in the name of a command."""
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
@@ -713,8 +719,9 @@ class CaseStudy(Study):
         refuse = check_before_modes(self.case) if with_sound else None
         with self._kept.lock:
             if self._kept.solved is None:
+                place = folder or self.folder
                 self._kept.solved = solve_housing(
-                    self.case, self.progress, command=command, folder=self.folder, fresh=self.fresh, before=refuse
+                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
                 )
             elif refuse is not None:
                 refuse(self.case, self._kept.solved.mesh)
