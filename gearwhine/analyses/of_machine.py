@@ -18,8 +18,20 @@ from gearwhine.coupling import CoupledMachine, CouplingError, Machine, coupled_m
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, analyse_machine, default_aims, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine, point_of_flanks
-from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem, solve_system
+from gearwhine.coupling.analyses.modes_and_responses import (
+    MESH_HARMONICS,
+    SolvedSystem,
+    machine_warnings,
+    solve_system,
+    unstable_modes_warnings,
+)
 from gearwhine.coupling.analyses.motion import MachineMotion, solve_motion
+from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, parted_flank_warnings, settling_warnings
+from gearwhine.coupling.analyses.operation_warnings import (
+    bearing_load_warnings,
+    constant_speed_warnings,
+    unbalanced_torque_warnings,
+)
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import (
     OrderTracking,
@@ -47,26 +59,15 @@ from gearwhine.results.run import (
     run_signature_document,
     transient_document,
 )
+from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
 from gearwhine.solve.operating_point import SolvedLoad, load_warnings, solve_load
-from gearwhine.solve.plausibility import (
-    add_mechanisms,
-    add_uncertainty,
-    bearing_load_warnings,
-    beyond_limit_warnings,
-    centrifugal_warnings,
-    constant_speed_warnings,
-    machine_warnings,
-    parted_flank_warnings,
-    settling_warnings,
-    unbalanced_torque_warnings,
-    unstable_modes_warnings,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

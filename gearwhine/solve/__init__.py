@@ -16,5 +16,4 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
   and sound at that equilibrium; changes of the housing, and the model of the lines.
 - :mod:`~gearwhine.solve.acoustics`: settings of the sound, which is solved in :mod:`gearwhine.coupling.sound`.
 - :mod:`~gearwhine.solve.operating_shapes`: operating shapes of the machine's motion.
-- :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """
