@@ -17,6 +17,10 @@ from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, Solv
 from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.machine import require_machine
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -40,7 +44,7 @@ from gearwhine.solve.operating_point import (
     sensitivity_warnings,
 )
 from gearwhine.solve.rotors import solve_rotors, write_ross_files
-from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
+from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -183,7 +187,7 @@ def operating_point(
     solved = load_of_case(case, machine, progress, over_torque=over_torque, over_hunting_period=True)
     warnings = load_warnings(solved)
     if ranked:
-        ranking = solve_load_sensitivity(case, machine, solved.point, housing, progress, line=line)
+        ranking = _ranking(case, machine, solved.point, housing, line, progress)
         solved, warnings = replace(solved, sensitivity=ranking), [*warnings, *sensitivity_warnings(ranking)]
     document = load_document(case.title, solved)
     add_warnings(document, warnings)
@@ -207,6 +211,37 @@ def operating_point(
         _housing=housing,
         _options=(LOAD_OPTIONS, LOAD_SAME),
     )
+
+
+def _ranking(
+    case: Case,
+    machine: Machine,
+    point: OperatingPoint,
+    housing: SolvedHousing | None,
+    line: str | None,
+    progress: Progress,
+) -> LoadSensitivity:
+    """Rank the parts of a case's machine; a line that there is not is refused by its option."""
+    modelled, changes, note = None, (), None
+    if housing is not None:
+        modelled = modelled_housing(case, housing)
+        changes, note = housing_changes(case, housing.mesh)
+    acoustics = acoustics_of(case)
+    try:
+        with refused_by_key(acoustics):
+            return solve_load_sensitivity(
+                machine,
+                point,
+                modelled,
+                changes,
+                acoustics=None if case.acoustics is None else acoustics,
+                run=run_of(case),
+                line=line,
+                note=note,
+                progress=progress,
+            )
+    except UnknownLineError as error:
+        raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
 
 def loaded_case(

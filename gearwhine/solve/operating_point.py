@@ -22,6 +22,7 @@ from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.load_analysis.influences import LoadSensitivity
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.from_case.gear_pairs import misalignments_of_case
 from gearwhine.from_case.machine import require_machine
@@ -30,7 +31,6 @@ from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
-from gearwhine.solve.sensitivity.influences import LoadSensitivity
 
 FloatArray = npt.NDArray[np.float64]
 
