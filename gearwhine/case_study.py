@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
@@ -537,7 +539,6 @@ class CaseStudy(Study):
         from gearwhine.analyses.machine_results import load_result
         from gearwhine.solve.machine import described_machine
         from gearwhine.solve.operating_point import load_of_case, require_load
-        from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 
         require_load(self.case)
         ranked = sensitivity or line is not None
@@ -545,9 +546,37 @@ class CaseStudy(Study):
         machine = described_machine(self.case, None) if rigid_seats else self.machine
         solved = load_of_case(self.case, machine, self.progress, over_torque=over_torque, over_hunting_period=True)
         if ranked:
-            ranking = solve_load_sensitivity(self.case, machine, solved.point, housing, self.progress, line=line)
-            solved = replace(solved, sensitivity=ranking)
+            solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
+
+    def _ranking(
+        self, machine: "Machine", point: "OperatingPoint", housing: "SolvedHousing | None", line: str | None
+    ) -> "LoadSensitivity":
+        """Rank the parts of the machine; a line that there is not is refused by its option."""
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+        from gearwhine.solve.machine import run_of
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
+
+        modelled = None if housing is None else modelled_housing(self.case, housing)
+        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
+        acoustics = acoustics_of(self.case)
+        try:
+            with refused_by_key(acoustics):
+                return solve_load_sensitivity(
+                    machine,
+                    point,
+                    modelled,
+                    changes,
+                    acoustics=None if self.case.acoustics is None else acoustics,
+                    run=run_of(self.case),
+                    line=line,
+                    note=note,
+                    progress=self.progress,
+                )
+        except UnknownLineError as error:
+            raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.

@@ -25,7 +25,7 @@ from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
+from gearwhine.solve.machine import reduce_housing
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"
@@ -81,7 +81,7 @@ def housing() -> SolvedHousing:
 def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
     pairs = solve_gears(case)
-    point = describe_machine(case, full_housing_component(case, housing)).operating_point()
+    point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 
 
