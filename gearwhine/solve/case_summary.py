@@ -8,6 +8,7 @@ from gearwhine.case import Case, GearPair, Housing, Rotor, force_origins, mesh_f
 from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
+from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
@@ -24,11 +25,11 @@ from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.machine import described_machine
 from gearwhine.solve.part_fits import fit_warnings
-from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from case_housings import full_component
 from coupled_cases import coupled
 
 from gearwhine.case import Case, case_document, load_case, parse_case
@@ -27,6 +26,7 @@ from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import reduce_housing
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"
@@ -82,7 +82,7 @@ def housing() -> HousingModes:
 def gearbox(housing: HousingModes, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
     pairs = solve_gears(case)
-    point = describe_machine(case, full_component(case, housing)).operating_point()
+    point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 
 

@@ -6,13 +6,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
-from case_housings import full_component, mesh_of
+from case_housings import mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
+from gearwhine.coupling.load_analysis.influences import LineChange
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.sound import solution
 from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
@@ -23,16 +26,16 @@ from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case
 from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.acoustics.sound_levels import a_weighting
+from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
-from gearwhine.numerics.progress import silent
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
-from gearwhine.solve.sensitivity.influences import LineChange
-from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.sensitivity.housing_changes import case_changes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,7 +66,7 @@ def solve_at_rest(case: Case, mesh: Mesh) -> tuple[HousingModes, Machine, Operat
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
         housing = solve_housing(case)
-    machine = describe_machine(case, full_component(case, housing))
+    machine = describe_machine(case, reduce_housing(case, housing))
     return housing, machine, machine.operating_point()
 
 
@@ -77,7 +80,7 @@ def solve_sound(
     with pytest.MonkeyPatch.context() as patch:
         if base is not None:
             patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, housing.mesh))
-        lines = solve_lines(case, machine, point, housing, silent)
+        lines = solve_lines(machine, point, housing, acoustics_of(case))
     assert lines is not None
     return housing, point, lines
 
