@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.modal_test import PlannedSurvey
     from gearwhine.meshes import Mesh
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
-    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
@@ -287,9 +287,9 @@ class CaseStudy(Study):
         gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
             Where the modes fail their proofs.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import modes_result
 
-        return housing.modes(self.case, detail=detail, housing=self._required_housing("modes"), progress=self.progress)
+        return modes_result(self._required_housing("modes"), self.origin, detail=detail)
 
     def compare(self) -> "Result[Comparison]":
         """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
@@ -299,13 +299,16 @@ class CaseStudy(Study):
         CaseError, gearwhine.housing.HousingError
             Where the case has nothing measured, or its modes are not known as high as the measured ones.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import compare_result
         from gearwhine.case import require
-        from gearwhine.solve.comparison import require_comparable
+        from gearwhine.solve.comparison import compare_measured, require_comparable
 
         require(self.case, "housing", "measured", command="compare")
+        assert self.case.measured is not None
         require_comparable(self.case)
-        return housing.compare(self.case, housing=self._required_housing("compare"), progress=self.progress)
+        housing = self._required_housing("compare")
+        compared = compare_measured(self.case.measured, housing, self.progress, with_responses=True)
+        return compare_result(housing, compared, self.origin)
 
     def survey(
         self, sensors: Annotated[int, _AtLeastOne], modes: Annotated[int | None, _AtLeastOne] = None
@@ -324,10 +327,18 @@ class CaseStudy(Study):
         CaseError
             Where the sensors cannot separate the modes.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import survey_result
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.housing import HousingError
+        from gearwhine.housing.modal_test import plan_modal_survey
 
-        solved = self._required_housing("survey")
-        return housing.survey(self.case, sensors=sensors, modes=modes, housing=solved, progress=self.progress)
+        housing = self._required_housing("survey")
+        self.progress(f"choosing {sensors} sensors")
+        try:
+            planned = plan_modal_survey(housing, sensors, modes)
+        except HousingError as error:
+            raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+        return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
         """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
@@ -394,12 +405,12 @@ class CaseStudy(Study):
             require_comparable(self.case)
         return housing.render(
             self.case,
+            self._required_housing("render"),
             modes,
             view=view,
             mode_format=mode_format,
             lines=line,
             measured=measured,
-            housing=self._required_housing("render"),
             folder=self.folder,
             progress=self.progress,
         )
@@ -752,9 +763,10 @@ class CaseStudy(Study):
 
     def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with those of `[measured]`; None without."""
-        from gearwhine.solve.comparison import compare_housing
+        from gearwhine.solve.comparison import compare_measured
 
-        return None if self.case.measured is None else compare_housing(self.case, housing, self.progress)
+        measured = self.case.measured
+        return None if measured is None else compare_measured(measured, housing, self.progress).comparison
 
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
         from gearwhine.analyses.machine_results import MachineUnderLoad

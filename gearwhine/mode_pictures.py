@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
-    from gearwhine.housing.measured import MappedSurvey
+    from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
@@ -460,12 +460,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
 
 
 def draw_measured(
-    case: Case,
-    housing: HousingModes,
-    comparison: "Comparison | None",
-    survey: "MappedSurvey | None",
-    view: str,
-    place: Path,
+    title: str, housing: HousingModes, compared: "ComparedTest | None", view: str, place: Path
 ) -> list[str]:
     """Draw measured shapes beside those of the model that they are paired with, as ``measured-and-model.png``.
 
@@ -477,16 +472,15 @@ def draw_measured(
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
     from gearwhine.housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
     from gearwhine.housing.pictures.views import viewing_direction
-    from gearwhine.solve.comparison import mapped_shapes, read_measured
 
-    measured = read_measured(case)
-    if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
+    shapes = None if compared is None else compared.test.modes.shapes
+    if compared is None or compared.survey is None or shapes is None or not compared.comparison.pairs:
         raise CaseError([Problem("measured.file", UNSAID, "measured shapes of which some are like the model's")])
-    geometry, of_model = survey.geometry, mapped_shapes(housing, survey)
+    geometry, of_model = compared.survey.geometry, compared.survey.shapes(housing.modes.shapes)
     shape_pairs = []
-    for pair in comparison.pairs:
+    for pair in compared.comparison.pairs:
         model = of_model[pair.mode - 1]
-        laid = laid_over(measured.shapes[pair.measured_mode - 1], model)
+        laid = laid_over(shapes[pair.measured_mode - 1], model)
         likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
         shape_pairs.append(
             ShapePair(
@@ -497,10 +491,14 @@ def draw_measured(
                 point_motions(geometry, np.where(np.isfinite(laid), model, np.nan)),
             )
         )
-    title = f"Measured and model shapes: {case.title}"
     up = np.array(housing.up)
     figure = draw_measured_shapes(
-        title, geometry.positions, wireframe(geometry), shape_pairs, viewing_direction(view, up), up
+        f"Measured and model shapes: {title}",
+        geometry.positions,
+        wireframe(geometry),
+        shape_pairs,
+        viewing_direction(view, up),
+        up,
     )
     return [save(figure, place / "measured-and-model.png")]
 

@@ -48,7 +48,7 @@ from gearwhine.from_case.parametric_housing import fitted_case, with_entry
 from gearwhine.housing.acoustics.boundary_elements import surface_product
 from gearwhine.housing.acoustics.surface_velocity import face_surface
 from gearwhine.housing.updating.mesh_bias import MeshBias
-from gearwhine.solve.comparison import compare_housing
+from gearwhine.solve.comparison import compare_measured
 from gearwhine.housing import HousingModes
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.updating import update_housing, updated_case
@@ -155,7 +155,7 @@ def judged(path: str | Path) -> dict[str, Any]:
     """Return the errors of a box's frequencies [%], the count of modes, and whether each statement holds."""
     case = load_case(path).case
     solved = solve_housing(case)
-    comparison = compare_housing(case, solved)
+    comparison = compare_measured(case.measured, solved).comparison
     runs = settled_runs(path, solved, [pair.mode - 1 for pair in comparison.pairs])
     first = comparison.pairs[0].mode - 1
     return {

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
     from gearwhine.housing.measured import MappedSurvey, MeasuredGeometry
-    from gearwhine.solve.comparison import ResponseCorrelation
+    from gearwhine.housing.modal_test import ResponseCorrelation
 
 PAIR = (
     Quantity(

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gearwhine.housing import HousingModes
-    from gearwhine.solve.comparison import PlannedSurvey
+    from gearwhine.housing.modal_test import PlannedSurvey
 
 
 class _Sensor(NamedTuple):

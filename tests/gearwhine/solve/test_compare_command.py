@@ -14,7 +14,7 @@ from gearwhine.housing.correlation.comparison import Comparison, ModePair
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
 from gearwhine.housing.measured.survey_data import SurveyData
 from gearwhine.housing.measured.survey_files import write_survey
-from gearwhine.solve.comparison import comparison_warnings
+from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.solve.housing_modes import solve_housing
 
 pytestmark = pytest.mark.usefixtures("unrendered")

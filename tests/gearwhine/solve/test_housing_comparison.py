@@ -6,14 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearwhine.case import CaseError, load_case
-from gearwhine.housing import HousingModes
+from gearwhine.case import load_case
+from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.correlation.comparison import Pairing
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
+from gearwhine.housing.modal_test import pair_modes
 from gearwhine.output import finite, json_text
 from gearwhine.output.terminal import shown_by
 from gearwhine.results.comparison import _survey, comparison_document, sections
-from gearwhine.solve.comparison import compare_housing, pair_modes
+from gearwhine.solve.comparison import compare_measured
 from gearwhine.solve.housing_modes import solve_housing
 
 CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
@@ -79,7 +80,7 @@ def test_a_model_known_less_high_than_the_test_is_refused(
 ) -> None:
     measured, shapes = twin
     high = replace(measured, frequencies=1.2 * measured.frequencies)
-    with pytest.raises(CaseError, match="are paired with the model's up to there"):
+    with pytest.raises(HousingError, match="are paired with the model's up to there"):
         pair_modes(solved, high, shapes)
 
 
@@ -88,7 +89,7 @@ def test_measured_frequencies_alone_are_paired_as_the_case_says(solved: HousingM
     comparison = pair_modes(solved, given, pairing="dominance")
     assert comparison.shapes is None
     assert comparison.gap is not None
-    assert comparison.pairs == compare_housing(CASE, solved).pairs  # the case asks for dominance
+    assert comparison.pairs == compare_measured(CASE.measured, solved).comparison.pairs  # the case asks for dominance
     assert pair_modes(solved, given).pairing == "nearest"
 
 
