@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from gearwhine.solve.case_summary import CheckedCase
     from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -218,12 +218,35 @@ class Study:
 
         return of_machine.gears(self.machine, self.settings.title, aims=aims, progress=self.progress)
 
-    def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
-        """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""
+    def operating_point(
+        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+    ) -> Result[SolvedLoad]:
+        """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`.
+
+        Parameters
+        ----------
+        over_torque : bool
+            Whether to solve for the equilibria from 10 to 150 % of the torque as well.
+        sensitivity : bool
+            Whether to rank bearing stiffness and positions, and the flat faces of a housing by
+            :meth:`gearwhine.Housing.modes`, by their influence on gear pairs, on sensors' lines and, with the acoustics
+            of the settings, on the sound power of the loudest lines.
+        line : str, optional
+            Line that is ranked: a sensor's name, also with its frequency, ``roof@1377``, or a line of the sound,
+            ``sound@1377``. It implies ``sensitivity``.
+        """
         from gearwhine.analyses import of_machine
 
+        plan = self.settings.transient
         return of_machine.operating_point(
-            self.machine, self.settings.title, over_torque=over_torque, progress=self.progress
+            self.machine,
+            self.settings.title,
+            over_torque=over_torque,
+            sensitivity=sensitivity,
+            line=line,
+            acoustics=self.settings.acoustics,
+            run=None if plan is None else plan.run,
+            progress=self.progress,
         )
 
     def system(

@@ -18,10 +18,14 @@ from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings, sensitivity_warnings
 from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad, solve_load
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.from_case.gear_pairs import aligned_by_default
 from gearwhine.from_case.machine import require_machine
+from gearwhine.housing.updating.housing_change import HousingChange
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -34,15 +38,7 @@ from gearwhine.solve.acoustics import acoustics_of, check_before_modes, refused_
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import aims_at_sensor, analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
-from gearwhine.solve.operating_point import (
-    SolvedLoad,
-    find_load,
-    load_of_case,
-    load_warnings,
-    require_load,
-    sensitivity_warnings,
-)
+from gearwhine.solve.machine import described_machine, load_of_case, reduce_housing, run_of, solve_pairs
 from gearwhine.solve.rotors import solve_rotors, write_ross_files
 from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
 
@@ -175,7 +171,11 @@ def operating_point(
     gearwhine.coupling.EquilibriumNotFoundError
         Where no equilibrium is found.
     """
-    require_load(case)
+    require(case, "rotor", "bearing", "operation", command="load")
+    if not case.is_loaded:
+        expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
+        raise CaseError([Problem("operation.torque", 0.0, expected)])
+    require_machine(case)
     ranked = sensitivity or line is not None
     if rigid_seats:
         housing = None
@@ -184,7 +184,13 @@ def operating_point(
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
     part = None if housing is None else reduce_housing(case, housing, progress)
     machine = described_machine(case, part)
-    solved = load_of_case(case, machine, progress, over_torque=over_torque, over_hunting_period=True)
+    solved = solve_load(
+        machine,
+        progress,
+        over_torque=over_torque,
+        over_hunting_period=True,
+        aligned_by_default=aligned_by_default(case),
+    )
     warnings = load_warnings(solved)
     if ranked:
         ranking = _ranking(case, machine, solved.point, housing, line, progress)
@@ -222,7 +228,8 @@ def _ranking(
     progress: Progress,
 ) -> LoadSensitivity:
     """Rank the parts of a case's machine; a line that there is not is refused by its option."""
-    modelled, changes, note = None, (), None
+    modelled, note = None, None
+    changes: Sequence[HousingChange] = ()
     if housing is not None:
         modelled = modelled_housing(case, housing)
         changes, note = housing_changes(case, housing.mesh)
@@ -253,7 +260,7 @@ def loaded_case(
     """
     part = None if housing is None else reduce_housing(case, housing, progress)
     machine = described_machine(case, part)
-    load, warnings = find_load(case, machine, progress)
+    load, warnings = load_of_case(case, machine, progress)
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
     return MachineUnderLoad(case.title, loaded, load, warnings, case, housing)
 

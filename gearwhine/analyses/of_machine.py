@@ -45,6 +45,9 @@ from gearwhine.coupling.analyses.transient import (
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
+from gearwhine.coupling.load_analysis.ranking import rank_parts
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad, solve_load
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from gearwhine.mode_pictures import draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
@@ -67,7 +70,6 @@ from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
-from gearwhine.solve.operating_point import SolvedLoad, load_warnings, solve_load
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -151,9 +153,9 @@ def machine_under_load(
     gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
         Where the loads drive a motion that nothing holds, or no equilibrium is found.
     """
-    load = solve_load(machine, progress) if machine.is_loaded else None
+    load, warnings = find_load(machine, progress) if machine.is_loaded else (None, [])
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
-    return MachineUnderLoad(title, loaded, load, [] if load is None else load_warnings(load))
+    return MachineUnderLoad(title, loaded, load, warnings)
 
 
 def rotors(
@@ -277,15 +279,29 @@ def analysed_gears(
 
 
 def operating_point(
-    machine: Machine, title: str = "", *, over_torque: bool = False, progress: Progress = silent
+    machine: Machine,
+    title: str = "",
+    *,
+    over_torque: bool = False,
+    sensitivity: bool = False,
+    line: str | None = None,
+    acoustics: Acoustics | None = None,
+    run: Run | None = None,
+    progress: Progress = silent,
 ) -> Result[SolvedLoad]:
     """Find the static equilibrium of a machine: bearing loads, deflections, misalignment and load of the gear faces.
 
-    The parameters are those of :func:`gearwhine.solve.operating_point.solve_load`.
+    ``sensitivity`` or a ``line`` rank its bearings and the faces of its housing; the parameters are those of
+    :func:`gearwhine.coupling.load_analysis.solved_load.solve_load` and
+    :func:`gearwhine.coupling.load_analysis.ranking.solve_load_sensitivity`.
     """
     solved = solve_load(machine, progress, over_torque=over_torque, over_hunting_period=True)
+    warnings = load_warnings(solved)
+    if sensitivity or line is not None:
+        ranking = rank_parts(machine, solved.point, acoustics=acoustics, run=run, line=line, progress=progress)
+        solved, warnings = replace(solved, sensitivity=ranking), [*warnings, *sensitivity_warnings(ranking)]
     document = load_document(title, solved)
-    add_warnings(document, load_warnings(solved))
+    add_warnings(document, warnings)
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_load

@@ -35,8 +35,7 @@ from gearwhine.results.run import transient_document
 from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.solve.acoustics import acoustics_of, sound_left_out
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
-from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing, run_of
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.resonances import Resonances, find_resonances
 
@@ -125,7 +124,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
         _require_same_code(code)
         begin = time.perf_counter()
         described = described_machine(case, housing)
-        load, warnings_of_load = find_load(case, described)
+        load, warnings_of_load = load_of_case(case, described)
         loaded = load_machine(described, None if load is None else load.point, run_of(case))
         frequencies = described.mesh_frequencies
         solved = solve_transient(loaded.coupled, plan_of(case))
