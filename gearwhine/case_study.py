@@ -26,9 +26,11 @@ if TYPE_CHECKING:
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.meshes import Mesh
@@ -385,9 +387,13 @@ class CaseStudy(Study):
             Where no renderer or encoder is available.
         """
         from gearwhine.analyses import housing
+        from gearwhine.case import CaseError, Problem
         from gearwhine.mode_pictures import check_request
         from gearwhine.solve.comparison import require_comparable
 
+        if line and self.folder is None:
+            expected = "the results folder of a run, such as `gearwhine.load(case, folder=...)`"
+            raise CaseError([Problem("render: line", list(line), expected)])
         modes = modes or (None if line or measured else "dominant")
         check_request(self.case, modes, mode_format, line, measured=measured)
         if measured:
@@ -535,7 +541,6 @@ class CaseStudy(Study):
         from gearwhine.coupling.load_analysis.solved_load import solve_load
         from gearwhine.from_case.gear_pairs import aligned_by_default
         from gearwhine.solve.machine import described_machine
-        from gearwhine.solve.sensitivity.housing_changes import rank_parts_of_case
 
         self.require("load")
         ranked = sensitivity or line is not None
@@ -549,9 +554,37 @@ class CaseStudy(Study):
             aligned_by_default=aligned_by_default(self.case),
         )
         if ranked:
-            ranking = rank_parts_of_case(self.case, machine, solved.point, housing, line, self.progress)
-            solved = replace(solved, sensitivity=ranking)
+            solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
+
+    def _ranking(
+        self, machine: "Machine", point: "OperatingPoint", housing: "SolvedHousing | None", line: str | None
+    ) -> "LoadSensitivity":
+        """Rank the parts of the machine; a line that there is not is refused by its option."""
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+        from gearwhine.solve.machine import run_of
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
+
+        modelled = None if housing is None else modelled_housing(self.case, housing)
+        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
+        acoustics = acoustics_of(self.case)
+        try:
+            with refused_by_key(acoustics):
+                return solve_load_sensitivity(
+                    machine,
+                    point,
+                    modelled,
+                    changes,
+                    acoustics=None if self.case.acoustics is None else acoustics,
+                    run=run_of(self.case),
+                    line=line,
+                    note=note,
+                    progress=self.progress,
+                )
+        except UnknownLineError as error:
+            raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
@@ -712,11 +745,13 @@ class CaseStudy(Study):
 
         return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
 
-    def solved_housing(self, *, with_sound: bool = False) -> "SolvedHousing | None":
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        return None if self.case.housing is None else self._required_housing("modes", with_sound=with_sound)
+        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
 
-    def _required_housing(self, command: str, *, with_sound: bool = False) -> "SolvedHousing":
+    def _required_housing(
+        self, command: str, folder: Path | None = None, *, with_sound: bool = False
+    ) -> "SolvedHousing":
         """Return the solved housing; a case without one is refused in the name of a command."""
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
@@ -724,8 +759,9 @@ class CaseStudy(Study):
         refuse = check_before_modes(self.case) if with_sound else None
         with self._kept.lock:
             if self._kept.solved is None:
+                place = folder or self.folder
                 self._kept.solved = solve_housing(
-                    self.case, self.progress, command=command, folder=self.folder, fresh=self.fresh, before=refuse
+                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
                 )
             elif refuse is not None:
                 refuse(self.case, self._kept.solved.mesh)

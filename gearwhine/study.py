@@ -466,8 +466,11 @@ class Study:
 
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
-    def solved_housing(self, *, with_sound: bool = False) -> "SolvedHousing | None":
-        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it."""
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
+        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
+
+        Modes that a ``folder`` keeps are read in place of solving.
+        """
         return None
 
     def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":

@@ -108,7 +108,9 @@ class WholeRun:
         return rotors_document(self.solution.rotors) if self.solution.rotors else {}
 
     def _solve_housing(self) -> Document:
-        self.solution = replace(self.solution, housing=self.study.solved_housing(with_sound=self._has_sound))
+        self.solution = replace(
+            self.solution, housing=self.study.solved_housing(self.folder, with_sound=self._has_sound)
+        )
         return {}
 
     def _load(self) -> Document:

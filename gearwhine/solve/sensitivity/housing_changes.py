@@ -9,15 +9,11 @@ from dataclasses import replace
 
 from scipy import sparse
 
-from gearwhine.case import Case, CaseError, Problem, UpdateParameter
+from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
-from gearwhine.coupling.load_analysis.influences import LoadSensitivity
 from gearwhine.coupling.load_analysis.modelled_housing import ModelledHousing
-from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
-from gearwhine.coupling.machine_description import Machine
-from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.housing.housing import bearing_port
 from gearwhine.housing.model.seats import seat_matrix, sensor_port
@@ -26,52 +22,7 @@ from gearwhine.housing.updating.housing_change import HousingChange, face_change
 from gearwhine.housing.updating.static_sensitivity import PortRates
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.box.morph import MorphError
-from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.acoustics import acoustics_of, refused_by_key
 from gearwhine.solve.housing_modes import SolvedHousing, bearing_places, describe_housing
-from gearwhine.solve.machine import run_of
-
-
-def rank_parts_of_case(
-    case: Case,
-    machine: Machine,
-    point: OperatingPoint,
-    housing: SolvedHousing | None,
-    line: str | None = None,
-    progress: Progress = silent,
-) -> LoadSensitivity:
-    """Rank the bearings of a case's machine and the parameters of its housing.
-
-    See :func:`gearwhine.coupling.load_analysis.ranking.solve_load_sensitivity`.
-
-    Raises
-    ------
-    CaseError
-        Where there is no such line, or the radiating surface cannot be made.
-    gearwhine.housing.HousingError
-        Where a line fails its proofs.
-    """
-    modelled, note = None, None
-    changes: Sequence[HousingChange] = ()
-    if housing is not None:
-        modelled = modelled_housing(case, housing)
-        changes, note = housing_changes(case, housing.mesh)
-    acoustics = acoustics_of(case)
-    try:
-        with refused_by_key(acoustics):
-            return solve_load_sensitivity(
-                machine,
-                point,
-                modelled,
-                changes,
-                acoustics=None if case.acoustics is None else acoustics,
-                run=run_of(case),
-                line=line,
-                note=note,
-                progress=progress,
-            )
-    except UnknownLineError as error:
-        raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
 
 def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
