@@ -210,7 +210,7 @@ def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> N
         for bearing in load["bearings"]:
             force = point.bearing(bearing["name"]).force[:2]
             assert bearing["force_n"][:2] == pytest.approx(force)
-            mean = result.bearing_force_mean[bearing["name"]][:2]
+            mean = result.motion.bearing_force_mean[bearing["name"]][:2]
             assert mean == pytest.approx(force, abs=0.02 * float(np.hypot(*force)))
         swept.append(SweptPoint(one, result, resumed=False))
     data = collected_sweep(given, keys, swept)
