@@ -57,9 +57,9 @@ class TakenMisalignment:
     Attributes
     ----------
     taken : float or None
-        Misalignment that is taken [rad]; None where the operating point gives it and is not solved.
+        Misalignment that mesh stiffness and motion take [rad]; None where the operating point gives it and is not solved.
     origin : str
-        ``operating point``; ``case``, where the case gives it; or ``default``, which is 0.
+        Origin of that misalignment: ``operating point``, ``case`` where the case gives it, or ``default``, which is 0.
     found : float or None
         Misalignment at the operating point [rad]; None where that is not solved.
     """
