@@ -72,6 +72,6 @@ def _entries(kind: type) -> dict[str, str]:
 def _first_sentence(text: str) -> str:
     """Return a docstring's first sentence up to a semicolon, without its unit in brackets, shape and Sphinx's roles."""
     sentence = re.split(r"[.;](?=\s)", " ".join(text.split()), maxsplit=1)[0].removesuffix(".")
-    sentence = re.sub(r"\s*\[[^\]]*\]|, shape \(.*?\)", "", sentence)
+    sentence = re.sub(r"\s*\[[^\]]*\]|, (shape )?\(\w*,( \w+)*\)", "", sentence)
     sentence = re.sub(r":\w+:`~?(?:[\w.]*\.)?(\w+)`", r"\1", sentence).replace("`", "")
     return sentence[:1].lower() + sentence[1:]

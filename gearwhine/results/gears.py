@@ -190,57 +190,16 @@ GEOMETRY = (
 
 _PHASE, _TOOTH = ("mesh_phase",), ("mesh_phase", "tooth_pair")
 CURVES = (
-    Quantity("", "phases", "mesh_phase", _PHASE, "1", long_name="part of the mesh period", common=True),
-    Quantity(
-        "", "stiffness", "mesh_stiffness", _PHASE, "N/m", long_name="mesh stiffness of all pairs on the path of contact"
-    ),
-    Quantity(
-        "",
-        "mesh.tangent_stiffness",
-        "loaded_flank_stiffness",
-        _PHASE,
-        "N/m",
-        long_name="stiffness of the pairs that touch under the mean torque",
-    ),
-    Quantity(
-        "",
-        "mesh.transmission_error",
-        "transmission_error",
-        _PHASE,
-        "m",
-        long_name="static transmission error under the mean torque, along the line of action",
-    ),
-    Quantity(
-        "",
-        "unloaded",
-        "unloaded_transmission_error",
-        _PHASE,
-        "m",
-        long_name="transmission error without load, along the line of action",
-    ),
-    Quantity(
-        "", "position", "tooth_pair_position", _TOOTH, "1", long_name="place on the path of contact in base pitches"
-    ),
-    Quantity("", "share", "load_share", _TOOTH, "1", long_name="part of the load on the pair"),
-    Quantity(
-        "",
-        "pressure",
-        "contact_pressure",
-        _TOOTH,
-        "Pa",
-        long_name="Hertzian pressure of the pair, the largest over its face",
-    ),
-    Quantity(
-        "", "face_place", "face_place", ("slice",), "m", long_name="distance of the slice from the middle of the face"
-    ),
-    Quantity(
-        "",
-        "mesh.line_loads",
-        "line_load",
-        (*_TOOTH, "slice"),
-        "N/m",
-        long_name="line load of the tooth pair: transverse load per face width",
-    ),
+    Quantity("", "phases", "mesh_phase", _PHASE, "1", common=True),
+    Quantity("", "stiffness", "mesh_stiffness", _PHASE, "N/m"),
+    Quantity("", "mesh.tangent_stiffness", "loaded_flank_stiffness", _PHASE, "N/m"),
+    Quantity("", "mesh.transmission_error", "transmission_error", _PHASE, "m"),
+    Quantity("", "unloaded", "unloaded_transmission_error", _PHASE, "m"),
+    Quantity("", "position", "tooth_pair_position", _TOOTH, "1"),
+    Quantity("", "share", "load_share", _TOOTH, "1"),
+    Quantity("", "pressure", "contact_pressure", _TOOTH, "Pa"),
+    Quantity("", "face_place", "face_place", ("slice",), "m"),
+    Quantity("", "mesh.line_loads", "line_load", (*_TOOTH, "slice"), "N/m"),
 )
 """Quantities of a pair at even phases of the mesh period."""
 
@@ -270,7 +229,7 @@ HARRIS_MAP = (
         _LOADS,
         long_name="torque on the driver",
     ),
-    Quantity("", "harris.phases", "harris_phase", ("harris_step",), "1", long_name="part of the mesh period"),
+    Quantity("", "harris.phases", "harris_phase", ("harris_step",), "1"),
     Quantity(
         "",
         "harris.transmission_error",
@@ -293,14 +252,7 @@ STIFFNESS = (
 TRANSMISSION_ERROR = (
     Quantity("mean", "solved.static.mean_transmission_error"),
     Quantity("peak_to_peak", "solved.static.peak_to_peak_transmission_error"),
-    Quantity(
-        "harmonics",
-        "harmonics",
-        "transmission_error_harmonic",
-        ("harmonic",),
-        "m",
-        long_name="peak amplitude of the transmission error at whole multiples of the mesh frequency, from the first",
-    ),
+    Quantity("harmonics", "harmonics", "transmission_error_harmonic", ("harmonic",), "m"),
     Quantity("unloaded_peak_to_peak", lambda pair: float(np.ptp(pair.unloaded))),
     Part("over_hunting_period", "solved.hunting", HUNTING),
 )

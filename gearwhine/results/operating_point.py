@@ -264,14 +264,7 @@ SENSOR_LINE = (
     Quantity("sensor", "line.output.sensor", "line_sensor", heading="sensor"),
     Quantity("excitation", "excitation", "line_excitation", heading="excitation"),
     Quantity("frequency_hz", "line.frequency", "line_frequency", heading="[Hz]", shown=".1f"),
-    Quantity(
-        "amplitude_m_per_s2",
-        "line.value",
-        "line_amplitude",
-        long_name="amplitude of acceleration of the line, linear about the operating point",
-        heading="[m/s²]",
-        shown=".3g",
-    ),
+    Quantity("amplitude_m_per_s2", "line.value", "line_amplitude", heading="[m/s²]", shown=".3g"),
     Quantity("ranked"),
 )
 """Quantities of a sensor's line."""

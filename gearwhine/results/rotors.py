@@ -123,14 +123,8 @@ CRITICAL_SPEEDS = (
 
 WHIRL = (
     Quantity("", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm", "whirl_state"),
-    Quantity("speed_rpm", "whirl.speed", "whirl_speed", long_name="speed of the rotor"),
-    Quantity(
-        "frequency_hz",
-        "whirl.frequencies",
-        "whirl_frequency",
-        ("whirl_number",),
-        long_name="natural frequency of whirl",
-    ),
+    Quantity("speed_rpm", "whirl.speed", "whirl_speed"),
+    Quantity("frequency_hz", "whirl.frequencies", "whirl_frequency", ("whirl_number",)),
     Quantity("damping_ratio", "whirl.damping_ratios"),
     Quantity("log_decrement", "whirl.log_decrements"),
     Quantity("direction", "whirl.direction"),
@@ -145,20 +139,11 @@ WHIRL = (
 
 _STEPS = ("campbell_step", "whirl_branch")
 CAMPBELL = (
-    Quantity("speed_rpm", "campbell.speeds", "campbell_speed", _STEPS[:1], long_name="speed of the rotor"),
-    Quantity("", "campbell.frequencies", "campbell_frequency", _STEPS, "Hz", long_name="natural frequency of whirl"),
-    Quantity("", "campbell.log_decrements", "campbell_log_decrement", _STEPS, "1", long_name="log decrement of whirl"),
-    Quantity(
-        "", "campbell.direction", "campbell_direction", _STEPS, "1", long_name="1 counter-clockwise, -1 clockwise"
-    ),
-    Quantity(
-        "",
-        "campbell.axial_share",
-        "campbell_axial_share",
-        _STEPS,
-        "1",
-        long_name="share of motion along the axis in the kinetic energy of whirl",
-    ),
+    Quantity("speed_rpm", "campbell.speeds", "campbell_speed", _STEPS[:1]),
+    Quantity("", "campbell.frequencies", "campbell_frequency", _STEPS, "Hz"),
+    Quantity("", "campbell.log_decrements", "campbell_log_decrement", _STEPS, "1"),
+    Quantity("", "campbell.direction", "campbell_direction", _STEPS, "1"),
+    Quantity("", "campbell.axial_share", "campbell_axial_share", _STEPS, "1"),
     Quantity("unstable_from_rpm", "campbell.unstable_from"),
     Quantity("proved_at_rpm", lambda solved: solved.campbell.speeds[solved.campbell.proved] * RPM),
     Part("", lambda solved: _Order(solved, 1.0, solved.crossings), CRITICAL_SPEEDS),
@@ -277,15 +262,8 @@ STATIC = (
     ),
     Quantity("largest_deflection_m", "weight.largest.0"),
     Quantity("largest_deflection_at_m", "weight.largest.1"),
-    Quantity("", "weight.places", "static_place", _SAG, "m", long_name="distance from the rotor's left end"),
-    Quantity(
-        "",
-        "weight.displacement",
-        "static_deflection",
-        ("plane", *_SAG),
-        "m",
-        long_name="deflection of the shaft under its weight, x and y",
-    ),
+    Quantity("", "weight.places", "static_place", _SAG, "m"),
+    Quantity("", "weight.displacement", "static_deflection", ("plane", *_SAG), "m"),
     _PLANE,
 )
 """Bearing loads under gravity and constant forces, and the shaft's sag."""
@@ -302,7 +280,7 @@ class _Probe(NamedTuple):
 
 PROBE = (
     Quantity("", lambda row: f"{row.reading.rotor}: {row.reading.probe.name}", "probe"),
-    Quantity("", "reading.speeds", "response_speed", _PROBE, "rpm", long_name="speed of the rotor"),
+    Quantity("", "reading.speeds", "response_speed", _PROBE, "rpm"),
     Quantity("name", "reading.probe.name"),
     Quantity("at_m", "reading.probe.at"),
     Quantity("angle_deg", "reading.probe.angle"),
@@ -314,8 +292,8 @@ PROBE = (
         "m",
         long_name="reading of the probe, zero to peak",
     ),
-    Quantity("", "reading.phase_lag", "probe_phase_lag", _PROBE, "rad", long_name="lag of the reading behind the mark"),
-    Quantity("", "reading.major_axis", "orbit_major_axis", _PROBE, "m", long_name="half the length of the orbit"),
+    Quantity("", "reading.phase_lag", "probe_phase_lag", _PROBE, "rad"),
+    Quantity("", "reading.major_axis", "orbit_major_axis", _PROBE, "m"),
     Quantity("largest_amplitude_m", "reading.largest.0"),
     Quantity("largest_at_rpm", "reading.largest.1"),
     Quantity(
@@ -470,14 +448,7 @@ ROTOR = (
     Quantity("mass_kg", "rotor.mass", heading="mass [kg]", shown=".3f"),
     Quantity("length_m", "rotor.length"),
     Quantity("bearings", lambda solved: [bearing.name for bearing in solved.bearings]),
-    Quantity(
-        "",
-        "rest.frequencies",
-        "rotor_rest_frequency",
-        ("rest_mode",),
-        "Hz",
-        long_name="lateral natural frequencies at rest, both planes",
-    ),
+    Quantity("", "rest.frequencies", "rotor_rest_frequency", ("rest_mode",), "Hz"),
     Quantity(
         "lateral_hz",
         lambda solved: solved.rest.frequencies[solved.lateral_at_rest] / HERTZ,
@@ -490,12 +461,11 @@ ROTOR = (
         "torsional.frequencies",
         "rotor_torsional_frequency",
         ("torsional_mode",),
-        long_name="free torsional natural frequencies",
         heading="torsion [Hz]",
         shown=".1f",
     ),
     Quantity("axial_hz", heading="along the axis [Hz]", shown=".1f"),
-    Quantity("", "places", "rotor_place", ("place",), "m", long_name="distance from the rotor's left end"),
+    Quantity("", "places", "rotor_place", ("place",), "m"),
     Quantity(
         "",
         lambda solved: solved.lateral.evaluate(solved.places)[0],
@@ -517,22 +487,8 @@ ROTOR = (
     Quantity("rest_bearings_at_rpm", "rest_speed"),
     Quantity("operation_rpm"),
     Rows("whirl", lambda solved: [_Whirl(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
-    Quantity(
-        "",
-        "whirl_deflection",
-        "rotor_whirl_deflection",
-        ("whirl_mode", "place"),
-        "kg-0.5",
-        long_name="largest deflection over a cycle of the whirl modes at operation, of unit norm in mass",
-    ),
-    Quantity(
-        "",
-        "whirl_moment",
-        "rotor_whirl_moment",
-        ("whirl_mode", "place"),
-        "N kg-0.5",
-        long_name="largest bending moment over a cycle of the whirl modes at operation, of unit norm in mass",
-    ),
+    Quantity("", "whirl_deflection", "rotor_whirl_deflection", ("whirl_mode", "place"), "kg-0.5"),
+    Quantity("", "whirl_moment", "rotor_whirl_moment", ("whirl_mode", "place"), "N kg-0.5"),
     Quantity("critical_speeds_rpm", "critical.speeds", heading="critical speeds [rpm]", shown=".0f"),
     Quantity("critical_directions", lambda solved: solved.critical.direction.round(6)),
     Quantity("critical_axial_share", "critical.axial_share"),

@@ -464,33 +464,17 @@ def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quant
 _COMPLEX = Quantity("", lambda table: ["real", "imaginary"], "part", ("part",))
 _LINE = ("sensor", "line")
 LINES = (
-    Quantity("", "ranks", "line", ("line",), "1", long_name="rank of the line, highest first"),
+    Quantity("", "ranks", "line", ("line",), "1"),
     _COMPLEX,
     Quantity("", "modes", "mode_path", ("mode_path",)),
     Quantity("", "bearings", "bearing_path", ("bearing_path",)),
     Quantity(
         "", lambda table: table.frequency, "line_frequency", _LINE, "Hz", long_name="frequency of the sensor's line"
     ),
-    Quantity("", "names", "line_name", _LINE, long_name="what the line is"),
-    Quantity(
-        "", "value", "line_amplitude", (*_LINE, "part"), "m/s2", long_name="complex amplitude of the sensor's line"
-    ),
-    Quantity(
-        "",
-        "by_mode",
-        "line_by_mode",
-        (*_LINE, "mode_path", "part"),
-        "m/s2",
-        long_name="part of a housing mode in the line; they add up to it",
-    ),
-    Quantity(
-        "",
-        "by_bearing",
-        "line_by_bearing",
-        (*_LINE, "bearing_path", "part"),
-        "m/s2",
-        long_name="part of a bearing's force in the line",
-    ),
+    Quantity("", "names", "line_name", _LINE),
+    Quantity("", "value", "line_amplitude", (*_LINE, "part"), "m/s2"),
+    Quantity("", "by_mode", "line_by_mode", (*_LINE, "mode_path", "part"), "m/s2"),
+    Quantity("", "by_bearing", "line_by_bearing", (*_LINE, "bearing_path", "part"), "m/s2"),
 )
 """Quantities of the lines of all sensors with their parts."""
 
@@ -673,7 +657,7 @@ RUN_SIGNATURE = (
     Quantity("orders", lambda signature: signature.highest()),
     Quantity("overall", lambda signature: signature.loudest()),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
-    Quantity("", "speeds_rpm", "run_speed", ("run_speed",), "rpm", long_name="speed in the middle of each stretch"),
+    Quantity("", "speeds_rpm", "run_speed", ("run_speed",), "rpm"),
     Quantity(
         "", lambda signature: _first(signature.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG
     ),

@@ -332,30 +332,16 @@ class _Crossing(NamedTuple):
 
 
 CROSSING = (
-    Quantity(
-        "speed_rpm", "crossing.speed", "system_crossing_speed", long_name="speed of the first driver at the crossing"
-    ),
-    Quantity("line", "crossing.line.name", "system_crossing_line", long_name="order"),
-    Quantity(
-        "order",
-        "crossing.line.order",
-        "system_crossing_order",
-        unit="1",
-        long_name="over the speed of the first driver",
-    ),
+    Quantity("speed_rpm", "crossing.speed", "system_crossing_speed"),
+    Quantity("line", "crossing.line.name", "system_crossing_line"),
+    Quantity("order", "crossing.line.order", "system_crossing_order", unit="1"),
     Quantity(
         "frequency_hz",
         "crossing.eigenvalue.imag",
         "system_crossing_frequency",
         long_name="damped frequency at the crossing",
     ),
-    Quantity(
-        "damping_ratio",
-        "crossing.damping_ratio",
-        "system_crossing_damping_ratio",
-        unit="1",
-        long_name="damping ratio at the crossing",
-    ),
+    Quantity("damping_ratio", "crossing.damping_ratio", "system_crossing_damping_ratio", unit="1"),
     Quantity("branch", "crossing.branch"),
     Quantity("kind", "crossing.kind"),
     Quantity("where", "crossing.where"),
@@ -384,13 +370,7 @@ class _Branch(NamedTuple):
 
 
 CAMPBELL = (
-    Quantity(
-        "speeds_rpm",
-        "diagram.speeds",
-        "system_campbell_speed",
-        ("system_speed",),
-        long_name="speed of the first driver",
-    ),
+    Quantity("speeds_rpm", "diagram.speeds", "system_campbell_speed", ("system_speed",)),
     _diagram(
         "frequency", lambda row: row.diagram.frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"
     ),
