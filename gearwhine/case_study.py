@@ -613,7 +613,7 @@ class CaseStudy(Study):
             Where the power through the surface and in the far field differ by more than 10 %, or a known source inside
             is lost at a vertex of the surface.
         """
-        from gearwhine.analyses.machine_results import RadiatingHousing, sound_result
+        from gearwhine.analyses.machine_results import sound_result
         from gearwhine.coupling.sound import Acoustics
 
         # The checks of the surface are for this analysis alone.
@@ -631,9 +631,8 @@ class CaseStudy(Study):
         if self.has_machine:
             warnings = self.left_out_of_sound(None)
             machine = None if warnings else self.under_load()
-        origin = replace(self.origin, housing=housing)
         with refused_by_key(chosen):
-            return sound_result(RadiatingHousing(origin, field, chosen, housing.up), machine, warnings, self.progress)
+            return sound_result(housing, chosen, self.origin, machine, warnings, self.progress)
 
     def sweep(
         self,

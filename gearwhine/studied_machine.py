@@ -6,7 +6,7 @@ A study of a case answers some of it otherwise, see :mod:`gearwhine.case_study`.
 import math
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -139,8 +139,8 @@ class StudiedMachine:
 
     @property
     def has_housing(self) -> bool:
-        """Whether a housing is solved for the results, with its modes among them."""
-        return False
+        """Whether the machine stands in a housing that is meshed, whose modes are among the results."""
+        return self.solved_housing() is not None
 
     @property
     def has_machine(self) -> bool:
@@ -164,11 +164,20 @@ class StudiedMachine:
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
     def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
-        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
+        """Return the housing that the machine stands in, where that is meshed and solved.
 
-        Modes that a ``folder`` keeps are read in place of solving.
+        ``with_sound`` refuses acoustics that do not fit it; modes that a ``folder`` keeps are read in place of solving.
         """
-        return None
+        from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+        from gearwhine.housing import HousingModes
+
+        housing, acoustics = self.machine.housing, self.settings.acoustics
+        if not isinstance(housing, HousingModes):
+            return None
+        if with_sound and acoustics is not None:
+            field = housing.displacement_field
+            require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
+        return housing
 
     def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with measured ones; None without such."""
@@ -186,7 +195,8 @@ class StudiedMachine:
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
         from gearwhine.analyses.machine_results import machine_under_load
 
-        return machine_under_load(self.machine, self.origin, run, self.progress)
+        origin = replace(self.origin, housing=self.solved_housing())
+        return machine_under_load(self.machine, origin, run, self.progress)
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load."""

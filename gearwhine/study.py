@@ -296,9 +296,10 @@ class Study(StudiedMachine):
         if acoustics is None:
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
-        housing = radiating_housing(self.machine, acoustics, self.origin)
+        housing = radiating_housing(self.machine, acoustics)
         warnings = self.left_out_of_sound(None)
-        return sound_result(housing, None if warnings else self.under_load(), warnings, self.progress)
+        machine = None if warnings else self.under_load()
+        return sound_result(housing, acoustics, self.origin, machine, warnings, self.progress)
 
     def run(self) -> "Result[RunSolution]":
         """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
@@ -38,6 +36,7 @@ from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
+from gearwhine.housing import HousingModes
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -61,7 +60,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
-    from gearwhine.housing.modes.housing_field import HousingField
 
 
 @dataclass(frozen=True)
@@ -281,27 +279,8 @@ def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: Coupl
     return solved.result("simulate", machine.origin, document)
 
 
-@dataclass(frozen=True)
-class RadiatingHousing:
-    """A housing whose sound is sought, with what the results say beside their own numbers.
-
-    Attributes
-    ----------
-    origin : Origin
-    field : HousingField
-    acoustics : Acoustics
-    up : sequence of float
-        Unit vector that points upwards in pictures.
-    """
-
-    origin: Origin
-    field: HousingField
-    acoustics: Acoustics
-    up: Sequence[float]
-
-
-def radiating_housing(machine: Machine, acoustics: Acoustics, origin: Origin) -> RadiatingHousing:
-    """Return the housing of a machine of Python, checked for its sound.
+def radiating_housing(machine: Machine, acoustics: Acoustics) -> HousingModes:
+    """Return the housing of a machine, checked for its sound.
 
     Raises
     ------
@@ -310,22 +289,22 @@ def radiating_housing(machine: Machine, acoustics: Acoustics, origin: Origin) ->
     """
     from gearwhine.coupling.sound.acoustics_checks import require_acoustics
 
-    component = machine.housing_component
-    field = None if component is None else component.displacement_field
-    if field is None:
-        has = "no housing" if component is None else "a reduced housing, of motions at its seats and sensors alone"
+    housing = machine.housing
+    if not isinstance(housing, HousingModes):
+        has = "no housing" if housing is None else "a reduced housing, of motions at its seats and sensors alone"
         raise AcousticsError(
             "the sound of a machine: expected a housing with its mesh and the mode shapes on it, as "
             f"gearwhine.Housing.modes() gives; the machine has {has}"
         )
+    field = housing.displacement_field
     require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
-    weight = np.zeros(3) if machine.gravity is None else np.array(machine.gravity)
-    up = -weight / np.linalg.norm(weight) if weight.any() else np.array([0.0, 1.0, 0.0])
-    return RadiatingHousing(origin, field, acoustics, tuple(up.tolist()))
+    return housing
 
 
 def sound_result(
-    housing: RadiatingHousing,
+    housing: HousingModes,
+    acoustics: Acoustics,
+    origin: Origin,
     machine: MachineUnderLoad | None,
     warnings: Sequence[ResultWarning] = (),
     progress: Progress = silent,
@@ -334,7 +313,9 @@ def sound_result(
 
     Parameters
     ----------
-    housing : RadiatingHousing
+    housing : HousingModes
+    acoustics : Acoustics
+    origin : Origin
     machine : MachineUnderLoad or None
         None where the sound is that of the modes alone.
     warnings : sequence of dict
@@ -354,13 +335,13 @@ def sound_result(
     from gearwhine.coupling.sound.motion_lines import lines_of_steady
     from gearwhine.coupling.sound.solution import solve_sound
 
-    field, acoustics, coupled, motion = housing.field, housing.acoustics, None, None
+    field, coupled, motion = housing.displacement_field, None, None
     if machine is not None:
         coupled = machine.coupled
         motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
         warnings = [*warnings, *machine.warnings]
     solved = solve_sound(acoustics, field, motion, coupled, progress)
-    title = housing.origin.title
+    title = origin.title
     document = {"title": title} | sound_document(solved)
     add_warnings(document, [*solved.warnings(), *warnings])
 
@@ -373,4 +354,5 @@ def sound_result(
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
 
-    return housing.origin.result("sound", solved, document, (SOUND, solved), figures=figures, files=files)
+    origin = replace(origin, housing=housing)
+    return origin.result("sound", solved, document, (SOUND, solved), figures=figures, files=files)
