@@ -318,11 +318,8 @@ class Machine:
     @cached_property
     def axial_locations(self) -> tuple[AxialLocation, ...]:
         """Axial location of each shaft by its bearings."""
-        speeds = self.speeds
         return tuple(
-            AxialLocation(
-                shaft.name, [axial_support(bearing, speeds[shaft.name]) for bearing in self._bearings_on(shaft.name)]
-            )
+            AxialLocation(shaft.name, [axial_support(bearing) for bearing in self._bearings_on(shaft.name)])
             for shaft in self.shafts
         )
 

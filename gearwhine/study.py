@@ -452,24 +452,25 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine, reduce_housing
+        from gearwhine.from_case.machine import describe_machine
+        from gearwhine.solve.machine import reduce_housing
 
         solved = self.housing
         if solved is None:
-            return described_machine(self.case, None)
+            return describe_machine(self.case, None)
         part = reduce_housing(self.case, solved, self.progress)
-        return described_machine(self.case, replace(part, displacement_field=solved.displacement_field))
+        return describe_machine(self.case, replace(part, displacement_field=solved.displacement_field))
 
     @property
     def settings(self) -> Settings:
         """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
-        from gearwhine.case.speeds_and_torques import with_sense_of_operation
+        from gearwhine.case.analysis_speeds import with_sense_of
         from gearwhine.solve.acoustics import acoustics_of
         from gearwhine.solve.machine import plan_of, tracking_of
 
         case = self.case
         plan = None if case.transient is None else plan_of(case)
-        speeds = () if case.sweep is None else with_sense_of_operation(case, case.sweep.speeds)
+        speeds = () if case.sweep is None else with_sense_of(case.operation, case.sweep.speeds)
         acoustics = None if case.acoustics is None else acoustics_of(case)
         return Settings(case.title, plan, tracking_of(case), speeds, acoustics)
 

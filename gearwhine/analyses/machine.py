@@ -10,14 +10,15 @@ from gearwhine.analyses import of_machine
 from gearwhine.analyses.of_machine import MachineUnderLoad, RadiatingHousing
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseError, CaseSource, Problem, require, swept_keys
-from gearwhine.case.speeds_and_torques import branch_speeds, diagram_speeds
+from gearwhine.case.analysis_speeds import branch_speeds, diagram_speeds
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, solve_over_torques
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, SolvedSystem
+from gearwhine.coupling.analyses.shafts_alone import held_speeds
 from gearwhine.coupling.analyses.steady_state import SolvedSteady
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
-from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.machine import describe_machine, require_machine
 from gearwhine.mode_pictures import draw_load_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -30,7 +31,7 @@ from gearwhine.solve.acoustics import acoustics_of, check_before_modes, refused_
 from gearwhine.solve.damping import assumed_mesh_damping
 from gearwhine.solve.gear_pairs import aims_at_sensor, analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, kept_housing, solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing, run_of, solve_pairs
+from gearwhine.solve.machine import reduce_housing, run_of, solve_pairs
 from gearwhine.solve.operating_point import (
     SolvedLoad,
     find_load,
@@ -119,7 +120,7 @@ def gears(
     if housing is None and case.housing is not None and case.rotor and case.operation is not None:
         if aims_at_sensor(case):
             housing = solve_housing(case, progress, folder=folder)
-        elif case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
+        elif case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair):
             housing = kept_housing(case, folder, progress)
     loaded, point = solve_pairs(case, housing, progress)
     analysed = analyse_pairs(case, loaded, point)
@@ -179,7 +180,7 @@ def operating_point(
         refuse = check_before_modes(case) if ranked else None
         housing = solve_housing(case, progress, folder=folder, fresh=fresh, before=refuse)
     part = None if housing is None else reduce_housing(case, housing, progress)
-    machine = described_machine(case, part)
+    machine = describe_machine(case, part)
     solved = load_of_case(case, machine, progress, over_torque=over_torque, over_hunting_period=True)
     warnings = load_warnings(solved)
     if ranked:
@@ -217,7 +218,7 @@ def loaded_case(
     ``run`` is the course of speed and torques over time; without one, they are those of operation.
     """
     part = None if housing is None else reduce_housing(case, housing, progress)
-    machine = described_machine(case, part)
+    machine = describe_machine(case, part)
     load, warnings = find_load(case, machine, progress)
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
     return MachineUnderLoad(case.title, loaded, load, warnings, case, housing)
@@ -273,12 +274,14 @@ def system(
     if mesh_phase is not None:
         require(case, "gear_pair", command="system --mesh-phase")
     loaded = loaded_case(case, _housing_of(case, housing, folder, progress, fresh=fresh), run_of(case), progress)
+    operation = case.operation
+    assert operation is not None
     swept = case.sweep is not None and len(case.sweep.speeds) > 1
     over_speed = campbell or swept or sidebands > 0 or mesh_harmonics > MESH_HARMONICS
     return of_machine.system(
         loaded,
         mesh_phase=mesh_phase,
-        over_speed=diagram_speeds(case) if over_speed else (),
+        over_speed=diagram_speeds(operation, case.sweep, held_speeds(loaded.loaded.machine)) if over_speed else (),
         sidebands=sidebands,
         mesh_harmonics=mesh_harmonics,
         progress=progress,
@@ -328,13 +331,14 @@ def steady(
         raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
     solved_housing = _housing_of(case, housing, folder, progress, fresh=fresh)
     loaded = loaded_case(case, solved_housing, None, progress)
+    held = held_speeds(loaded.loaded.machine)
 
     def with_assumed_damping(solved: SolvedSteady) -> SolvedSteady:
         return solved if solved.curve is None else replace(solved, assumed_damping=assumed_mesh_damping(case))
 
     return of_machine.steady(
         loaded,
-        over_speed=branch_speeds(case, downwards=down) if curve or down else None,
+        over_speed=branch_speeds(case.operation, case.sweep, held, downwards=down) if curve or down else None,
         points=points,
         exact=exact,
         change=with_assumed_damping,

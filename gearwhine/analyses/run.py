@@ -17,8 +17,7 @@ from gearwhine.case import Case, require
 from gearwhine.case.checks.plausible import overload
 from gearwhine.coupling.analyses.motion import solve_motion
 from gearwhine.coupling.errors import TransientError
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.machine import require_machine, solve_gears
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import staging

@@ -575,6 +575,11 @@ def shaft_of(gear: Gear) -> str:
     return gear.rotor if gear.rotor is not None else gear.name
 
 
+def distance_of_axes(first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Return the distance of two axes along z [m]."""
+    return math.hypot(second[0] - first[0], second[1] - first[1])
+
+
 def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]]) -> list[tuple[int, Gear, Gear]]:
     """Return driver and driven gear of each pair with its place in the list.
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 
 from gearwhine.case import units
+from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import NOTHING, CaseError, Problem, key_of
 from gearwhine.case.fields import MOST_ENTRIES
 from gearwhine.case.model import Case, case_document
 from gearwhine.case.overrides import matching_places, parse_key_path
-from gearwhine.case.speeds_and_torques import with_sense_of_operation
 
 SPEED_KEY = "operation.speed"
 
@@ -104,7 +104,7 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             problems.append(Problem("--over", key.key, expected))
         paths += key_paths
     if case.sweep is not None and of_table not in paths:
-        keys.insert(0, _speeds(with_sense_of_operation(case, case.sweep.speeds)))
+        keys.insert(0, _speeds(with_sense_of(case.operation, case.sweep.speeds)))
     if not keys and not problems:
         expected = "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }, or --over: "
         problems.append(Problem("sweep", NOTHING, f"{expected}{_EXPECTED}"))

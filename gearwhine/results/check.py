@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
+from gearwhine.case import Case, CouplingSegment, amounts, rotor_speeds
 from gearwhine.coupling.description.axial_location import ARRANGEMENTS
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
@@ -148,7 +148,7 @@ class _Analysis(NamedTuple):
 
 def _response_speeds(row: _Analysis) -> Sequence[float]:
     case, rotor = row
-    return response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
+    return rotor_speeds(case, rotor.name).response if rotor.unbalance or rotor.bow else ()
 
 
 def _swinging_torques(row: _Analysis) -> int:
@@ -159,7 +159,7 @@ def _swinging_torques(row: _Analysis) -> int:
 
 ANALYSIS = (
     Quantity("rotor", lambda row: row.rotor.name),
-    Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row.case, row.rotor.name))),
+    Quantity("campbell_rpm", lambda row: _span(rotor_speeds(row.case, row.rotor.name).campbell)),
     Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
     Quantity("torques", _swinging_torques),
 )
@@ -236,7 +236,7 @@ OPERATION = (
     Quantity("torque_n_m", lambda case: case.operation.torque),
     Rows(
         "torques",
-        lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
+        lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in case.parts.torques],
         (
             Quantity("rotor", lambda row: row.torque.rotor),
             Quantity("at_m", lambda row: row.at),

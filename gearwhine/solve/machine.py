@@ -7,7 +7,6 @@ import numpy.typing as npt
 from scipy import linalg, sparse
 
 from gearwhine.case import Case, require
-from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
 from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import OrderTracking
@@ -15,8 +14,7 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.housing import ModeSet
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.residual_modes import leading_residual_modes
@@ -30,11 +28,6 @@ def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silen
     """Reduce a solved housing to the quantities that a machine needs: kilobytes, without mesh and shapes."""
     component, coarser = _housing_components(case, solved, progress)
     return replace(component, coarser=coarser, warnings=tuple(solved.warnings))
-
-
-def described_machine(case: Case, housing: HousingComponent | None) -> Machine:
-    """Describe the machine of a case in its solved housing, or on rigid seats."""
-    return describe_machine(case, housing, grounded=housing is None)
 
 
 def solve_pairs(
@@ -56,8 +49,8 @@ def solve_pairs(
         return solve_gears(case, progress), None
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
-    machine = described_machine(case, housing)
-    point = point_of_flanks(machine, progress, is_needed=case.needs_operating_point)
+    machine = describe_machine(case, housing)
+    point = point_of_flanks(machine, progress, is_needed=case.parts.needs_operating_point)
     return machine.with_flanks_of(point).loaded_pairs(progress), point
 
 

@@ -22,8 +22,7 @@ from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
-from gearwhine.from_case.gear_pairs import misalignments_of_case
-from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.machine import misalignments_of_case, require_machine
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
@@ -499,10 +498,12 @@ def find_load(
     try:
         solved = load_of_case(case, machine, progress)
     except NO_OPERATING_POINT as error:
-        if case.needs_operating_point:
+        if case.parts.needs_operating_point:
             raise
         message = f"no operating point is found, against which to hold the loads that the case gives: {error}"
-        aligned = [pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.finds_misalignment(pair)]
+        aligned = [
+            pair_label(pair.driver, pair.driven) for pair in case.gear_pair if case.parts.finds_misalignment(pair)
+        ]
         if aligned:
             message += f"; the misalignment of {', '.join(aligned)} is taken as 0"
         return None, [warning("operating point", message)]

@@ -1,4 +1,4 @@
-"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face, sensors on the surface.
+"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face.
 
 Fits are checked where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter
 from the other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
@@ -7,11 +7,10 @@ from the other, so that one of them is a slip of the pen or stands for a sleeve 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from gearwhine.case import Bearing, Case, RollingStiffness
+from gearwhine.case import Bearing, Gear, GearPair, Housing, RollingStiffness, Seat
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
-from gearwhine.case.housing import Seat
-from gearwhine.from_case.mesh_health import surface_point_warnings
+from gearwhine.case.parts import Parts
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.numerics.findings import in_mm
@@ -22,37 +21,39 @@ _FIT_TOLERANCE = 1e-4  # difference up to which two diameters, or a place and an
 _TOUCHING_OVERLAP = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
 
 
-def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
-    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates, sensors off the surface.
+def fit_warnings(parts: Parts, housing: Housing | None, mesh: Mesh | None = None) -> list[dict[str, Any]]:
+    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates.
 
     Parameters
     ----------
-    case : Case
-    rotors : mapping of str to gearwhine.rotors.Rotor
-        Built rotors by name.
+    parts : Parts
+        Tables of the machine's parts, and the rotors that are made of them.
+    housing : Housing or None
     mesh : Mesh or None
         Mesh of a housing from a CAD or mesh file, in which the bores of the seats are found.
     """
     bores = () if mesh is None else find_bores(mesh, axis=(0.0, 0.0, 1.0))
-    return [
-        *(entry for bearing in case.bearing for entry in _of_bearing(case, bearing, rotors[bearing.rotor], bores)),
-        *_of_gears(case, rotors),
-        *_of_faces(case),
-        *(() if mesh is None else surface_point_warnings(case, mesh)),
-    ]
+    rotors = {rotor.name: rotor for rotor in parts.rotors}
+    starts = {rotor.name: rotor.start for rotor in parts.rotor}
+    warnings = list[dict[str, Any]]()
+    for bearing in parts.bearing:
+        bore, _, width = _rings(bearing)
+        if bore is not None:
+            warnings += _on_shaft(f'bearing "{bearing.name}"', bore, rotors[bearing.rotor], bearing.at, width or 0.0)
+        seat = None if housing is None else next((one for one in housing.seat if one.name == bearing.seat), None)
+        if housing is not None and seat is not None:
+            warnings += _in_seat(bearing, starts[bearing.rotor] + bearing.at, seat, _span(housing, seat, bores))
+    for gear in parts.gear:
+        if gear.bore and gear.rotor is not None and gear.at is not None:
+            on = rotors[gear.rotor]
+            warnings += _on_shaft(f'gear "{gear.name}"', gear.bore, on, gear.at, gear.face_width or 0.0)
+    return [*warnings, *_of_faces(parts.gear, parts.gear_pair, starts)]
 
 
-def _of_bearing(
-    case: Case, bearing: Bearing, rotor: Rotor, bores: Sequence[CylindricalBore]
-) -> Iterator[dict[str, Any]]:
-    bore, outside, width = _rings(bearing)
+def _in_seat(bearing: Bearing, z: float, seat: Seat, span: tuple[float, float] | None) -> Iterator[dict[str, Any]]:
+    """Warn of a bearing at z that does not fit its seat, or stands beside the bore, whose ends may be known [m]."""
     label = f'bearing "{bearing.name}"'
-    if bore is not None:
-        yield from _on_shaft(label, bore, rotor, bearing.at, width or 0.0)
-    seats = () if case.housing is None else case.housing.seat
-    seat = next((candidate for candidate in seats if candidate.name == bearing.seat), None)
-    if seat is None:
-        return
+    _, outside, width = _rings(bearing)
     if outside is not None and abs(outside - seat.diameter) > _FIT_TOLERANCE:
         yield warning(
             "bearing seat",
@@ -62,8 +63,6 @@ def _of_bearing(
             outside_diameter_m=outside,
             seat_diameter_m=seat.diameter,
         )
-    z = case.rotor_named(bearing.rotor).start + bearing.at
-    span = _span(case, seat, bores)
     if span is not None:
         off, where = max(span[0] - z, z - span[1]), f"the bore, z = {in_mm(span[0])} to {in_mm(span[1])}"
     else:
@@ -97,11 +96,10 @@ def _rings(bearing: Bearing) -> tuple[float | None, float | None, float | None]:
     return (None, None, None) if mounting is None else (mounting.bore, mounting.outer_diameter, None)
 
 
-def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[float, float] | None:
+def _span(housing: Housing, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[float, float] | None:
     """Return the ends of a seat's bore along z [m]: of a box by its walls and bosses, else of the bore found there."""
-    assert case.housing is not None
-    if case.housing.box is not None:
-        box = box_geometry(case.housing.box, case.housing.seat)
+    if housing.box is not None:
+        box = box_geometry(housing.box, housing.seat)
         low, high = box.bore_span(next(bore for bore in box.bores if bore.name == seat.name))
         return low, high
     for bore in bores:
@@ -113,21 +111,17 @@ def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[flo
     return None
 
 
-def _of_gears(case: Case, rotors: Mapping[str, Rotor]) -> Iterator[dict[str, Any]]:
-    for gear in case.gear:
-        if gear.bore and gear.rotor is not None and gear.at is not None:
-            yield from _on_shaft(f'gear "{gear.name}"', gear.bore, rotors[gear.rotor], gear.at, gear.face_width or 0.0)
-
-
-def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
+def _of_faces(
+    tables: Sequence[Gear], pairs: Sequence[GearPair], starts: Mapping[str, float]
+) -> Iterator[dict[str, Any]]:
     """Warn of gears so far apart along z that less than the narrower face meets the other."""
-    gears = {gear.name: gear for gear in case.gear}
-    for pair in case.gear_pair:
+    gears = {gear.name: gear for gear in tables}
+    for pair in pairs:
         ends = []
         for gear in (gears[pair.driver], gears[pair.driven]):
             if gear.rotor is None or gear.at is None or gear.face_width is None:
                 break
-            middle = case.rotor_named(gear.rotor).start + gear.at
+            middle = starts[gear.rotor] + gear.at
             ends.append((middle - 0.5 * gear.face_width, middle + 0.5 * gear.face_width))
         else:
             common = min(end for _, end in ends) - max(start for start, _ in ends)

@@ -24,6 +24,7 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.signals.line_names import LineName
 from gearwhine.coupling.signals.spectrum import Window
 from gearwhine.failures import explain
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.output import finite, json_text
@@ -32,7 +33,7 @@ from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
 from gearwhine.solve.acoustics import acoustics_of, sound_left_out
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
+from gearwhine.solve.machine import plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
 from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.sweep.points import Point, code_digest
@@ -122,7 +123,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        described = described_machine(case, housing)
+        described = describe_machine(case, housing)
         load, warnings_of_load = find_load(case, described)
         loaded = load_machine(described, None if load is None else load.point, run_of(case))
         frequencies = described.mesh_frequencies

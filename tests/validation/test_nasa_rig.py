@@ -34,7 +34,7 @@ from rig_statements import (
 )
 
 from gearwhine.case import Case, load_case
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.comparison import compare_housing
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 

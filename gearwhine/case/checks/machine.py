@@ -17,12 +17,11 @@ from typing import TYPE_CHECKING
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
 from gearwhine.case.checks.keys_of_attributes import key_in_gear
 from gearwhine.case.errors import LOOK_UP, NOTHING, UNSAID, Finding, Location
-from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
+from gearwhine.case.gears import Gear, GearPair, distance_of_axes, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
-from gearwhine.case.model import Case, Draft, loaded_rotors
+from gearwhine.case.model import Draft
 from gearwhine.case.operation import Operation, listed
 from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, TorsionProbe, TorsionSpring
-from gearwhine.case.speeds_and_torques import pair_torques
 from gearwhine.numerics.findings import in_mm
 
 if TYPE_CHECKING:
@@ -160,7 +159,7 @@ def _operation_loads(draft: Draft, bearing: Bearing, bearings: Sequence[Bearing]
     if draft.operation is None:
         return bool(draft.document.get("operation"))
     geared = bool(draft.document.get("gear_pair"))
-    return operation_loads(bearing, bearings, loaded_rotors(draft.names("rotor"), draft.operation, geared=geared))
+    return operation_loads(bearing, bearings, draft.operation.loaded_rotors(draft.names("rotor"), geared=geared))
 
 
 def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
@@ -280,7 +279,7 @@ def _check_pair(
         return
     rotors = draft.rotor(tables[0].rotor), draft.rotor(tables[1].rotor)
     if rotors[0] is not None and rotors[1] is not None:
-        apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
+        apart = distance_of_axes(rotors[0].axis, rotors[1].axis)
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {in_mm(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
@@ -455,8 +454,8 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
         return
     imbalances = list(_check_balance(operation, train or train_of_pairs((), shafts))) if operation.output else []
     yield from imbalances
-    if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
-        yield from _check_flow(draft, operation)
+    if train is not None and not imbalances and all(shaft in ratios for shaft in shafts):
+        yield from _check_flow(draft, operation, train)
 
 
 def _lacks_input(operation: Operation) -> bool:
@@ -494,7 +493,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
         yield Finding(("operation", "output", imbalance.output), expected, UNSAID)
 
 
-def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
+def _check_flow(draft: Draft, operation: Operation, train: GearTrain) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
     from gearwhine.coupling.description.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
     from gearwhine.coupling.description.gear_train import carrying_flanks
@@ -502,27 +501,29 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     names = draft.names("gear")
     if operation.torque == 0.0 or len(set(names)) < len(names):
         return
-    case = Case.model_construct(
-        rotor=tuple(rotor for _, rotor in draft.rotors),
-        gear=tuple(gear for _, gear in draft.gears),
-        gear_pair=tuple(pair for _, pair in draft.gear_pairs),
-        operation=operation,
-    )
-    flanks = carrying_flanks(pair_torques(case), operation.torque)
+    # Where torques act along their shafts does not count here.
+    torques = train.mean_pair_torques(operation.applied_torques(train, {}), operation.speed)
+    flanks = carrying_flanks(torques, operation.torque)
     for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
         if flank == "reversed":
             yield Finding(("gear_pair", index), POWER_FROM_THE_DRIVER, UNSAID)
-        elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):
+        elif flank == "back" and pair.backlash is None and not _has_designed_backlash(draft, pair):
             yield Finding(("gear_pair", index, "backlash"), BACKLASH_OF_A_BRAKE, NOTHING)
 
 
-def _has_designed_backlash(case: Case, pair: GearPair) -> bool:
+def _has_designed_backlash(draft: Draft, pair: GearPair) -> bool:
     """Whether tooth thicknesses and centre distance leave a backlash; gears that do not mesh are other findings."""
     from gearwhine.coupling.gears import GearError, GearPairGeometry
 
-    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    driver, driven = draft.gear(pair.driver), draft.gear(pair.driven)
+    if driver is None or driven is None:
+        return True
+    rotors = draft.rotor(driver.rotor), draft.rotor(driven.rotor)
+    distance = pair.centre_distance
+    if rotors[0] is not None and rotors[1] is not None:
+        distance = distance_of_axes(rotors[0].axis, rotors[1].axis)
     try:
-        geometry = GearPairGeometry(driver.build(), driven.build(), case.centre_distance(pair))
+        geometry = GearPairGeometry(driver.build(), driven.build(), distance)
     except GearError:
         return True
     return geometry.designed_backlash is not None

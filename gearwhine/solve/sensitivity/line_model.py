@@ -22,7 +22,7 @@ from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.fixtures import attach_all
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.housing import ModeSet, modal_damping
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.natural_modes import ModeSetExtension

@@ -7,8 +7,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
-from gearwhine.from_case.gear_pairs import pair_geometry, solve_gears
-from gearwhine.from_case.rotors import build_gear
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show, shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
@@ -40,7 +39,7 @@ def test_three_ways_of_saying_the_size() -> None:
     for size in ({"module": "3.175 mm"}, {"diametral_pitch": "8 1/in"}, {"base_radius": base_radius}):
         case = case_of(rest | size, TOOTH | {"helix_angle": "-15 deg"})
         given = case.gear_named("pinion")
-        gear = build_gear(case, given)
+        gear = case.parts.gears["pinion"]
         assert gear.module == pytest.approx(3.175e-3, rel=1e-13)
         assert gear.base_radius == pytest.approx(base_radius, rel=1e-13)
         # What the case knows by itself agrees with the gear that is built.
@@ -58,9 +57,9 @@ def test_a_gear_without_a_material_is_of_the_case_s_only_one() -> None:
         "gear_pair": [{"driver": "pinion", "driven": "wheel"}],
     }
     case = parse_case(document)
-    gear = build_gear(case, case.gear_named("wheel"))
+    gear = case.parts.gears["wheel"]
     assert (gear.youngs_modulus, gear.density) == (70e9, 2700.0)
-    steel = build_gear(case_of(TOOTH, TOOTH), case_of(TOOTH, TOOTH).gear_named("wheel"))
+    steel = case_of(TOOTH, TOOTH).parts.gears["wheel"]
     assert gear.mass == pytest.approx(steel.mass * 2700.0 / 7850.0, rel=1e-12)
 
 
@@ -89,7 +88,7 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
         "web": "8 mm",
     }
     case = case_of(TOOTH | {"helix_angle": "15 deg", "teeth": 14, "allow_undercut": True}, TOOTH | keys)
-    wheel, pinion = (build_gear(case, case.gear_named(name)) for name in ("wheel", "pinion"))
+    wheel, pinion = (case.parts.gears[name] for name in ("wheel", "pinion"))
     assert (wheel.addendum, wheel.dedendum, wheel.root_radius) == (0.9, 1.3, pytest.approx(0.8e-3))
     assert (wheel.rim_thickness, wheel.web_thickness) == (pytest.approx(9e-3), pytest.approx(8e-3))
     assert wheel.tooth_thinning == pytest.approx(0.05e-3)
@@ -101,7 +100,7 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
 
 @pytest.mark.slow
 def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
-    geometry = pair_geometry(HELICAL, HELICAL.gear_pair[0])
+    geometry = HELICAL.parts.pair_geometries[0]
     document = check_document(HELICAL)
     (pair,) = document["gear_pairs"]
     assert pair["overlap_ratio"] == pytest.approx(30e-3 * math.sin(math.radians(15.0)) / (math.pi * 3.175e-3))

@@ -22,7 +22,7 @@ from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.rotors import Campbell
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of

@@ -31,7 +31,7 @@ from gearwhine.figures import draw_gear_pairs, save, save_all
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
 
 ANGLE = math.radians(20.0)

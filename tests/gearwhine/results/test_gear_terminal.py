@@ -8,7 +8,7 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import gears_document, sections
 from gearwhine.solve.gear_pairs import analyse_pairs

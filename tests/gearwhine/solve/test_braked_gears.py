@@ -10,7 +10,7 @@ from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, first_touch, solve_over_torques
 from gearwhine.coupling.gears import loaded_transmission_error, mesh_stiffness
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.results.system import sections
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.sweep.resonances import find_resonances

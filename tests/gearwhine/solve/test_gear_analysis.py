@@ -29,7 +29,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phase
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.mean_mesh import mean_contact
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.dataset import arrays_of, labelled, labels_of
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.terminal import show

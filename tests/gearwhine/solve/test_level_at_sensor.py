@@ -21,8 +21,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phase
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
 from gearwhine.solve.machine import full_housing_component

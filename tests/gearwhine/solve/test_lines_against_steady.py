@@ -14,8 +14,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import loaded_transmissi
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import full_housing_component
 

@@ -24,8 +24,7 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing.material import element_constants

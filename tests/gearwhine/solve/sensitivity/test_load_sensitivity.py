@@ -12,6 +12,7 @@ from gearwhine.case import Case, UpdateParameter, case_document, load_case, pars
 from gearwhine.case.box import FACES
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
@@ -19,7 +20,7 @@ from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import (
     by_case_parameters,
     by_changes,
@@ -70,7 +71,7 @@ def solve() -> Solve:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
             housing = solve_housing(case)
-        return housing, described_machine(case, reduce_housing(case, housing)).operating_point()
+        return housing, describe_machine(case, reduce_housing(case, housing)).operating_point()
 
     return solved
 
