@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import gearwhine.analyses.machine
+import gearwhine.analyses.machine_results
 
 LIMIT = 10.0  # seconds of a command
 UNFORESEEN = 70  # exit code of a child that raised what nobody foresaw
@@ -327,7 +327,7 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, help="a folder for all files; otherwise only names of faults are told")
     given = parser.parse_args()
 
-    assert gearwhine.analyses.machine
+    assert gearwhine.analyses.machine_results
     faults, ends, slowest = 0, Counter[tuple[str, int]](), 0.0
     with tempfile.TemporaryDirectory(prefix="gearwhine-fuzz-") as name:
         folder = given.keep or Path(name)

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from gearwhine.case import CaseError as CaseError
     from gearwhine.case.units import rpm as rpm
     from gearwhine.case.units import to_rpm as to_rpm
+    from gearwhine.case_study import CaseStudy as CaseStudy
+    from gearwhine.case_study import build as build
+    from gearwhine.case_study import load as load
     from gearwhine.coupling import CouplingError as CouplingError
     from gearwhine.coupling import Machine as Machine
     from gearwhine.coupling import MountedBearing as MountedBearing
@@ -59,11 +62,8 @@ if TYPE_CHECKING:
     from gearwhine.rotors import RotorError as RotorError
     from gearwhine.rotors import Segment as Segment
     from gearwhine.rotors import ShaftMaterial as ShaftMaterial
-    from gearwhine.study import CaseStudy as CaseStudy
     from gearwhine.study import Settings as Settings
     from gearwhine.study import Study as Study
-    from gearwhine.study import build as build
-    from gearwhine.study import load as load
 
 try:
     __version__ = version("gearwhine")
@@ -78,7 +78,8 @@ _HOMES = {
     "gearwhine.analyses.result": ("Result",),
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
-    "gearwhine.study": ("CaseStudy", "Settings", "Study", "build", "load"),
+    "gearwhine.case_study": ("CaseStudy", "build", "load"),
+    "gearwhine.study": ("Settings", "Study"),
     "gearwhine.housing": (
         "Housing",
         "HousingError",

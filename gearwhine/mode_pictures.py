@@ -19,13 +19,13 @@ from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.measured import MappedSurvey
     from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
     from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
-    from gearwhine.solve.sensitivity.influences import LoadSensitivity
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 

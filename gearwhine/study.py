@@ -1,104 +1,48 @@
-"""Study: a case and its analyses, each a call that returns a labelled result."""
+"""Study: a machine, what its analyses take beside it, and the analyses, each a call that returns a labelled result.
 
-from __future__ import annotations
+The command line is made from the same methods: their parameters are its options, their first lines its help.
+"""
 
-import json
 import math
 import os
 import threading
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from gearwhine.case import Case, CaseSource, LoadedCase, load_case
-from gearwhine.numerics.findings import Instance, Number, Numbers, Rule, attribute_findings, refuse
-from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from gearwhine.analyses.case import Format
-    from gearwhine.analyses.of_machine import MachineUnderLoad
+    from gearwhine.analyses.machine_results import MachineUnderLoad
+    from gearwhine.analyses.origin import Origin
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run_solution import RunSolution
     from gearwhine.coupling import Machine
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
+    from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
+    from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+    from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing.correlation.comparison import Comparison
-    from gearwhine.meshes import Mesh
-    from gearwhine.mode_pictures import ModeFormat, View
-    from gearwhine.output.export import Signals
+    from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.solve.case_summary import CheckedCase
-    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.updating import SolvedUpdate
-    from gearwhine.sweep.run import SweptPoint
 
 
-def load(source: str | os.PathLike[str], changes: Mapping[str, object] | Sequence[str] = ()) -> CaseStudy:
-    """Read and check a case.
-
-    Parameters
-    ----------
-    source : str or path
-        Case file (TOML), or name of a bundled case.
-    changes : mapping or sequence of str
-        Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
-        such as ``"housing.box.mesh_size=20 mm"``. An empty text removes a key.
-
-    Raises
-    ------
-    CaseError
-        With everything that is wrong.
-    """
-    return CaseStudy(load_case(os.fspath(source), _texts(changes)))
-
-
-def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> CaseStudy:
-    """Check a case given as Python objects in place of a file.
-
-    Parameters
-    ----------
-    folder : path
-        Folder in which relative file names start.
-    **tables
-        The tables of a case: dictionaries with the keys of a case file, or the classes of :mod:`gearwhine.case`.
-        Quantities are numbers in SI or texts with units.
-
-    Raises
-    ------
-    CaseError
-        With everything that is wrong, in the words of the case reader.
-
-    Examples
-    --------
-    >>> import gearwhine as gw
-    >>> study = gw.build(
-    ...     material={"steel": {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}},
-    ...     rotor=[
-    ...         {
-    ...             "name": "shaft",
-    ...             "material": "steel",
-    ...             "segments": [{"length": "500 mm", "diameter": "30 mm"}],
-    ...         }
-    ...     ],
-    ...     bearing=[
-    ...         {"name": name, "rotor": "shaft", "at": at, "seat": "ground", "stiffness": {"xx": 1e8, "yy": 1e8}}
-    ...         for name, at in (("left", "20 mm"), ("right", "480 mm"))
-    ...     ],
-    ... )
-    >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
-    2.7744
-    """
-    return CaseStudy(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
+SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
+HARMONICS = Number(at_least=1, at_most=50, whole=True)
+POINTS = Number(at_least=2, at_most=2000, whole=True)
 
 
 @dataclass(frozen=True)
@@ -117,13 +61,17 @@ class Settings:
         Signed speeds of the first driver's shaft for analyses over speed [rad/s].
     acoustics : Acoustics, optional
         Method and medium, floor and microphones of the sound.
+    sound_in_run : bool, optional
+        Whether ``run`` finds the sound of its motion with these acoustics; by default unless they are boundary
+        elements, which take minutes.
     """
 
     title: str = ""
-    transient: TransientPlan | None = None
-    tracking: OrderTracking | None = None
+    transient: "TransientPlan | None" = None
+    tracking: "OrderTracking | None" = None
     speeds: Sequence[float] = ()
-    acoustics: Acoustics | None = None
+    acoustics: "Acoustics | None" = None
+    sound_in_run: bool | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check each of them."""
@@ -131,6 +79,7 @@ class Settings:
         from gearwhine.coupling.analyses.run_up import OrderTracking
         from gearwhine.coupling.errors import CouplingError
         from gearwhine.coupling.sound import Acoustics
+        from gearwhine.numerics.own_copies import keep_tuples
 
         keep_tuples(self, "speeds")
         rules: dict[str, Rule] = {
@@ -139,8 +88,16 @@ class Settings:
             "tracking": Instance(OrderTracking, "an OrderTracking, or None", optional=True),
             "speeds": Numbers(each=Number(unit="rad/s")),
             "acoustics": Instance(Acoustics, "an Acoustics, or None", optional=True),
+            "sound_in_run": Instance(bool, "a truth value, or None", optional=True),
         }
         refuse(attribute_findings(("settings", self.title), self, **rules), CouplingError)
+
+    @property
+    def is_sound_in_run(self) -> bool:
+        """Whether ``run`` finds the sound of its motion."""
+        if self.acoustics is None:
+            return False
+        return self.acoustics.method != "boundary-elements" if self.sound_in_run is None else self.sound_in_run
 
 
 class Study:
@@ -170,7 +127,7 @@ class Study:
     'Hz'
     """
 
-    def __init__(self, machine: Machine, settings: Settings | None = None, progress: Progress = silent) -> None:
+    def __init__(self, machine: "Machine", settings: Settings | None = None, progress: Progress = silent) -> None:
         from gearwhine.coupling import CouplingError
         from gearwhine.coupling import Machine as Described
 
@@ -178,8 +135,11 @@ class Study:
             raise CouplingError(f"a study is of a gearwhine.Machine, got {machine!r}; gearwhine.load reads a case")
         self._machine = machine
         self._settings = settings or Settings()
+        self._start(progress)
+
+    def _start(self, progress: Progress) -> None:
         self.progress = progress
-        self._under_load: MachineUnderLoad | None = None
+        self._at_constant_speed: MachineUnderLoad | None = None
         self._lock = threading.RLock()
 
     def __repr__(self) -> str:
@@ -187,7 +147,7 @@ class Study:
         return f"<Study of {self.machine!r}>"
 
     @property
-    def machine(self) -> Machine:
+    def machine(self) -> "Machine":
         """The shafts, gears, bearings and gear pairs as one object, with all that loads it."""
         return self._machine
 
@@ -196,74 +156,165 @@ class Study:
         """Title, stretch of the transient, and speeds of analyses over speed."""
         return self._settings
 
-    def rotors(self, **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
-        """Find modes, whirl, critical speeds and responses of each shaft, alone in its bearings on rigid seats.
+    def rotors(self, **settings: Any) -> "Result[tuple[SolvedRotor, ...]]":
+        """Lateral and torsional modes, whirl and critical speeds of each rotor.
 
-        Campbell diagrams go over the speeds of the settings, by default up to 1.5 times the speed of the machine.
+        Each is alone in its bearings on rigid seats. Campbell diagrams go over the speeds of the settings, by default
+        up to 1.5 times the speed of the machine.
 
         Parameters
         ----------
         **settings
             See :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings`: ``mode_count=8``, ``orders=(2.0,)``.
         """
-        from gearwhine.analyses import of_machine
+        from gearwhine.analyses.machine_results import rotors_result
 
-        return of_machine.rotors(
-            self.machine, self.settings.title, speeds=self.settings.speeds, progress=self.progress, **settings
-        )
+        solved = self.solved_rotors(**settings)
 
-    def gears(self, aims: Sequence[ReliefAim] = ()) -> Result[tuple[PairAnalysis, ...]]:
-        """Analyse each gear pair, and find its best tip relief; see :func:`gearwhine.analyses.of_machine.gears`."""
-        from gearwhine.analyses import of_machine
+        def assemblies() -> "list[RotorAssembly]":
+            from gearwhine.figures.rotors import shaft_assembly
 
-        return of_machine.gears(self.machine, self.settings.title, aims=aims, progress=self.progress)
+            return [shaft_assembly(self.machine, one.rotor.name, one.bearings) for one in solved]
 
-    def operating_point(self, *, over_torque: bool = False) -> Result[SolvedLoad]:
-        """Find the static equilibrium under load; see :func:`gearwhine.analyses.of_machine.operating_point`."""
-        from gearwhine.analyses import of_machine
+        return rotors_result(solved, self.origin, assemblies)
 
-        return of_machine.operating_point(
-            self.machine, self.settings.title, over_torque=over_torque, progress=self.progress
-        )
+    def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":
+        """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief.
+
+        Parameters
+        ----------
+        aims : sequence of ReliefAim, optional
+            Objective of the best relief of each pair; by default those of
+            :func:`gearwhine.coupling.analyses.gear_pairs.default_aims`.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
+            Where the machine has no gear pairs, there are more or fewer aims than pairs, or a pair cannot be solved.
+        """
+        from gearwhine.analyses.machine_results import gears_result, require_aims
+        from gearwhine.coupling import CouplingError
+        from gearwhine.coupling.analyses.gear_pairs import analyse_machine, default_aims, solve_over_torques
+        from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
+
+        machine = self.machine
+        if not machine.gear_pairs:
+            raise CouplingError("gears: expected a machine with a gear pair")
+        require_aims(aims, len(machine.gear_pairs))
+        point = point_of_flanks(machine, self.progress)
+        analysed = analyse_machine(machine, point, self.progress)
+        chosen = aims or default_aims(machine, point, [pair.solved for pair in analysed], self.progress)
+        analysed = tuple(replace(pair, aim_given=bool(aims)) for pair in analysed)
+        seats = None if point is None or machine.housing is None else "housing"
+        return gears_result(solve_over_torques(analysed, self.progress, chosen), self.origin, seats)
+
+    def operating_point(self, *, over_torque: bool = False) -> "Result[SolvedLoad]":
+        """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
+
+        Parameters
+        ----------
+        over_torque : bool
+            Also solve from 10 to 150 % of the torque.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where nothing loads the machine, or a load drives a motion that nothing holds.
+        gearwhine.coupling.EquilibriumNotFoundError
+            Where no equilibrium is found.
+        """
+        from gearwhine.analyses.machine_results import load_result
+        from gearwhine.solve.operating_point import solve_load
+
+        solved = solve_load(self.machine, self.progress, over_torque=over_torque, over_hunting_period=True)
+        return load_result(solved, self.origin)
 
     def system(
         self,
         *,
         campbell: bool = False,
-        sidebands: int = 0,
-        mesh_harmonics: int = 3,
+        sidebands: Annotated[int, SIDEBANDS] = 0,
+        mesh_harmonics: Annotated[int, HARMONICS] = 3,
         mesh_phase: float | None = None,
-    ) -> Result[SolvedSystem]:
-        """Find the complex modes of the coupled machine, and their course over the speeds of the settings.
+    ) -> "Result[SolvedSystem]":
+        """Complex natural modes of the coupled machine, their damping and participation, and its transmissibility.
 
-        ``campbell`` follows them over speed without such speeds, too: up to 1.5 times the speed of the machine. See
-        :func:`gearwhine.analyses.of_machine.system`.
+        Parameters
+        ----------
+        campbell : bool
+            Also compute the Campbell diagram: over the speeds of the settings ([sweep]), else up to 1.5 times the
+            operating speed. Speeds of the settings imply it.
+        sidebands : int
+            Number of shaft-order sidebands drawn on each side of every mesh order, up to 20.
+        mesh_harmonics : int
+            Number of harmonics of every mesh whose resonances the Campbell diagram lists and draws, up to 50.
+        mesh_phase : float, optional
+            Linearise about the mesh at this fraction of the first pair's mesh period (default: the mean).
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where the parts do not make a machine, or a number is out of its range.
+        gearwhine.coupling.ModesError
+            Where the modes fail their certificate.
         """
-        from gearwhine.analyses import of_machine
+        from gearwhine.analyses.machine_results import system_result
+        from gearwhine.coupling.analyses.modes_and_responses import MESH_HARMONICS, solve_system
 
-        return of_machine.system(
-            self._loaded(),
+        _require_numbers("system", sidebands=(sidebands, SIDEBANDS), mesh_harmonics=(mesh_harmonics, HARMONICS))
+        self.require("system" if mesh_phase is None else "system --mesh-phase")
+        over_speed = campbell or sidebands > 0 or mesh_harmonics > MESH_HARMONICS or len(self.settings.speeds) > 1
+        machine = self.under_load(self.settings.transient)
+        solved = solve_system(
+            machine.coupled,
+            self.progress,
             mesh_phase=mesh_phase,
-            over_speed=self._diagram_speeds() if campbell or len(self.settings.speeds) > 1 else (),
+            over_speed=self._diagram_speeds() if over_speed else (),
             sidebands=sidebands,
             mesh_harmonics=mesh_harmonics,
-            progress=self.progress,
         )
+        return system_result(machine, solved, self.progress)
 
     def steady(
-        self, *, curve: bool = False, down: bool = False, points: int = 100, exact: bool = False
-    ) -> Result[SolvedSteady]:
-        """Find the periodic motion, and with ``curve`` its branch over the range of the settings' speeds.
+        self, *, curve: bool = False, down: bool = False, points: Annotated[int, POINTS] = 100, exact: bool = False
+    ) -> "Result[SolvedSteady]":
+        """Periodic steady state by shooting, its stability by Floquet multipliers, and its continuation over speed.
 
-        The branch goes by default from half to 1.5 times the speed of the machine; ``down`` follows it from the
-        highest speed downwards. See :func:`gearwhine.analyses.of_machine.steady`.
+        The motion is that at the speed and torque of operation, also where the speed of the transient varies.
+
+        Parameters
+        ----------
+        curve : bool
+            Also continue the motion over speed, through folds: over the range of the settings' speeds ([sweep]), else
+            from 0.5 to 1.5 times the operating speed.
+        down : bool
+            Continue from the highest speed downwards.
+        points : int
+            Number of points on a straight part of the curve, from 2 to 2000.
+        exact : bool
+            Solve over the common period of all excitations, however long; by default excitations without a short common
+            period, such as the meshes of several stages, are solved one by one and superposed.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where the parts do not make a machine, or a number is out of its range.
+        gearwhine.coupling.PeriodicError
+            Where no periodic motion is found.
         """
-        from gearwhine.analyses import of_machine
+        from gearwhine.analyses.machine_results import steady_result
+        from gearwhine.coupling.analyses.steady_state import solve_steady
 
+        _require_numbers("steady", points=(points, POINTS))
+        self.require("steady")
+        machine = self.under_load()
         speeds = self._branch_speeds(down=down) if curve or down else None
-        return of_machine.steady(self._loaded(), over_speed=speeds, points=points, exact=exact, progress=self.progress)
+        solved = solve_steady(machine.coupled, self.progress, over_speed=speeds, points=points, exact=exact)
+        if solved.curve is not None:
+            solved = replace(solved, assumed_damping=self._assumed_mesh_damping())
+        return steady_result(machine, solved, self.progress)
 
-    def simulate(self, plan: TransientPlan | None = None, /, **stretch: Any) -> Result[RunSolution]:
+    def simulate(self, plan: "TransientPlan | None" = None, /, **stretch: Any) -> "Result[RunSolution]":
         """Integrate the motion over time.
 
         Parameters
@@ -277,28 +328,25 @@ class Study:
         Raises
         ------
         gearwhine.coupling.CouplingError
-            Where the plan cannot be followed.
+            Where there is no plan, or it cannot be followed.
         gearwhine.coupling.TransientError
             Where the motion cannot be followed or its energies do not balance.
         """
-        from gearwhine.analyses import of_machine
+        from gearwhine.analyses.machine_results import motion_result
+        from gearwhine.coupling import coupled_modes
         from gearwhine.coupling.analyses.recording import TransientPlan
+        from gearwhine.coupling.statics.mean_mesh import mean_contact
 
-        if plan is None:
-            given = self.settings.transient
-            plan = TransientPlan(**stretch) if given is None or stretch else given
-        return of_machine.simulate(self._loaded(plan), plan, self.settings.tracking, self.progress)
+        if plan is None and not stretch:
+            self.require("simulate")
+            plan = self.settings.transient
+        plan = TransientPlan(**stretch) if plan is None else plan
+        machine = self.under_load(plan)
+        modes = coupled_modes(machine.coupled.system, mean_contact(machine.coupled.system))
+        return motion_result(machine, self.motion(machine, plan, modes), modes)
 
-    def run(self) -> Result[RunSolution]:
-        """Find everything: rotors, gears, operating point, modes and responses, and the transient of the settings."""
-        from gearwhine.analyses import of_machine
-
-        plan = self.settings.transient
-        rotors = self.rotors().solved
-        return of_machine.run(self.machine, self._loaded(plan), rotors, plan, self.settings.tracking, self.progress)
-
-    def sound(self, acoustics: Acoustics | None = None, /, **settings: Any) -> Result[SolvedSound]:
-        """Find the sound that the housing radiates: of its modes, and of the lines of the steady motion.
+    def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
+        """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
 
         Parameters
         ----------
@@ -317,16 +365,144 @@ class Study:
         gearwhine.housing.HousingError
             Where a solution fails its proofs.
         """
-        from gearwhine.analyses import of_machine
+        from gearwhine.analyses.machine_results import radiating_housing, sound_result
         from gearwhine.coupling.sound import Acoustics
-        from gearwhine.coupling.sound.motion_lines import left_out_warnings
 
         if acoustics is None:
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
-        housing = of_machine.radiating_housing(self.machine, acoustics, self.settings.title)
-        warnings = left_out_warnings(base_moves=self.machine.base is not None, speed_changes=False)
-        return of_machine.sound(housing, None if warnings else self._loaded(), warnings, self.progress)
+        housing = radiating_housing(self.machine, acoustics, self.origin)
+        warnings = self.left_out_of_sound(None)
+        return sound_result(housing, None if warnings else self.under_load(), warnings, self.progress)
+
+    def run(self) -> "Result[RunSolution]":
+        """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.
+
+        The motion is that of the settings' transient; without one there is none.
+        """
+        from gearwhine.analyses.run import WholeRun
+
+        return WholeRun(self, self.settings.transient).result()
+
+    def run_into(self, folder: str | os.PathLike[str], *, pictures: bool = True) -> "Result[RunSolution]":
+        """Run all analyses, and write them into a folder; an interrupted run continues there from its last checkpoint.
+
+        Parameters
+        ----------
+        folder : path
+            Results folder. The blocks of the motion over time are stored in it until the results are written.
+        pictures : bool
+            Draw pictures; without them time is saved, and no renderer is needed.
+
+        Raises
+        ------
+        gearwhine.housing.errors.RendererUnavailableError
+            Where modes are to be drawn and no renderer is available.
+        """
+        from gearwhine.analyses.run import WholeRun
+
+        with ExitStack() as until_written:
+            run = WholeRun(self, self.settings.transient, Path(folder), until_written, pictures=pictures)
+            return run.result().stored(Path(folder), pictures=pictures, progress=self.progress)
+
+    # What follows is for the analyses: what the study is of, and what a study of a case does otherwise.
+
+    @property
+    def origin(self) -> "Origin":
+        """What the results are of."""
+        from gearwhine.analyses.origin import Origin
+
+        return Origin(self.settings.title, self.machine.speed)
+
+    @property
+    def fresh(self) -> bool:
+        """Whether to solve again what a results folder holds."""
+        return False
+
+    @property
+    def has_housing(self) -> bool:
+        """Whether a housing is solved for the results, with its modes among them."""
+        return False
+
+    @property
+    def has_machine(self) -> bool:
+        """Whether the parts are those of a machine."""
+        return True
+
+    def require(self, command: str) -> None:
+        """Refuse a command that the study does not allow, before anything is solved."""
+        from gearwhine.coupling import CouplingError
+
+        if command == "steady" and self.machine.speed == 0.0:
+            raise CouplingError("steady: expected a speed: what stands still has no motion that repeats")
+        if command == "simulate" and self.settings.transient is None:
+            example = "study.simulate(revolutions=40, discard=20), or Settings(transient=TransientPlan(...))"
+            raise CouplingError(f"simulate: expected how far to integrate, such as {example}")
+
+    def solved_rotors(self, **settings: Any) -> "tuple[SolvedRotor, ...]":
+        """Solve each rotor, alone in its bearings on rigid seats."""
+        from gearwhine.coupling.analyses.shafts_alone import solve_shafts
+
+        return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
+
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
+        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
+
+        Modes that a ``folder`` keeps are read in place of solving.
+        """
+        return None
+
+    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+        """Compare the modes of the housing with measured ones; None without such."""
+        return None
+
+    def under_load(self, plan: "TransientPlan | None" = None) -> "MachineUnderLoad":
+        """Return the machine about its operating point, assembled for a plan; at constant speed it is made once."""
+        if plan is not None and plan.run is not None:
+            return self._put_under_load(plan.run)
+        with self._lock:
+            if self._at_constant_speed is None:
+                self._at_constant_speed = self._put_under_load(None)
+            return self._at_constant_speed
+
+    def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
+        from gearwhine.analyses.machine_results import machine_under_load
+
+        return machine_under_load(self.machine, self.origin, run, self.progress)
+
+    def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
+        """Analyse each gear pair as it stands in the machine under load."""
+        from gearwhine.coupling.analyses.gear_pairs import analyse_machine
+
+        if machine is None:
+            return ()
+        point = None if machine.load is None else machine.load.point
+        return analyse_machine(self.machine, point, self.progress, pairs=machine.loaded.pairs)
+
+    def motion(
+        self,
+        machine: "MachineUnderLoad",
+        plan: "TransientPlan",
+        modes: "CoupledModes",
+        keep: Callable[[str], Any] | None = None,
+    ) -> "MachineMotion":
+        """Integrate the motion of the machine under load; ``keep`` stores its blocks."""
+        from gearwhine.coupling.analyses.motion import solve_motion
+        from gearwhine.coupling.analyses.run_up import OrderTracking
+
+        tracking = self.settings.tracking or OrderTracking()
+        return solve_motion(machine.loaded, plan, tracking, modes, self.progress, keep=keep)
+
+    def left_out_of_sound(self, plan: "TransientPlan | None") -> "list[ResultWarning]":
+        """Return the warning that the sound of the motion's lines is left out, and why; none where it is not."""
+        from gearwhine.coupling.sound.motion_lines import left_out_warnings
+
+        speed_changes = plan is not None and plan.run is not None
+        return left_out_warnings(base_moves=self.machine.base is not None, speed_changes=speed_changes)
+
+    def _assumed_mesh_damping(self) -> tuple[str, ...]:
+        """Return the gear pairs whose mesh damping nobody gave."""
+        return ()
 
     def _diagram_speeds(self) -> tuple[float, ...]:
         """Return the signed speeds of a diagram of the machine [rad/s], ascending in size."""
@@ -352,381 +528,13 @@ class Study:
 
         return held_speeds(self.machine)
 
-    def _loaded(self, plan: TransientPlan | None = None) -> MachineUnderLoad:
-        """Return the machine about its operating point, assembled for a plan; at constant speed it is made once."""
-        from gearwhine.analyses.of_machine import machine_under_load
 
-        if plan is not None and plan.run is not None:
-            return machine_under_load(self.machine, self.settings.title, plan.run, self.progress)
-        with self._lock:
-            if self._under_load is None:
-                self._under_load = machine_under_load(self.machine, self.settings.title, progress=self.progress)
-            return self._under_load
-
-
-@dataclass
-class _KeptHousing:
-    """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
-
-    solved: SolvedHousing | None = None
-    lock: threading.RLock = field(default_factory=threading.RLock)
-
-
-class CaseStudy(Study):
-    """A checked case and its analyses: a study of the machine that the case describes, with the case's settings.
-
-    The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study. Threads
-    may share a study: who needs the housing while another thread solves it waits.
-
-    Attributes
-    ----------
-    case : Case
-        Checked case, in SI.
-    warnings : tuple of str
-        Allowed but implausible choices in the case.
-    progress : callable
-        Receives the progress of long work in words; silent by default.
-    """
-
-    def __init__(self, loaded: LoadedCase, progress: Progress = silent) -> None:
-        self.case: Case = loaded.case
-        self.warnings = loaded.warnings
-        self.progress = progress
-        self._source = loaded.source
-        self._kept = _KeptHousing()
-
-    def __repr__(self) -> str:
-        """Return the case's title."""
-        return f"<Study of {self.case.title or 'an untitled case'!r}>"
-
-    def _repr_html_(self) -> str:
-        from gearwhine.notebook import case_html
-
-        return case_html(self.case)
-
-    def changed(self, changes: Mapping[str, object] | Sequence[str]) -> CaseStudy:
-        """Return a study of the same case with other values of some keys; this one stays as it is.
-
-        The case is the one that was read: neither its file nor those that it names are read again, and one that has
-        changed before it was needed, such as that of a mesh, is refused. Both studies share one solved housing, where
-        its modes, damping, seats and sensors stay as they are. Changes of torque, gears, bearing stiffness and preload
-        leave them so; a change of a bearing's position does not.
-
-        Parameters
-        ----------
-        changes : mapping or sequence of str
-            As of :func:`load`.
-
-        Raises
-        ------
-        CaseError
-            With everything that is wrong.
-        """
-        study = CaseStudy(self._source.changed(_texts(changes)), self.progress)
-        if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import housing_key
-
-            if housing_key(self.case) == housing_key(study.case):
-                study._kept = self._kept
-        return study
-
-    @property
-    def housing(self) -> SolvedHousing | None:
-        """The solved housing, which the first call meshes and solves; None in a case without one."""
-        return self._solved_housing(with_sound=False)
-
-    def _solved_housing(self, *, with_sound: bool) -> SolvedHousing | None:
-        """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        with self._kept.lock:
-            if self._kept.solved is None and self.case.housing is not None:
-                from gearwhine.solve.acoustics import check_before_modes
-                from gearwhine.solve.housing_modes import solve_housing
-
-                before = check_before_modes(self.case) if with_sound else None
-                self._kept.solved = solve_housing(self.case, self.progress, before=before)
-            return self._kept.solved
-
-    @property
-    def machine(self) -> Machine:
-        """The shafts, gears, bearings and gear pairs of the case as one object, with all that loads it.
-
-        It stands in the solved housing of the case.
-        """
-        from gearwhine.from_case.machine import describe_machine
-        from gearwhine.solve.machine import reduce_housing
-
-        solved = self.housing
-        if solved is None:
-            return describe_machine(self.case, None)
-        part = reduce_housing(self.case, solved, self.progress)
-        return describe_machine(self.case, replace(part, displacement_field=solved.displacement_field))
-
-    @property
-    def settings(self) -> Settings:
-        """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
-        from gearwhine.case.analysis_speeds import with_sense_of
-        from gearwhine.solve.acoustics import acoustics_of
-        from gearwhine.solve.machine import plan_of, tracking_of
-
-        case = self.case
-        plan = None if case.transient is None else plan_of(case)
-        speeds = () if case.sweep is None else with_sense_of(case.operation, case.sweep.speeds)
-        acoustics = None if case.acoustics is None else acoustics_of(case)
-        return Settings(case.title, plan, tracking_of(case), speeds, acoustics)
-
-    def check(self) -> Result[CheckedCase]:
-        """Derive ratios, mesh frequencies and sizes, solving nothing; see :func:`gearwhine.analyses.case.check`."""
-        from gearwhine.analyses import case
-
-        return case.check(self.case, progress=self.progress)
-
-    def mesh(self, suffix: str = "msh") -> Result[Mesh]:
-        """Mesh the housing; see :func:`gearwhine.analyses.housing.mesh`."""
-        from gearwhine.analyses import housing
-
-        return housing.mesh(self.case, suffix=suffix, progress=self.progress)
-
-    def modes(self, *, detail: bool = False) -> Result[SolvedHousing]:
-        """Find the natural modes of the housing, certified complete; see :func:`gearwhine.analyses.housing.modes`."""
-        from gearwhine.analyses import housing
-
-        return housing.modes(self.case, detail=detail, housing=self.housing, progress=self.progress)
-
-    def compare(self) -> Result[Comparison]:
-        """Compare natural modes with measured ones; see :func:`gearwhine.analyses.housing.compare`."""
-        from gearwhine.analyses import housing
-
-        return housing.compare(self.case, housing=self.housing, progress=self.progress)
-
-    def survey(self, sensors: int, modes: int | None = None) -> Result[PlannedSurvey]:
-        """Choose where to measure the modes; see :func:`gearwhine.analyses.housing.survey`."""
-        from gearwhine.analyses import housing
-
-        return housing.survey(self.case, sensors=sensors, modes=modes, housing=self.housing, progress=self.progress)
-
-    def update(self, *, null: int = 0, held_back: bool = False) -> Result[SolvedUpdate]:
-        """Fit the parameters of `[update]` to the measured modes; see :func:`gearwhine.analyses.housing.update`."""
-        from gearwhine.analyses import housing
-
-        return housing.update(self.case, null=null, held_back=held_back, progress=self.progress)
-
-    def render(
-        self,
-        modes: str | None = None,
-        *,
-        view: View = "auto",
-        mode_format: ModeFormat = "png",
-        measured: bool = False,
-    ) -> Result[SolvedHousing]:
-        """Draw mode shapes, which the result writes; see :func:`gearwhine.analyses.housing.render`."""
-        from gearwhine.analyses import housing
-
-        return housing.render(
-            self.case,
-            modes,
-            view=view,
-            mode_format=mode_format,
-            measured=measured,
-            housing=self.housing,
-            progress=self.progress,
-        )
-
-    def report(self, folder: str | os.PathLike[str], *, interactive: bool = False) -> Path:
-        """Write all results in a folder as one HTML page; return the file.
-
-        See :func:`gearwhine.analyses.case.write_report`.
-        """
-        from gearwhine.analyses.case import write_report
-
-        written = write_report(Path(folder), self.case, interactive=interactive, progress=self.progress)
-        return Path(folder) / str(written["files"][0])
-
-    def rotors(self, **settings: Any) -> Result[tuple[SolvedRotor, ...]]:
-        """Find modes, whirl and critical speeds of each rotor; see :func:`gearwhine.analyses.machine.rotors`."""
-        from gearwhine.analyses import machine
-
-        return machine.rotors(self.case, progress=self.progress, **settings)
-
-    def gears(self, aims: Sequence[ReliefAim] = ()) -> Result[tuple[PairAnalysis, ...]]:
-        """Analyse each gear pair; see :func:`gearwhine.analyses.machine.gears`."""
-        from gearwhine.analyses import machine
-        from gearwhine.solve.gear_pairs import aims_at_sensor
-
-        housing = self.housing if aims_at_sensor(self.case) else self._kept.solved
-        return machine.gears(self.case, aims=aims, housing=housing, progress=self.progress)
-
-    def operating_point(
-        self,
-        *,
-        over_torque: bool = False,
-        sensitivity: bool = False,
-        line: str | None = None,
-        rigid_seats: bool = False,
-    ) -> Result[SolvedLoad]:
-        """Find the static equilibrium under load; see :func:`gearwhine.analyses.machine.operating_point`."""
-        from gearwhine.analyses import machine
-
-        return machine.operating_point(
-            self.case,
-            over_torque=over_torque,
-            sensitivity=sensitivity,
-            line=line,
-            rigid_seats=rigid_seats,
-            housing=None if rigid_seats else self._solved_housing(with_sound=sensitivity or line is not None),
-            progress=self.progress,
-        )
-
-    def system(
-        self,
-        *,
-        campbell: bool = False,
-        sidebands: int = 0,
-        mesh_harmonics: int = 3,
-        mesh_phase: float | None = None,
-    ) -> Result[SolvedSystem]:
-        """Find the complex modes of the coupled machine; see :func:`gearwhine.analyses.machine.system`."""
-        from gearwhine.analyses import machine
-
-        return machine.system(
-            self.case,
-            campbell=campbell,
-            sidebands=sidebands,
-            mesh_harmonics=mesh_harmonics,
-            mesh_phase=mesh_phase,
-            housing=self.housing,
-            progress=self.progress,
-        )
-
-    def steady(
-        self, *, curve: bool = False, down: bool = False, points: int = 100, exact: bool = False
-    ) -> Result[SolvedSteady]:
-        """Find the periodic motion, its stability and branch; see :func:`gearwhine.analyses.machine.steady`."""
-        from gearwhine.analyses import machine
-
-        return machine.steady(
-            self.case,
-            curve=curve,
-            down=down,
-            points=points,
-            exact=exact,
-            housing=self.housing,
-            progress=self.progress,
-        )
-
-    def sound(self, acoustics: Acoustics | None = None, /, **settings: Any) -> Result[SolvedSound]:
-        """Find the sound that the housing radiates; see :func:`gearwhine.analyses.machine.sound`.
-
-        An object, or its attributes by name, take the place of the case's `[acoustics]`.
-        """
-        from gearwhine.analyses import machine
-        from gearwhine.coupling.sound import Acoustics
-
-        acoustics = Acoustics(**settings) if settings else acoustics
-        housing = self._solved_housing(with_sound=acoustics is None)
-        return machine.sound(self.case, acoustics=acoustics, housing=housing, progress=self.progress)
-
-    def simulate(self, plan: TransientPlan | None = None, /, **stretch: Any) -> Result[RunSolution]:
-        """Integrate the motion over time, by default of `[transient]`; see :func:`gearwhine.analyses.run.simulate`.
-
-        A plan, or the attributes of one, take the place of that of the case.
-        """
-        from gearwhine.analyses import run
-        from gearwhine.coupling.analyses.recording import TransientPlan
-
-        plan = TransientPlan(**stretch) if stretch else plan
-        return run.simulate(self.case, plan=plan, housing=self.housing, progress=self.progress)
-
-    def run(self) -> Result[RunSolution]:
-        """Do everything that the case asks for; see :func:`gearwhine.analyses.run.run`."""
-        from gearwhine.analyses import run
-        from gearwhine.solve.acoustics import is_in_run
-
-        housing = self._solved_housing(with_sound=is_in_run(self.case))
-        return run.run(self.case, housing=housing, pictures=False, progress=self.progress)
-
-    def sweep(
-        self,
-        over: Sequence[str] = (),
-        *,
-        folder: str | os.PathLike[str],
-        workers: int | None = None,
-        fresh: bool = False,
-    ) -> Result[Sequence[SweptPoint]]:
-        """Integrate the transient at every point of a sweep; see :func:`gearwhine.analyses.machine.sweep`.
-
-        Parameters
-        ----------
-        over : sequence of str
-            Values of keys, such as ``"operation.torque=10 N*m:100 N*m:10"``, beside the speeds of `[sweep]`.
-        folder : path
-            Folder of the points; those that it holds already are not solved again.
-        workers : int, optional
-            Number of processes; as many as cores by default.
-        fresh : bool
-            Whether to solve all points anew.
-
-        Raises
-        ------
-        CaseError
-            Where a key cannot be swept.
-        """
-        from gearwhine.analyses import machine
-
-        return machine.sweep(
-            self.case, self._source, over, Path(folder), workers=workers, fresh=fresh, progress=self.progress
-        )
-
-    def export(
-        self,
-        folder: str | os.PathLike[str],
-        formats: Sequence[Format] = ("csv", "uff", "wav"),
-        *,
-        signals: Signals = "sensors",
-        seconds: float | None = None,
-    ) -> list[str]:
-        """Write results in formats of other programs; see :func:`gearwhine.analyses.case.export_results`.
-
-        Returns
-        -------
-        list of str
-            The files, relative to the folder.
-        """
-        from gearwhine.analyses.case import export_results
-
-        return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
-
-
-def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:
-    """Return changes of keys as ``key=value``."""
-    if isinstance(changes, Mapping):
-        return tuple(f"{key}={_text(value)}" for key, value in changes.items())
-    return tuple(changes)
-
-
-def _text(value: object) -> str:
-    """Return a value as it stands behind ``--set KEY=``, where a text needs no quotes."""
-    return value if isinstance(value, str) else _toml(value)
-
-
-def _toml(value: object) -> str:
-    """Return a value in TOML, on one line."""
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(_toml, value)) + "]"
-    if isinstance(value, str):
-        return json.dumps(value)
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def _plain(value: object) -> object:
-    """Return a table as plain dictionaries and lists, as TOML gives it."""
-    from pydantic import BaseModel
-
-    if isinstance(value, BaseModel):
-        return value.model_dump(exclude_unset=True, by_alias=True)
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return value
+def _require_numbers(verb: str, **given: tuple[object, Number]) -> None:
+    """Refuse numbers that are not as their rules have them."""
+    from gearwhine.coupling import CouplingError
+
+    part = (verb, "")
+    findings = (
+        Finding(part, name, value, rule.expected) for name, (value, rule) in given.items() if not rule.accepts(value)
+    )
+    refuse(findings, CouplingError)

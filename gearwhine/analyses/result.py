@@ -52,11 +52,12 @@ _PROOFS = {
 }
 
 
-def _no_figures(progress: Progress) -> Iterable[tuple[str, Figure]]:
+def no_figures(progress: Progress) -> Iterable[tuple[str, Figure]]:
+    """Draw no figures."""
     return ()
 
 
-def _no_files(place: Path, *, pictures: bool) -> Mapping[str, Any]:
+def no_files(place: Path, *, pictures: bool) -> Mapping[str, Any]:
     """Write nothing beside the data and the figures."""
     return {}
 
@@ -87,8 +88,8 @@ class Result(Generic[Solved]):
     solved: Solved
     document: dict[str, Any]
     _arrays: Callable[[], LabelledArrays | xr.Dataset] | None = None
-    _figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = _no_figures
-    _files: Callable[..., Mapping[str, Any]] = _no_files
+    _figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = no_figures
+    _files: Callable[..., Mapping[str, Any]] = no_files
     _housing: SolvedHousing | None = None
     _data_file: str = "results.nc"
     _started: float | None = None
@@ -111,7 +112,7 @@ class Result(Generic[Solved]):
         """Return the fields for a pickle: the arrays themselves, in place of the functions that make and draw them."""
         state = {field.name: getattr(self, field.name) for field in fields(self)}
         arrays = None if self._arrays is None else partial(copy.copy, self.dataset)
-        return state | {"_arrays": arrays, "_figures": _no_figures, "_files": _no_files, "_options": ((), ())}
+        return state | {"_arrays": arrays, "_figures": no_figures, "_files": no_files, "_options": ((), ())}
 
     def __repr__(self) -> str:
         """Return the command, the case's title and the keys of the document."""

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from functools import partial
+from typing import TYPE_CHECKING, Any, Self
 
+from gearwhine.analyses.origin import Origin
+from gearwhine.analyses.result import Result
 from gearwhine.numerics.progress import Progress
 from gearwhine.output.dataset import LabelledArrays, Labels, labelled
 from gearwhine.results.gears import GEARS
@@ -52,6 +55,20 @@ class RunSolution:
         if motion is None:
             return self
         return replace(self, transient=motion.transient, signature=motion.signature, run_signature=motion.run_signature)
+
+    def result(self, command: str, origin: Origin, document: dict[str, Any], **written: Any) -> Result[RunSolution]:
+        """Return the result of the analyses that were made; ``written`` are further fields of it."""
+        return Result(
+            command,
+            origin.case,
+            self,
+            document,
+            _arrays=lambda: self.arrays(origin.labels),
+            _figures=partial(self.figures, origin.title),
+            _housing=self.housing,
+            _title=origin.title,
+            **written,
+        )
 
     def arrays(self, labels: Labels) -> LabelledArrays:
         """Return the labelled arrays of the analyses that were made."""

@@ -27,9 +27,11 @@ def with_sense_of(operation: Operation | None, speeds: Iterable[float]) -> tuple
 
     Lists and ranges of speeds hold absolute values. Without an operation the speeds stay as they are.
     """
-    if operation is None:
-        return tuple(speeds)
-    return tuple(math.copysign(speed, operation.speed) for speed in speeds)
+    return tuple(speeds) if operation is None else _in_sense(operation.speed, speeds)
+
+
+def _in_sense(speed: float, speeds: Iterable[float]) -> tuple[float, ...]:
+    return tuple(math.copysign(one, speed) for one in speeds)
 
 
 @dataclass(frozen=True)
@@ -76,33 +78,35 @@ def rotor_speeds(case: Case, rotor: str) -> RotorSpeeds:
     return RotorSpeeds((*operation, *swept), diagram, response)
 
 
-def diagram_speeds(operation: Operation, sweep: Sweep | None, held: tuple[float, float]) -> tuple[float, ...]:
+def diagram_speeds(speed: float, sweep: Sweep | None, held: tuple[float, float]) -> tuple[float, ...]:
     """Speeds of the first driver [rad/s] for the diagram: the sweep's, else up to beyond operation; ascending in size.
 
-    ``held`` is the range of speeds, without sense, that the tables of all bearings hold.
+    ``speed`` is that of operation, and ``held`` the range of speeds, without sense, that the tables of all bearings
+    hold.
 
     Raises
     ------
     CaseError
         For a machine that stands still, whose bearings' tables leave no range, or a sweep of one speed.
     """
-    if operation.speed == 0.0:
+    if speed == 0.0:
         raise CaseError([Problem("operation.speed", 0.0, "a speed: a diagram over speed is of a machine that turns")])
     if sweep is not None:
-        speeds = sorted({abs(speed) for speed in sweep.speeds})
+        speeds = sorted({abs(one) for one in sweep.speeds})
         if len(speeds) < 2:
             raise CaseError([Problem("sweep.speed", NOTHING, "two or more speeds for a diagram over speed")])
-        return with_sense_of(operation, speeds)
-    low, high = _range_within(held, 0.0, BEYOND_OPERATION * abs(operation.speed))
-    return with_sense_of(operation, evenly(low, high, CAMPBELL_STEPS))
+        return _in_sense(speed, speeds)
+    low, high = _range_within(held, 0.0, BEYOND_OPERATION * abs(speed))
+    return _in_sense(speed, evenly(low, high, CAMPBELL_STEPS))
 
 
 def branch_speeds(
-    operation: Operation, sweep: Sweep | None, held: tuple[float, float], *, downwards: bool = False
+    speed: float, sweep: Sweep | None, held: tuple[float, float], *, downwards: bool = False
 ) -> tuple[float, float]:
     """Return the speeds from which and to which a motion is followed [rad/s]: the sweep's range, or about operation.
 
-    ``held`` is the range of speeds, without sense, that the tables of all bearings hold.
+    ``speed`` is that of operation, and ``held`` the range of speeds, without sense, that the tables of all bearings
+    hold.
 
     Raises
     ------
@@ -110,15 +114,14 @@ def branch_speeds(
         Where the sweep holds no range of speeds above zero, or the bearings' tables leave none.
     """
     if sweep is None:
-        speed = abs(operation.speed)
-        low, high = _range_within(held, SLOWEST_OF_BRANCH * speed, BEYOND_OPERATION * speed)
+        low, high = _range_within(held, SLOWEST_OF_BRANCH * abs(speed), BEYOND_OPERATION * abs(speed))
     else:
-        speeds = [abs(speed) for speed in sweep.speeds]
+        speeds = [abs(one) for one in sweep.speeds]
         low, high = min(speeds), max(speeds)
         if not 0.0 < low < high:
             expected = "a range of speeds above zero, over which a motion is followed"
             raise CaseError([Problem("sweep.speed", UNSAID, expected)])
-    first, last = with_sense_of(operation, (high, low) if downwards else (low, high))
+    first, last = _in_sense(speed, (high, low) if downwards else (low, high))
     return first, last
 
 

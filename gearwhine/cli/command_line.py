@@ -7,7 +7,8 @@ import warnings
 from cyclopts import App, CycloptsError
 
 from gearwhine import __version__
-from gearwhine.cli import case, housing, machine
+from gearwhine.cli import folder_commands
+from gearwhine.cli.study_commands import STUDY_COMMANDS, made_command
 from gearwhine.failures import explain
 from gearwhine.interruption import interruptible, was_interrupted
 
@@ -20,26 +21,9 @@ app = App(
     # An interruption unwinds to run_command, which has a sentence for it.
     suppress_keyboard_interrupt=False,
 )
-for _command in (
-    case.run,
-    case.check,
-    housing.mesh,
-    housing.modes,
-    machine.rotors,
-    machine.gears,
-    machine.load,
-    machine.system,
-    machine.steady,
-    machine.sound,
-    machine.sweep,
-    housing.compare,
-    housing.survey,
-    housing.update,
-    housing.render,
-    case.examples,
-    case.report,
-    case.export,
-):
+for _entry in STUDY_COMMANDS:
+    app.command(made_command(_entry))
+for _command in (folder_commands.examples, folder_commands.report, folder_commands.export):
     app.command(_command)
 
 

@@ -14,7 +14,7 @@ from cyclopts import Parameter, Token
 
 if TYPE_CHECKING:
     from gearwhine.analyses.result import Result
-    from gearwhine.case import Case, LoadedCase
+    from gearwhine.case import LoadedCase
     from gearwhine.numerics.progress import Progress
 
 
@@ -50,18 +50,6 @@ class Common:
 
 
 NONE_GIVEN = Common()
-Fresh = Annotated[
-    bool,
-    Parameter(name="--fresh", negative=(), help="Solve the housing's modes again, even if OUT holds them."),
-]
-FreshRun = Annotated[
-    bool,
-    Parameter(
-        name="--fresh",
-        negative=(),
-        help="Start again, even if OUT holds the housing's modes or an interrupted transient.",
-    ),
-]
 CaseName = Annotated[str, Parameter(help="A case file (TOML), or the name of a bundled case.")]
 
 _LONGEST_NAME, _LONGEST_PATH = 255, 3500  # bytes that common file systems take; the path leaves room for file names
@@ -73,7 +61,7 @@ _RESULTS = (".csv", ".glb", ".html", ".json", ".nc", ".png", ".toml", ".unv", ".
 def on_case(
     name: str,
     common: Common,
-    work: Callable[["Case", "Progress"], dict[str, Any]],
+    work: Callable[["LoadedCase", "Progress"], dict[str, Any]],
     show: Callable[[dict[str, Any]], None],
     command: str,
     *,
@@ -89,19 +77,6 @@ def on_case(
     writes : sequence of str
         Names of files that it writes beside those of :data:`gearwhine.output.own_files.OUTPUTS`.
     """
-    return on_loaded(name, common, lambda loaded, progress: work(loaded.case, progress), show, command, writes=writes)
-
-
-def on_loaded(
-    name: str,
-    common: Common,
-    work: Callable[["LoadedCase", "Progress"], dict[str, Any]],
-    show: Callable[[dict[str, Any]], None],
-    command: str,
-    *,
-    writes: Sequence[str] = (),
-) -> dict[str, Any]:
-    """Do work on a case as :func:`on_case`; it is handed over with the source that it is made of."""
     from gearwhine.case import load_case
     from gearwhine.output.quantity import add_warnings
     from gearwhine.progress import shown

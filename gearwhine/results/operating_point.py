@@ -27,11 +27,11 @@ from gearwhine.results.bearing_lives import life_quantities
 
 if TYPE_CHECKING:
     from gearwhine.coupling.linear.line_sensitivity import Line
+    from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
     from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
-    from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6

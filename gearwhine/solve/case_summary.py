@@ -7,6 +7,7 @@ from typing import Any
 from gearwhine.case import Case, GearPair, Rotor
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
+from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
@@ -17,10 +18,10 @@ from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.part_fits import fit_warnings
-from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 
 
 @dataclass(frozen=True)

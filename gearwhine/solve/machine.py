@@ -79,12 +79,6 @@ def run_of(case: Case) -> Run | None:
     return None if run is None else run.build()
 
 
-def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
-    """Return the housing with all its residual modes."""
-    participation = _participation(case, solved, progress)
-    return _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
-
-
 def _participation(case: Case, solved: SolvedHousing, progress: Progress) -> FloatArray | None:
     """Return the participation in the motions of the ground, where base motion or weight needs it."""
     assert case.operation is not None

@@ -18,17 +18,18 @@ from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misalignments
 from gearwhine.coupling.analyses.loaded_machine import NO_OPERATING_POINT
+from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings, operation_warnings
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
 from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.load_analysis.influences import LoadSensitivity
 from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
 from gearwhine.from_case.machine import misalignments_of_case, require_machine
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors.rolling_bearings import BallRow, RollerRow, Row
 from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
-from gearwhine.solve.plausibility import bearing_load_warnings, centrifugal_warnings, operation_warnings
-from gearwhine.solve.sensitivity.influences import LoadSensitivity
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -19,6 +19,8 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import machine_warnings
+from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
 from gearwhine.coupling.analyses.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.signals.line_names import LineName
@@ -31,11 +33,11 @@ from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
+from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.solve.acoustics import acoustics_of, sound_left_out
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing, run_of
 from gearwhine.solve.operating_point import find_load
-from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.resonances import Resonances, find_resonances
 

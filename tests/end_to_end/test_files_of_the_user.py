@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from gearwhine.case import bundled_files, load_case
+import gearwhine as gw
+from gearwhine.case import bundled_files
 from gearwhine.failures import ForeignFileError
 from gearwhine.output.files import staging
 from gearwhine.output.manifest import listed_digests
@@ -83,8 +84,8 @@ def test_a_file_that_no_run_made_is_refused_before_the_solution(
     def solved(*_: object, **__: object) -> None:
         raise AssertionError("solved before the refusal")
 
-    monkeypatch.setattr("gearwhine.analyses.machine.rotors", solved)
-    monkeypatch.setattr("gearwhine.analyses.housing.modes", solved)
+    monkeypatch.setattr("gearwhine.case_study.CaseStudy.rotors", solved)
+    monkeypatch.setattr("gearwhine.case_study.CaseStudy.modes", solved)
     folder = own_case.parent / "out"
     folder.mkdir()
     (folder / name).write_text("mine", encoding="utf-8")
@@ -130,11 +131,9 @@ def test_what_patterns_do_not_foresee_is_held_back_when_files_move(tmp_path: Pat
 
 
 def test_python_replaces_no_case_file_either(own_case: Path) -> None:
-    from gearwhine.analyses.case import check
-
     before = own_case.read_bytes()
     with pytest.raises(ForeignFileError, match="no run of gearwhine made"):
-        check(load_case(str(own_case)).case).write(own_case.parent)
+        gw.load(own_case).check().write(own_case.parent)
     assert own_case.read_bytes() == before
 
 

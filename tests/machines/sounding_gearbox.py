@@ -10,7 +10,7 @@ from coupled_cases import about_operating_point
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
-from gearwhine.analyses.run import RunSolution
+from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.solve.housing_modes import SolvedHousing

@@ -109,7 +109,7 @@ def test_what_loads_a_machine_over_time_acts_and_is_checked(machine: gw.Study) -
     assert forces[1] == pytest.approx(1.5 * forces[0], rel=0.02)
     with pytest.raises(CouplingError, match=r"torque over time: times is .*; expected numbers that ascend"):
         TorqueOverTime((1.0, 0.0), (1.0, 2.0))
-    with pytest.raises(CouplingError, match="expected one of the two"):
+    with pytest.raises(CouplingError, match="simulate: expected how far to integrate"):
         machine.simulate()
     with pytest.raises(CouplingError, match="a study is of a gearwhine\\.Machine, got 'spur-pair'"):
         gw.Study("spur-pair")  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""A study hands on to the analyses what it is called with, and to a sweep what its case was made of."""
+"""A study of a case: what it is made of and changed by, and the result that its analyses return."""
 
 import math
 import pickle
@@ -8,72 +8,21 @@ from typing import Any
 import pytest
 
 import gearwhine as gw
-from gearwhine.analyses import housing, machine
+from gearwhine.analyses import sweep_result
 from gearwhine.analyses.result import Result
 from gearwhine.case import Material, Rotor
-
-CALLS: list[tuple[Any, str, str, dict[str, Any], dict[str, Any]]] = [
-    (
-        machine,
-        "system",
-        "system",
-        {"campbell": True, "sidebands": 3, "mesh_harmonics": 5, "mesh_phase": 0.25},
-        {"campbell": True, "sidebands": 3, "mesh_harmonics": 5, "mesh_phase": 0.25},
-    ),
-    (
-        machine,
-        "steady",
-        "steady",
-        {"curve": False, "down": True, "points": 7, "exact": True},
-        {"curve": False, "down": True, "points": 7, "exact": True},
-    ),
-    (
-        machine,
-        "operating_point",
-        "operating_point",
-        {"over_torque": True, "sensitivity": True, "rigid_seats": True},
-        {"over_torque": True, "sensitivity": True, "rigid_seats": True},
-    ),
-    (machine, "steady", "steady", {"curve": True}, {"curve": True, "down": False, "exact": False}),
-    (housing, "update", "update", {"null": 5, "held_back": True}, {"null": 5, "held_back": True}),
-    (housing, "survey", "survey", {"sensors": 4, "modes": 2}, {"sensors": 4, "modes": 2}),
-    (housing, "modes", "modes", {"detail": True}, {"detail": True}),
-    (housing, "mesh", "mesh", {"suffix": "vtu"}, {"suffix": "vtu"}),
-    (
-        housing,
-        "render",
-        "render",
-        {"view": "top", "mode_format": "gif", "measured": True},
-        {"view": "top", "mode_format": "gif", "measured": True},
-    ),
-]
-
-
-@pytest.mark.parametrize(("module", "function", "method", "given", "expected"), CALLS)
-def test_a_study_hands_on_what_it_is_called_with(
-    monkeypatch: pytest.MonkeyPatch,
-    module: Any,
-    function: str,
-    method: str,
-    given: dict[str, Any],
-    expected: dict[str, Any],
-) -> None:
-    calls: list[dict[str, Any]] = []
-    monkeypatch.setattr(module, function, lambda case, *_, **named: calls.append(named))
-    getattr(gw.load("spur-pair"), method)(**given)
-    assert {key: calls[0][key] for key in expected} == expected
 
 
 def test_the_points_of_a_sweep_are_made_of_the_case_with_its_changes(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
     calls: list[tuple[Any, ...]] = []
-    monkeypatch.setattr(machine, "sweep", lambda *given, **_: calls.append(given))
+    monkeypatch.setattr(sweep_result, "solve_sweep", lambda *given, **_: calls.append(given))
     gw.load("spur-pair", {"operation.torque": "20 N*m"}).sweep(["operation.speed=1000 rpm"], folder=tmp_path)
-    _, source, over, folder = calls[0]
+    _, source, keys, folder = calls[0]
     point = source.changed(["operation.speed=1000 rpm"]).case
     assert (point.operation.torque, point.operation.speed) == (20.0, pytest.approx(1000.0 * math.pi / 30.0))
-    assert (over, folder) == (["operation.speed=1000 rpm"], tmp_path)
+    assert ([key.key for key in keys], folder) == (["operation.speed"], tmp_path)
 
 
 def test_truth_values_in_changes_are_those_of_the_file() -> None:

@@ -10,13 +10,13 @@ import pytest
 from odd_but_sound import MACHINES, on_balls
 
 import gearwhine as gw
-from gearwhine.analyses.case import check
 from gearwhine.case import parse_case
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, load_gear_pair
 from gearwhine.housing.material import STEEL
 from gearwhine.rotors import Bearing, Rotor, Segment
 from gearwhine.rotors.analyses.rest_frequencies import rest_frequencies
+from gearwhine.solve.case_summary import check_case
 
 
 def test_there_are_sixty() -> None:
@@ -25,7 +25,7 @@ def test_there_are_sixty() -> None:
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_an_odd_but_sound_machine_is_accepted(name: str) -> None:
-    check(parse_case(MACHINES[name]))
+    check_case(parse_case(MACHINES[name]))
 
 
 def test_helical_teeth_carry_on_as_less_than_one_pair_meets_in_a_plane() -> None:

@@ -16,7 +16,6 @@ from odd_but_sound import bundled, changed, shaft
 from semantic_nonsense import NONSENSE
 
 import gearwhine as gw
-from gearwhine.analyses.case import check
 from gearwhine.case import CaseError, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
 from gearwhine.case.load import bundled_names, load_case
@@ -215,12 +214,12 @@ def test_an_unstable_rotor_is_warned_of() -> None:
 @pytest.mark.parametrize("key", ["highest_frequency", "mesh_size"])
 def test_triangles_longer_than_the_housing_are_no_traceback(key: str) -> None:
     value = {"highest_frequency": "100 Hz", "mesh_size": "1 m"}[key]
-    case = parse_case(changed("small-gearbox", ("acoustics", {key: value})))
+    study = gw.build(**changed("small-gearbox", ("acoustics", {key: value})))
     if key == "mesh_size":
         with pytest.raises(CaseError, match=r"acoustics.mesh_size: expected an edge of at most 53.3333 mm"):
-            check(case)
+            study.check()
     else:
-        assert [text for text in check(case).warnings if "highest_frequency" in text]
+        assert [text for text in study.check().warnings if "highest_frequency" in text]
 
 
 def test_a_shaft_that_swings_about_its_only_bearing_is_doubted() -> None:

@@ -12,8 +12,8 @@ from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
 from gearwhine.housing.acoustics.wrapping import wrap
 from gearwhine.housing.fem.surface import flat_face_names
+from gearwhine.housing.updating.housing_change import face_changes
 from gearwhine.meshes import Mesh, write_mesh
-from gearwhine.solve.sensitivity.housing_changes import face_changes
 
 CASE = """
 [material.steel]
@@ -54,7 +54,7 @@ def test_a_face_has_one_name_everywhere(write: Callable[[str], Path]) -> None:
         "-z at 100, 50, 0 mm",
         "+z at 100, 50, 50 mm",
     }
-    assert {change.parameter for change in face_changes(case, mesh)} <= names
+    assert {change.parameter for change in face_changes(mesh, ())} <= names
     surface: RadiatingSurface = wrap(mesh, 0.02, 0.02)
     assert set(surface_velocity(mesh, surface).face_of_triangles()) == names
 

@@ -10,10 +10,10 @@ import pyuff
 import xarray as xr
 from sounding_gearbox import small_gearbox
 
-from gearwhine.analyses.case import export_results
 from gearwhine.cli import run_command
 from gearwhine.output.export import _microphone_places
 from gearwhine.output.manifest import MANIFEST
+from gearwhine.results_folder import export_results
 
 
 def sensors(x: str) -> dict[str, Any]:

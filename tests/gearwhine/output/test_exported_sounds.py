@@ -9,7 +9,7 @@ import pyuff
 from scipy.io import wavfile
 from sounding_gearbox import small_gearbox
 
-from gearwhine.analyses.case import export_results, export_sections
+from gearwhine.results_folder import export_results, export_sections
 
 pytestmark = pytest.mark.slow
 

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 import gearwhine as gw
-from gearwhine.analyses.case import export_results
 from gearwhine.output.export import _csv
 from gearwhine.output.sections import Column, Table
 from gearwhine.results.sweep import sections
+from gearwhine.results_folder import export_results
 
 THIRD = 1.0 / 3.0
 

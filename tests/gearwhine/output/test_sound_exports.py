@@ -11,10 +11,10 @@ from scipy.io import wavfile
 from sounding_gearbox import QUICK, heard_run
 
 import gearwhine as gw
-from gearwhine.analyses.case import export_results, export_sections
 from gearwhine.case import CaseError
 from gearwhine.cli.command_line import run_command
 from gearwhine.output.export import write_sounds
+from gearwhine.results_folder import export_results, export_sections
 
 pytestmark = pytest.mark.slow
 

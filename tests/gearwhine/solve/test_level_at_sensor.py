@@ -24,7 +24,7 @@ from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
+from gearwhine.solve.machine import reduce_housing
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"
@@ -80,7 +80,7 @@ def housing() -> SolvedHousing:
 def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
     pairs = solve_gears(case)
-    point = describe_machine(case, full_housing_component(case, housing)).operating_point()
+    point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 
 

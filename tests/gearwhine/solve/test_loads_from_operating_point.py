@@ -11,7 +11,6 @@ import pytest
 from coupled_cases import about_operating_point
 
 import gearwhine as gw
-from gearwhine.analyses import machine as analyses
 from gearwhine.case import CaseError, dump_case, load_case, parse_case, swept_keys
 from gearwhine.cli import run_command
 from gearwhine.coupling.errors import EquilibriumNotFoundError
@@ -362,7 +361,7 @@ def test_check_and_gears_say_which_misalignment_they_take(
 ) -> None:
     """`check` solves nothing; `gears` finds it in rigid seats where it is left to the operating point."""
     # Seconds of search for the best relief, of which nothing is asked.
-    monkeypatch.setattr("gearwhine.analyses.machine.solve_over_torques", lambda pairs, *_: pairs)
+    monkeypatch.setattr("gearwhine.coupling.analyses.gear_pairs.solve_over_torques", lambda pairs, *_: pairs)
     file = tmp_path / "case.toml"
     bare = document()
     for angle, command, expected in (
@@ -437,13 +436,13 @@ def test_an_offset_loads_both_bearings_of_a_shaft_without_gears() -> None:
 @pytest.mark.slow
 def test_gears_takes_the_housing_that_stands_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its best relief is then of the gap that `load` finds; without modes it is that of rigid seats, and it says so."""
-    monkeypatch.setattr("gearwhine.analyses.machine.solve_over_torques", lambda pairs, *_: pairs)
+    monkeypatch.setattr("gearwhine.coupling.analyses.gear_pairs.solve_over_torques", lambda pairs, *_: pairs)
     changes = {"housing.box.mesh_size": "60 mm", "gear.*.at": "40 mm"}
     study = gw.load("small-gearbox", changes)
     (rigid,) = study.gears().document["pairs"]
     assert rigid["misalignment_seats"] == "rigid"
     study.modes().write(tmp_path)
-    stood = analyses.gears(study.case, folder=tmp_path).document
+    stood = gw.load("small-gearbox", changes, folder=tmp_path).gears().document
     kept = study.gears().document
     (found,) = study.operating_point().document["gear_pairs"]
     for document in (stood, kept):

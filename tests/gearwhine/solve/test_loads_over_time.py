@@ -6,7 +6,6 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case.analysis_speeds import branch_speeds
-from gearwhine.case.operation import Operation
 from gearwhine.coupling.analyses.shafts_alone import held_speeds
 from gearwhine.from_case.machine import describe_machine
 
@@ -56,12 +55,8 @@ def test_a_branch_over_speed_keeps_within_the_tables_of_the_bearings() -> None:
     held = held_speeds(describe_machine(case))
     assert held == pytest.approx((low, high))
     # The branch goes from half the speed to one and a half times it.
-    within = Operation(speed=0.5 * (low + high))
-    assert branch_speeds(within, None, held) == pytest.approx(
-        (max(low, 0.5 * within.speed), min(high, 1.5 * within.speed))
-    )
-    assert branch_speeds(Operation(speed=-0.5 * high), None, held) == pytest.approx(
-        (-max(low, 0.25 * high), -0.75 * high)
-    )
+    speed = 0.5 * (low + high)
+    assert branch_speeds(speed, None, held) == pytest.approx((max(low, 0.5 * speed), min(high, 1.5 * speed)))
+    assert branch_speeds(-0.5 * high, None, held) == pytest.approx((-max(low, 0.25 * high), -0.75 * high))
     with pytest.raises(gw.CaseError, match="tables over speed with a range in common"):
-        branch_speeds(Operation(speed=3.0 * high), None, held)
+        branch_speeds(3.0 * high, None, held)

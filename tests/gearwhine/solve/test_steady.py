@@ -144,7 +144,7 @@ def test_what_stands_still_or_has_no_range_is_refused() -> None:
     case = load_case("spur-pair", [*FEW, "sweep.speed=['3000 rpm']"]).case
     assert case.operation is not None
     with pytest.raises(CaseError, match="a range of speeds"):
-        branch_speeds(case.operation, case.sweep, (0.0, 1e4))
+        branch_speeds(case.operation.speed, case.sweep, (0.0, 1e4))
     still = load_case("spur-pair", [*FEW, "operation.speed=0 rpm", "transient="]).case
     with pytest.raises(CouplingError, match="stands still"):
         solve_steady(coupled(still))

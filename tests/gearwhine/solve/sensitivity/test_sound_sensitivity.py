@@ -12,6 +12,8 @@ import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.load_analysis.influences import LineChange
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.sound import solution
 from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
@@ -22,17 +24,16 @@ from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.acoustics.sound_levels import a_weighting
+from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
-from gearwhine.numerics.progress import silent
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
-from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
-from gearwhine.solve.sensitivity.influences import LineChange
-from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.sensitivity.housing_changes import case_changes, modelled_housing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,7 +64,7 @@ def solve_at_rest(case: Case, mesh: Mesh) -> tuple[SolvedHousing, Machine, Opera
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
         housing = solve_housing(case)
-    machine = describe_machine(case, full_housing_component(case, housing))
+    machine = describe_machine(case, reduce_housing(case, housing))
     return housing, machine, machine.operating_point()
 
 
@@ -77,7 +78,7 @@ def solve_sound(
     with pytest.MonkeyPatch.context() as patch:
         if base is not None:
             patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, housing.mesh))
-        lines = solve_lines(case, machine, point, housing, silent)
+        lines = solve_lines(machine, point, modelled_housing(case, housing), acoustics_of(case))
     assert lines is not None
     return housing, point, lines
 
@@ -112,7 +113,7 @@ def derivatives(case: Case, solved: Solved, model: LineModel) -> tuple[FloatArra
     """Derivatives of the lines by the parameters, shape (n_lines, n_parameters), of the housing, and their slopes."""
     housing, point, found = solved
     lines = [one.line for one in sound_lines(solved)]
-    fields = housing_fields(case, housing, point, [adjoint(point, model.by_static(one)) for one in lines])
+    fields = modelled_housing(case, housing).fields(point, [adjoint(point, model.by_static(one)) for one in lines])
     changes = case_changes(case, housing.mesh, PARAMETERS)
     rates, slopes = found.rates(fields, changes), slopes_of(changes)
     own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from gearwhine.case import Case, CaseError, Problem, bundled_cases, bundled_files, load_case
+from gearwhine.case import Case, CaseError, Problem, load_case
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import staging
@@ -17,62 +17,9 @@ from gearwhine.output.quantity import add_warnings
 from gearwhine.output.sections import Column, Document, Section, table_of
 
 if TYPE_CHECKING:
-    from gearwhine.analyses.result import Result
     from gearwhine.output.export import Signals
-    from gearwhine.solve.case_summary import CheckedCase
 
 Format = Literal["csv", "uff", "wav"]
-
-
-def check(case: Case, *, progress: Progress = silent) -> Result[CheckedCase]:
-    """Derive what follows from a case by arithmetic: ratios, mesh frequencies, contact ratios, sizes.
-
-    Parameters
-    ----------
-    case : Case
-    progress : callable
-        Receives the step in words where the file of a geometry is read.
-
-    Raises
-    ------
-    CaseError, gearwhine.housing.HousingError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
-        Where something in the case cannot be built.
-    """
-    from gearwhine.analyses.result import Result
-    from gearwhine.output.quantity import document_of
-    from gearwhine.results.check import CHECK
-    from gearwhine.solve.case_summary import check_case
-
-    checked = check_case(case, progress)
-    return Result("check", case, checked, document_of(CHECK, checked))
-
-
-def list_examples() -> dict[str, Any]:
-    """Return the names and titles of the bundled cases."""
-    return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
-
-
-def sections(document: Document) -> tuple[Section, ...]:
-    """Return the bundled cases as a table."""
-    columns = (Column("name", "name"), Column("what it is", "title"))
-    usage = ("Run one:   gearwhine run NAME", "Change one: gearwhine examples copy NAME")
-    return (Section("", (*table_of(columns, document["examples"]), *usage)),)
-
-
-def copy_example(name: str | None, folder: Path) -> dict[str, Any]:
-    """Copy a bundled case into a folder, with the files that it reads; none of their names may stand there yet."""
-    names = ", ".join(bundled_cases())
-    sources = bundled_files(name) if name is not None else ()
-    if not sources:
-        raise CaseError([Problem("examples copy", name, f"one of: {names}")])
-    existing = [str(folder / source.name) for source in sources if (folder / source.name).exists()]
-    if existing:
-        expected = "a place where no file of that name stands yet"
-        raise CaseError([Problem("examples copy", target, expected) for target in existing])
-    with staging(folder, listed=False) as place:  # the copies are the user's
-        for source in sources:
-            (place / source.name).write_bytes(source.read_bytes())
-    return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
 def write_report(

@@ -1,9 +1,4 @@
-"""Commands on a case as a whole: run, check, examples, report, export.
-
-The physics of ``run``: :func:`gearwhine.analyses.run.run` solves housing, rotors and gear pairs in turn, the coupled
-motion by :func:`gearwhine.coupling.analyses.transient.solve_transient`, which integrates in time with
-:func:`gearwhine.coupling.time.transient.integrate_blocks`.
-"""
+"""Commands on bundled cases and on results folders: examples, report, export."""
 
 import sys
 from collections.abc import Callable
@@ -12,54 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, FreshRun, hand_over, on_case, results_folder, written
+from gearwhine.cli.common import NONE_GIVEN, Common, hand_over, on_case, results_folder
 
 if TYPE_CHECKING:
-    from gearwhine.case import Case
+    from gearwhine.case import LoadedCase
     from gearwhine.numerics.progress import Progress
-
-
-def run(
-    case: CaseName,
-    *,
-    fresh: FreshRun = False,
-    pictures: Annotated[
-        bool, Parameter(name=["--pictures"], help="Draw pictures; --no-pictures saves time and needs no renderer.")
-    ] = True,
-    common: Common = NONE_GIVEN,
-) -> None:
-    """Run all analyses of the case; results go to OUT (default: ./<case>-results).
-
-    An interrupted run continues from its last checkpoint when the same case is run into OUT again.
-    """
-    from gearwhine.analyses.run import run_into
-    from gearwhine.output.terminal import shown_by
-    from gearwhine.results.run import sections
-
-    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
-        folder = results_folder(case, common)
-        return run_into(loaded_case, folder, fresh=fresh, pictures=pictures, progress=progress).document
-
-    on_case(case, common, work, shown_by(sections, timed=True), "run")
-
-
-def check(
-    case: CaseName,
-    *,
-    verbose: Annotated[
-        bool, Parameter(name=["--verbose", "-v"], negative=(), help="Show every part, with the origin of its values.")
-    ] = False,
-    common: Common = NONE_GIVEN,
-) -> None:
-    """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing."""
-    from gearwhine.analyses import case as analyses
-    from gearwhine.output.terminal import shown_by
-    from gearwhine.results.check import sections, summary
-
-    def work(loaded_case: "Case", progress: "Progress") -> dict[str, Any]:
-        return written(analyses.check(loaded_case, progress=progress), common.output, progress)
-
-    on_case(case, common, work, shown_by(sections if verbose else summary), "check")
+    from gearwhine.output.sections import Document, Section
 
 
 def examples(
@@ -69,13 +22,47 @@ def examples(
     common: Common = NONE_GIVEN,
 ) -> None:
     """List the bundled cases, or copy one here (or to OUT) to change it: examples copy NAME."""
-    from gearwhine.analyses.case import copy_example, list_examples, sections
     from gearwhine.output.terminal import show_files, shown_by
 
     if action == "list":
-        hand_over(list_examples(), common, shown_by(sections))
+        hand_over(_list_examples(), common, shown_by(_example_sections))
     else:
-        hand_over(copy_example(name, common.output or Path()), common, show_files)
+        hand_over(_copy_example(name, common.output or Path()), common, show_files)
+
+
+def _list_examples() -> dict[str, Any]:
+    """Return the names and titles of the bundled cases."""
+    from gearwhine.case import bundled_cases
+
+    return {"examples": [{"name": name, "title": title} for name, title in bundled_cases().items()]}
+
+
+def _example_sections(document: "Document") -> "tuple[Section, ...]":
+    """Return the bundled cases as a table."""
+    from gearwhine.output.sections import Column, Section, table_of
+
+    columns = (Column("name", "name"), Column("what it is", "title"))
+    usage = ("Run one:   gearwhine run NAME", "Change one: gearwhine examples copy NAME")
+    return (Section("", (*table_of(columns, document["examples"]), *usage)),)
+
+
+def _copy_example(name: str | None, folder: Path) -> dict[str, Any]:
+    """Copy a bundled case into a folder, with the files that it reads; none of their names may stand there yet."""
+    from gearwhine.case import CaseError, Problem, bundled_cases, bundled_files
+    from gearwhine.output import staging
+
+    names = ", ".join(bundled_cases())
+    sources = bundled_files(name) if name is not None else ()
+    if not sources:
+        raise CaseError([Problem("examples copy", name, f"one of: {names}")])
+    existing = [str(folder / source.name) for source in sources if (folder / source.name).exists()]
+    if existing:
+        expected = "a place where no file of that name stands yet"
+        raise CaseError([Problem("examples copy", target, expected) for target in existing])
+    with staging(folder, listed=False) as place:  # the copies are the user's
+        for source in sources:
+            (place / source.name).write_bytes(source.read_bytes())
+    return {"folder": str(folder), "files": [source.name for source in sources]}
 
 
 _Results = Annotated[str, Parameter(help="A results folder; or a case, for its OUT.")]
@@ -98,11 +85,11 @@ def report(
 
     OUT is ./<case>-results by default. Results that do not fit the case, or that of the newest result, are marked.
     """
-    from gearwhine.analyses.case import write_report
     from gearwhine.output.terminal import shown_by
+    from gearwhine.results_folder import write_report
 
-    def work(folder: Path, loaded_case: "Case | None", progress: "Progress") -> dict[str, Any]:
-        return write_report(folder, loaded_case, interactive=interactive, progress=progress)
+    def work(folder: Path, loaded: "LoadedCase | None", progress: "Progress") -> dict[str, Any]:
+        return write_report(folder, None if loaded is None else loaded.case, interactive=interactive, progress=progress)
 
     _on_results(results, common, work, shown_by(lambda document: ()))
 
@@ -110,7 +97,7 @@ def report(
 def _on_results(
     results: str,
     common: Common,
-    work: Callable[[Path, "Case | None", "Progress"], dict[str, Any]],
+    work: Callable[[Path, "LoadedCase | None", "Progress"], dict[str, Any]],
     show: Callable[[dict[str, Any]], None],
 ) -> None:
     """Do work on a results folder, or on that of a case, and hand its document over."""
@@ -121,7 +108,7 @@ def _on_results(
         on_case(
             results,
             common,
-            lambda loaded_case, progress: work(results_folder(results, common), loaded_case, progress),
+            lambda loaded, progress: work(results_folder(results, common), loaded, progress),
             show,
             "report",
         )
@@ -173,9 +160,9 @@ def export(
 
     OUT is ./<case>-results by default; the files go to OUT/exports. Without --csv, --uff or --wav all are written.
     """
-    from gearwhine.analyses.case import Format, export_results, export_sections
     from gearwhine.case import CaseError, Problem
     from gearwhine.output.terminal import shown_by
+    from gearwhine.results_folder import Format, export_results, export_sections
 
     if common.settings:
         expected = "none: results are exported as they are, of the case that they were solved with"
@@ -183,7 +170,7 @@ def export(
     requested: dict[Format, bool] = {"csv": csv, "uff": uff, "wav": wav}
     formats = [name for name, is_requested in requested.items() if is_requested] or list(requested)
 
-    def work(folder: Path, loaded_case: "Case | None", progress: "Progress") -> dict[str, Any]:
+    def work(folder: Path, loaded: "LoadedCase | None", progress: "Progress") -> dict[str, Any]:
         return export_results(folder, formats, signals="all" if all_signals else "sensors", seconds=seconds)
 
     _on_results(results, common, work, shown_by(export_sections))

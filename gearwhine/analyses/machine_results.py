@@ -1,0 +1,375 @@
+"""Results of analyses of a machine, of a case or of Python: what each says of its solution, draws and writes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwhine.analyses.origin import Origin
+from gearwhine.analyses.result import Result
+from gearwhine.analyses.run_solution import RunSolution
+from gearwhine.coupling import CoupledMachine, CouplingError, Machine
+from gearwhine.coupling import stability as coupled_stability
+from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.modes_and_responses import (
+    SolvedSystem,
+    machine_warnings,
+    solve_system,
+    unstable_modes_warnings,
+)
+from gearwhine.coupling.analyses.motion import MachineMotion
+from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, parted_flank_warnings, settling_warnings
+from gearwhine.coupling.analyses.operation_warnings import (
+    bearing_load_warnings,
+    constant_speed_warnings,
+    unbalanced_torque_warnings,
+)
+from gearwhine.coupling.analyses.run_up import run_signature_warnings
+from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
+from gearwhine.coupling.analyses.transient import mean_bearing_forces
+from gearwhine.coupling.description.excitation import Run
+from gearwhine.coupling.errors import AcousticsError
+from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning, warning
+from gearwhine.output.quantity import add_warnings, joined
+from gearwhine.results.gears import GEARS, gears_document
+from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
+from gearwhine.results.rotors import ROTORS, rotors_document
+from gearwhine.results.run import run_signature_document, transient_document
+from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
+from gearwhine.results.sound import SOUND, sound_document
+from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
+from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
+from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
+from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.gear_bodies import gear_body_document
+from gearwhine.solve.operating_point import SolvedLoad, load_warnings, sensitivity_warnings, solve_load
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.coupling.sound.acoustics import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing.modes.housing_field import HousingField
+
+
+@dataclass(frozen=True)
+class MachineUnderLoad:
+    """A machine assembled about its operating point, with what its results say beside their own numbers.
+
+    Attributes
+    ----------
+    origin : Origin
+    loaded : LoadedMachine
+    load : SolvedLoad or None
+        Its operating point; None where nothing loads it, or none is found.
+    warnings : sequence of dict
+        Warnings of the operating point.
+    """
+
+    origin: Origin
+    loaded: LoadedMachine
+    load: SolvedLoad | None
+    warnings: Sequence[ResultWarning]
+
+    @property
+    def coupled(self) -> CoupledMachine:
+        """The coupled system and its parts."""
+        return self.loaded.coupled
+
+    def add_to(self, document: dict[str, Any], progress: Progress) -> None:
+        """Add the operating point, its warnings and the errors of the modal basis to a document of the machine."""
+        progress("comparing with another modal basis")
+        add_uncertainty(document, self.loaded.basis_error, document["trusted_below_hz"])
+        progress("mechanisms of the lines, and their bands by damping")
+        add_mechanisms(document, self.loaded.mechanisms)
+        self.add_parts_to(document)
+
+    def add_parts_to(self, document: dict[str, Any]) -> None:
+        """Add the damping, the bodies of the gears, the operating point and its warnings to a document."""
+        if self.origin.case is not None:
+            document["damping"] = damping_document(self.origin.case)
+            add_warnings(document, damping_warnings(self.origin.case))
+        if bodies := gear_body_document(self.loaded.machine):
+            document["gear_bodies"] = bodies
+        if self.load is not None:
+            document["load"] = load_part(self.load)
+        add_warnings(document, self.warnings)
+
+    def figures(self) -> Iterator[tuple[str, Figure]]:
+        """Draw the operating point."""
+        from gearwhine.figures import draw_load
+
+        if self.load is not None:
+            yield from draw_load(self.load)
+
+
+def machine_under_load(
+    machine: Machine, origin: Origin, run: Run | None = None, progress: Progress = silent
+) -> MachineUnderLoad:
+    """Find the operating point of a machine where something loads it, and assemble the machine about that.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
+        Where the loads drive a motion that nothing holds, or no equilibrium is found.
+    """
+    load = solve_load(machine, progress) if machine.is_loaded else None
+    loaded = load_machine(machine, None if load is None else load.point, run, progress)
+    return MachineUnderLoad(origin, loaded, load, [] if load is None else load_warnings(load))
+
+
+def rotors_result(
+    solved: tuple[SolvedRotor, ...], origin: Origin, assemblies: Callable[[], Sequence[RotorAssembly]]
+) -> Result[tuple[SolvedRotor, ...]]:
+    """Return the result of solved rotors; ``assemblies`` says how they are drawn."""
+    document = rotors_document(solved)
+    for rotor in solved:
+        fast = [(name, state.bearing, rotor.operation or 0.0) for name, state in rotor.rolling.items()]
+        loads = {name: max(float(row.outer_load.max()) for row in state.rows) for name, state in rotor.rolling.items()}
+        add_warnings(document, centrifugal_warnings(fast, loads))
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_rotors
+
+        return draw_rotors(solved, assemblies(), progress)
+
+    return origin.result("rotors", solved, document, (ROTORS, solved), figures=figures)
+
+
+def require_aims(aims: Sequence[ReliefAim], pairs: int) -> None:
+    """Refuse more or fewer aims than pairs; none are the default.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+    """
+    if aims and len(aims) != pairs:
+        raise CouplingError(f"gears: expected an aim for each of the {pairs} gear pairs, got {len(aims)}")
+
+
+def gears_result(
+    pairs: tuple[PairAnalysis, ...], origin: Origin, seats: str | None
+) -> Result[tuple[PairAnalysis, ...]]:
+    """Return the result of analysed gear pairs; ``seats`` says what holds the bearings where misalignment is found."""
+    document = gears_document(pairs)
+    if seats is not None:
+        for pair in document["pairs"]:
+            pair["misalignment_seats"] = seats
+    if seats == "rigid":
+        message = (
+            "the misalignment is that of bearings in rigid seats, as this folder has no modes of the housing, and "
+            "so is the best tip relief; run, load or modes before gears give it those of the housing"
+        )
+        add_warnings(document, [warning("rigid seats", message)])
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_gear_pairs
+
+        return draw_gear_pairs(pairs, progress)
+
+    return origin.result("gears", pairs, document, (GEARS, pairs), figures=figures)
+
+
+def load_result(solved: SolvedLoad, origin: Origin, progress: Progress = silent) -> Result[SolvedLoad]:
+    """Return the result of an operating point: bearing loads, deflections, misalignment and load of the gear faces."""
+    document = load_document(origin.title, solved)
+    add_warnings(document, load_warnings(solved))
+    if solved.sensitivity is not None:
+        add_warnings(document, sensitivity_warnings(solved.sensitivity))
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_load
+
+        return draw_load(solved)
+
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        if not pictures or origin.housing is None:
+            return {}
+        return {"warnings": draw_load_pictures(origin.housing, solved, place, progress)}
+
+    options = (LOAD_OPTIONS, LOAD_SAME)
+    return origin.result("load", solved, document, (LOAD, solved), figures=figures, files=files, options=options)
+
+
+def system_result(machine: MachineUnderLoad, solved: SolvedSystem, progress: Progress = silent) -> Result[SolvedSystem]:
+    """Return the result of the modes and responses of a coupled machine, with its operating point."""
+    document = system_document(solved, machine.origin.housing)
+    add_warnings(document, unstable_modes_warnings(solved.stability))
+    machine.add_to(document, progress)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_system
+
+        yield from draw_system(solved)
+        yield from machine.figures()
+
+    arrays = (LOAD, machine.load), (SYSTEM, solved)
+    options = (SYSTEM_OPTIONS, SYSTEM_SAME)
+    return machine.origin.result("system", solved, document, *arrays, figures=figures, options=options)
+
+
+def steady_result(machine: MachineUnderLoad, solved: SolvedSteady, progress: Progress = silent) -> Result[SolvedSteady]:
+    """Return the result of a periodic motion of a machine, with its operating point."""
+    title = machine.origin.title
+    document = steady_document(title, solved)
+    add_warnings(document, [*constant_speed_warnings(machine.loaded.machine), *machine_warnings(machine.coupled)])
+    add_warnings(document, parted_flank_warnings(machine.coupled, solved.contact_loss))
+    machine.add_to(document, progress)
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_steady
+
+        yield from draw_steady(title, solved)
+        yield from machine.figures()
+
+    arrays = (LOAD, machine.load), (STEADY, solved)
+    options = (STEADY_OPTIONS, STEADY_SAME)
+    return machine.origin.result("steady", solved, document, *arrays, figures=figures, options=options)
+
+
+def motion_document(machine: MachineUnderLoad, motion: MachineMotion) -> dict[str, Any]:
+    """Return the document of a motion over time: its numbers, warnings and error estimates."""
+    transient, signature, along, loaded = motion.transient, motion.signature, motion.run_signature, machine.loaded
+    document = transient_document(transient, signature, along)
+    forces = mean_bearing_forces(transient)
+    add_warnings(document, bearing_load_warnings(loaded.machine.bearings, forces, known=machine.warnings))
+    add_warnings(document, beyond_limit_warnings(transient))
+    add_warnings(document, parted_flank_warnings(transient.machine, transient.result.contact_loss))
+    if signature is not None:
+        add_warnings(document, settling_warnings(transient, signature))
+    add_uncertainty(document, loaded.basis_error, transient.trusted_limit)
+    add_mechanisms(document, loaded.mechanisms, transient.line_tolerance_hz)
+    add_warnings(document, run_signature_warnings(transient, motion.tracking))
+    add_warnings(document, unbalanced_torque_warnings(loaded.machine, loaded.run))
+    if along is not None:
+        document["run_signature"] = run_signature_document(along)
+    return document
+
+
+def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tuple[SolvedSystem, dict[str, Any]]:
+    """Find the modes and responses of a machine, and the part of a run's document that they are."""
+    progress("comparing with another modal basis")
+    basis, mechanisms = machine.loaded.basis_error, machine.loaded.mechanisms
+    solved = solve_system(machine.coupled, progress)
+    document: dict[str, Any] = {"system": system_document(solved, machine.origin.housing)}
+    add_warnings(document, unstable_modes_warnings(solved.stability))
+    add_uncertainty(document["system"], basis, document["system"]["trusted_below_hz"])
+    add_mechanisms(document["system"], mechanisms)
+    machine.add_parts_to(document)
+    return solved, document
+
+
+def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: CoupledModes) -> Result[RunSolution]:
+    """Return the result of a motion over time; ``modes`` are those of the machine, whose instability is told."""
+    document = joined({"title": machine.origin.title}, motion_document(machine, motion))
+    add_warnings(document, [*machine.warnings, *unstable_modes_warnings(coupled_stability(modes))])
+    if machine.load is not None:
+        document["load"] = load_part(machine.load)
+    solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion)
+    return solved.result("simulate", machine.origin, document)
+
+
+@dataclass(frozen=True)
+class RadiatingHousing:
+    """A housing whose sound is sought, with what the results say beside their own numbers.
+
+    Attributes
+    ----------
+    origin : Origin
+    field : HousingField
+    acoustics : Acoustics
+    up : sequence of float
+        Unit vector that points upwards in pictures.
+    """
+
+    origin: Origin
+    field: HousingField
+    acoustics: Acoustics
+    up: Sequence[float]
+
+
+def radiating_housing(machine: Machine, acoustics: Acoustics, origin: Origin) -> RadiatingHousing:
+    """Return the housing of a machine of Python, checked for its sound.
+
+    Raises
+    ------
+    gearwhine.coupling.errors.AcousticsError
+        Where the machine has no housing with a mesh, or the acoustics do not fit it.
+    """
+    from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+
+    component = machine.housing_component
+    field = None if component is None else component.displacement_field
+    if field is None:
+        has = "no housing" if component is None else "a reduced housing, of motions at its seats and sensors alone"
+        raise AcousticsError(
+            "the sound of a machine: expected a housing with its mesh and the mode shapes on it, as "
+            f"gearwhine.Housing.modes() gives; the machine has {has}"
+        )
+    require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
+    weight = np.zeros(3) if machine.gravity is None else np.array(machine.gravity)
+    up = -weight / np.linalg.norm(weight) if weight.any() else np.array([0.0, 1.0, 0.0])
+    return RadiatingHousing(origin, field, acoustics, tuple(up.tolist()))
+
+
+def sound_result(
+    housing: RadiatingHousing,
+    machine: MachineUnderLoad | None,
+    warnings: Sequence[ResultWarning] = (),
+    progress: Progress = silent,
+) -> Result[SolvedSound]:
+    """Find the sound that a housing radiates: of its modes, and of the lines of the steady motion of a machine in it.
+
+    Parameters
+    ----------
+    housing : RadiatingHousing
+    machine : MachineUnderLoad or None
+        None where the sound is that of the modes alone.
+    warnings : sequence of dict
+        Warnings beside those of the sound and of the operating point.
+    progress : callable
+
+    Raises
+    ------
+    gearwhine.coupling.errors.AcousticsError
+        Where the housing cannot be wrapped, or a microphone is inside it or under the floor.
+    gearwhine.coupling.PeriodicError
+        Where no periodic motion is found.
+    gearwhine.housing.HousingError
+        Where a solution fails its proofs.
+    """
+    # The acoustics' kernels are for this analysis alone.
+    from gearwhine.coupling.sound.motion_lines import lines_of_steady
+    from gearwhine.coupling.sound.solution import solve_sound
+
+    field, acoustics, coupled, motion = housing.field, housing.acoustics, None, None
+    if machine is not None:
+        coupled = machine.coupled
+        motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
+        warnings = [*warnings, *machine.warnings]
+    solved = solve_sound(acoustics, field, motion, coupled, progress)
+    title = housing.origin.title
+    document = {"title": title} | sound_document(solved)
+    add_warnings(document, [*solved.warnings(), *warnings])
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_sound
+
+        progress("drawing the sound")
+        yield from draw_sound(title, solved)
+
+    def files(place: Path, *, pictures: bool) -> dict[str, Any]:
+        return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
+
+    return housing.origin.result("sound", solved, document, (SOUND, solved), figures=figures, files=files)

@@ -1,0 +1,85 @@
+"""Origin of a result: the case, in its solved housing, or the machine of Python that it is of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from gearwhine.analyses.result import Result, no_figures, no_files
+from gearwhine.numerics.progress import Progress
+from gearwhine.output.dataset import Labels, labelled, labels_of
+from gearwhine.output.quantity import Fields, joined
+from gearwhine.results.housing import HOUSING, origin_document
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.case import Case
+    from gearwhine.output.store import Option
+    from gearwhine.solve.housing_modes import SolvedHousing
+
+Solved = TypeVar("Solved")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a result is of, and what that adds to its files and its document.
+
+    Attributes
+    ----------
+    title : str
+    speed : float or None
+        Speed of the first driver [rad/s]; None where there is none.
+    case : Case or None
+        None where Python describes the machine.
+    housing : SolvedHousing or None
+        The solved housing of the case, which takes part in the result.
+    """
+
+    title: str
+    speed: float | None = None
+    case: Case | None = None
+    housing: SolvedHousing | None = None
+
+    @property
+    def labels(self) -> Labels:
+        """Labels of the files."""
+        return Labels(self.title, self.speed) if self.case is None else labels_of(self.case)
+
+    def result(
+        self,
+        command: str,
+        solved: Solved,
+        document: dict[str, Any],
+        *arrays: tuple[Fields, Any],
+        figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = no_figures,
+        files: Callable[..., Mapping[str, Any]] = no_files,
+        options: tuple[Sequence[Option], Sequence[str]] = ((), ()),
+    ) -> Result[Solved]:
+        """Return the result of an analysis.
+
+        Parameters
+        ----------
+        command : str
+            Name of the analysis.
+        solved
+            Its solution.
+        document : dict
+        *arrays : tuple
+            Declarations of quantities, each with the object that they are of, for its file beside those of the housing.
+        figures, files, options
+            As the fields of :class:`gearwhine.analyses.result.Result`.
+        """
+        return Result(
+            command,
+            self.case,
+            solved,
+            joined(document, origin_document(self.housing)),
+            _arrays=lambda: labelled(self.labels, (HOUSING, self.housing), *arrays),
+            _figures=figures,
+            _files=files,
+            _housing=self.housing,
+            _options=options,
+            _title=self.title,
+        )

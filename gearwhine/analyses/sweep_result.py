@@ -1,0 +1,94 @@
+"""Result of a sweep: the transients of its points in parallel, collected over the swept keys, with their sound."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearwhine.analyses.result import Result
+from gearwhine.case import Case, CaseSource, SweptKey
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.output.quantity import add_warnings
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
+from gearwhine.workers import default_workers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearwhine.sweep.run import SweptPoint
+
+
+def solve_sweep(
+    case: Case,
+    source: CaseSource,
+    keys: Sequence[SweptKey],
+    folder: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Progress = silent,
+) -> Result[Sequence[SweptPoint]]:
+    """Integrate the transient at every point of a sweep, in parallel.
+
+    Parameters
+    ----------
+    case : Case
+    source : CaseSource
+        Content that the case is made of, from which the points are made, too.
+    keys : sequence of SweptKey
+    folder : path
+        Folder of the points; those that it holds already are not solved again.
+    workers : int, optional
+        Number of processes; as many as cores by default.
+    scheduler : str, optional
+        Address of a running Dask scheduler, whose workers are used instead.
+    fresh : bool
+        Whether to solve all points anew.
+    progress : callable
+
+    Raises
+    ------
+    gearwhine.failures.WorkersError
+        Where the processes do not start.
+    """
+    start = time.perf_counter()
+    points = sweep_points(source, keys)
+    count = workers or default_workers()
+    swept = run_sweep(points, folder, progress, workers=count, scheduler=scheduler, fresh=fresh)
+    sound_warnings: list[dict[str, Any]] = []
+    housing, radiated = None, None
+    # The points need not have the housing and the acoustics of the case, even where all of them share one.
+    sounding = next((point.case for point in points if point.case.acoustics and point.case.housing), None)
+    if sounding is not None:
+        from gearwhine.sweep.sound import add_sound
+
+        sound_warnings, housing, radiated = add_sound(
+            sounding, keys, swept, solve_housing(sounding, progress, folder=folder), progress
+        )
+    peaks = missed_peaks(keys, swept, radiated)
+    dataset = collected_sweep(case, keys, swept, peaks)
+    document = {"title": case.title} | sweep_document(keys, swept, peaks)
+    add_warnings(document, sound_warnings)
+    document["workers"] = count if scheduler is None else None
+    document["seconds"] = {"total": time.perf_counter() - start}
+
+    def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
+        from gearwhine.figures import draw_sweep
+
+        return draw_sweep(case.title, dataset)
+
+    return Result(
+        "sweep",
+        case,
+        swept,
+        document,
+        _arrays=lambda: dataset,
+        _figures=figures,
+        _data_file="sweep.nc",
+        _housing=housing,
+        _started=start,
+    )

@@ -1,0 +1,852 @@
+"""Study of a case: a machine, its housing and its settings as a case file describes them, and the analyses of all."""
+
+import json
+import os
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from gearwhine.numerics.findings import Number
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning, warning
+from gearwhine.study import Settings, Study
+from gearwhine.view_names import View
+
+if TYPE_CHECKING:
+    from gearwhine.analyses.machine_results import MachineUnderLoad
+    from gearwhine.analyses.origin import Origin
+    from gearwhine.analyses.result import Result
+    from gearwhine.case import Case, LoadedCase
+    from gearwhine.coupling import Machine
+    from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
+    from gearwhine.coupling.analyses.motion import MachineMotion
+    from gearwhine.coupling.analyses.recording import TransientPlan
+    from gearwhine.coupling.description.excitation import Run
+    from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
+    from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.sound import Acoustics
+    from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
+    from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.meshes import Mesh
+    from gearwhine.output.export import Signals
+    from gearwhine.results_folder import Format
+    from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.solve.case_summary import CheckedCase
+    from gearwhine.solve.comparison import PlannedSurvey
+    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.solve.operating_point import SolvedLoad
+    from gearwhine.solve.updating import SolvedUpdate
+    from gearwhine.sweep.run import SweptPoint
+
+# Tables that a command needs of a case.
+_NEEDS = {
+    "rotors": ("rotor",),
+    "gears": ("gear_pair",),
+    "system": ("rotor", "operation"),
+    "system --mesh-phase": ("rotor", "operation", "gear_pair"),
+    "steady": ("rotor", "operation"),
+    "simulate": ("rotor", "operation", "transient"),
+    "sound": ("housing",),
+}
+_AtLeastOne = Number(at_least=1, whole=True)
+_NotNegative = Number(at_least=0, whole=True)
+
+
+def load(
+    source: str | os.PathLike[str],
+    changes: Mapping[str, object] | Sequence[str] = (),
+    *,
+    folder: str | os.PathLike[str] | None = None,
+) -> "CaseStudy":
+    """Read and check a case.
+
+    Parameters
+    ----------
+    source : str or path
+        Case file (TOML), or name of a bundled case.
+    changes : mapping or sequence of str
+        Keys and their new values, numbers, texts, lists or tables, ``{"housing.box.mesh_size": "20 mm"}``; or texts
+        such as ``"housing.box.mesh_size=20 mm"``. An empty text removes a key.
+    folder : path, optional
+        Results folder, whose modes of the same housing are read in place of solving.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong.
+    """
+    from gearwhine.case import load_case
+
+    return CaseStudy(load_case(os.fspath(source), _texts(changes)), folder=None if folder is None else Path(folder))
+
+
+def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> "CaseStudy":
+    """Check a case given as Python objects in place of a file.
+
+    Parameters
+    ----------
+    folder : path
+        Folder in which relative file names start.
+    **tables
+        The tables of a case: dictionaries with the keys of a case file, or the classes of :mod:`gearwhine.case`.
+        Quantities are numbers in SI or texts with units.
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong, in the words of the case reader.
+
+    Examples
+    --------
+    >>> import gearwhine as gw
+    >>> study = gw.build(
+    ...     material={"steel": {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}},
+    ...     rotor=[
+    ...         {
+    ...             "name": "shaft",
+    ...             "material": "steel",
+    ...             "segments": [{"length": "500 mm", "diameter": "30 mm"}],
+    ...         }
+    ...     ],
+    ...     bearing=[
+    ...         {"name": name, "rotor": "shaft", "at": at, "seat": "ground", "stiffness": {"xx": 1e8, "yy": 1e8}}
+    ...         for name, at in (("left", "20 mm"), ("right", "480 mm"))
+    ...     ],
+    ... )
+    >>> round(study.rotors().document["rotors"][0]["mass_kg"], 4)
+    2.7744
+    """
+    from gearwhine.case import CaseSource
+
+    return CaseStudy(CaseSource({name: _plain(table) for name, table in tables.items()}, Path(folder)).changed())
+
+
+@dataclass
+class _KeptHousing:
+    """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
+
+    solved: "SolvedHousing | None" = None
+    lock: threading.RLock = field(default_factory=threading.RLock)
+
+
+class CaseStudy(Study):
+    """A checked case and its analyses: a study of the machine that the case describes, with the case's settings.
+
+    The housing is meshed and solved once, by the first analysis that needs its modes, and held by the study. Threads
+    may share a study: who needs the housing while another thread solves it waits.
+
+    Parameters
+    ----------
+    loaded : LoadedCase
+    progress : callable
+        Receives the progress of long work in words; silent by default.
+    folder : path, optional
+        Results folder, whose modes of the same housing are read in place of solving.
+    fresh : bool
+        Whether to solve again what that folder holds.
+
+    Attributes
+    ----------
+    case : Case
+        Checked case, in SI.
+    warnings : tuple of str
+        Allowed but implausible choices in the case.
+    folder : path or None
+        Results folder that modes are read from.
+    """
+
+    def __init__(
+        self, loaded: "LoadedCase", progress: Progress = silent, *, folder: Path | None = None, fresh: bool = False
+    ) -> None:
+        self.case: Case = loaded.case
+        self.warnings = loaded.warnings
+        self._source = loaded.source
+        self._kept = _KeptHousing()
+        self._described: Machine | None = None
+        self.folder, self._is_fresh = folder, fresh
+        self._start(progress)
+
+    def __repr__(self) -> str:
+        """Return the case's title."""
+        return f"<Study of {self.case.title or 'an untitled case'!r}>"
+
+    def _repr_html_(self) -> str:
+        from gearwhine.notebook import case_html
+
+        return case_html(self.case)
+
+    def changed(self, changes: Mapping[str, object] | Sequence[str]) -> "CaseStudy":
+        """Return a study of the same case with other values of some keys; this one stays as it is.
+
+        The case is the one that was read: neither its file nor those that it names are read again, and one that has
+        changed before it was needed, such as that of a mesh, is refused. Both studies share one solved housing, where
+        its modes, damping, seats and sensors stay as they are. Changes of torque, gears, bearing stiffness and preload
+        leave them so; a change of a bearing's position does not.
+
+        Parameters
+        ----------
+        changes : mapping or sequence of str
+            As of :func:`load`.
+
+        Raises
+        ------
+        CaseError
+            With everything that is wrong.
+        """
+        study = CaseStudy(self._source.changed(_texts(changes)), self.progress, folder=self.folder, fresh=self.fresh)
+        if self.case.housing is not None and study.case.housing is not None:
+            from gearwhine.solve.housing_modes import housing_key
+
+            if housing_key(self.case) == housing_key(study.case):
+                study._kept = self._kept
+        return study
+
+    @property
+    def housing(self) -> "SolvedHousing | None":
+        """The solved housing, which the first call meshes and solves; None in a case without one."""
+        return self.solved_housing()
+
+    @property
+    def machine(self) -> "Machine":
+        """The shafts, gears, bearings and gear pairs of the case as one object, with all that loads it.
+
+        It stands in the solved housing of the case.
+        """
+        from gearwhine.from_case.machine import describe_machine
+        from gearwhine.solve.machine import reduce_housing
+
+        with self._lock:
+            if self._described is None:
+                solved = self.housing
+                part = None
+                if solved is not None:
+                    part = reduce_housing(self.case, solved, self.progress)
+                    part = replace(part, displacement_field=solved.displacement_field)
+                self._described = describe_machine(self.case, part)
+            return self._described
+
+    @property
+    def settings(self) -> Settings:
+        """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
+        from gearwhine.case.analysis_speeds import with_sense_of
+        from gearwhine.solve.acoustics import acoustics_of
+        from gearwhine.solve.machine import plan_of, tracking_of
+
+        case = self.case
+        plan = None if case.transient is None else plan_of(case)
+        speeds = () if case.sweep is None else with_sense_of(case.operation, case.sweep.speeds)
+        acoustics, in_run = None, None
+        if case.acoustics is not None:
+            acoustics, in_run = acoustics_of(case), case.acoustics.in_run
+        return Settings(case.title, plan, tracking_of(case), speeds, acoustics, in_run)
+
+    def check(self) -> "Result[CheckedCase]":
+        """Check the case and show speeds, mesh frequencies, torques and sizes; solve nothing.
+
+        Raises
+        ------
+        CaseError, gearwhine.housing.HousingError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError
+            Where something in the case cannot be built.
+        """
+        from gearwhine.analyses.result import Result
+        from gearwhine.output.quantity import document_of
+        from gearwhine.results.check import CHECK
+        from gearwhine.solve.case_summary import check_case
+
+        checked = check_case(self.case, self.progress)
+        return Result("check", self.case, checked, document_of(CHECK, checked))
+
+    def mesh(self, suffix: Literal["msh", "vtu", "vtk", "inp", "med", "xdmf"] = "msh") -> "Result[Mesh]":
+        """Mesh the housing.
+
+        Parameters
+        ----------
+        suffix : {"msh", "vtu", "vtk", "inp", "med", "xdmf"}
+            Format of the mesh file.
+
+        Raises
+        ------
+        CaseError
+            Where the housing cannot be meshed.
+        """
+        from gearwhine.analyses import housing
+
+        return housing.mesh(self.case, suffix=suffix, progress=self.progress)
+
+    def modes(self, *, detail: bool = False) -> "Result[SolvedHousing]":
+        """Natural modes of the housing, certified complete, with checks of the model.
+
+        Parameters
+        ----------
+        detail : bool
+            Also show effective masses, support reactions, and the modes dominant between bearings and sensors.
+
+        Raises
+        ------
+        CaseError, gearwhine.housing.HousingError
+            Where the case cannot be solved as it stands.
+        gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
+            Where the modes fail their proofs.
+        """
+        from gearwhine.analyses import housing
+
+        return housing.modes(self.case, detail=detail, housing=self._required_housing("modes"), progress=self.progress)
+
+    def compare(self) -> "Result[Comparison]":
+        """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
+
+        Raises
+        ------
+        CaseError, gearwhine.housing.HousingError
+            Where the case has nothing measured, or its modes are not known as high as the measured ones.
+        """
+        from gearwhine.analyses import housing
+        from gearwhine.case import require
+        from gearwhine.solve.comparison import require_comparable
+
+        require(self.case, "housing", "measured", command="compare")
+        require_comparable(self.case)
+        return housing.compare(self.case, housing=self._required_housing("compare"), progress=self.progress)
+
+    def survey(
+        self, sensors: Annotated[int, _AtLeastOne], modes: Annotated[int | None, _AtLeastOne] = None
+    ) -> "Result[PlannedSurvey]":
+        """Plan a modal survey: sensor and hammer positions, as files.
+
+        Parameters
+        ----------
+        sensors : int
+            Number of sensors, each normal to the surface.
+        modes : int, optional
+            Number of lowest modes to survey (default: all known).
+
+        Raises
+        ------
+        CaseError
+            Where the sensors cannot separate the modes.
+        """
+        from gearwhine.analyses import housing
+
+        solved = self._required_housing("survey")
+        return housing.survey(self.case, sensors=sensors, modes=modes, housing=solved, progress=self.progress)
+
+    def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
+        """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
+
+        Parameters
+        ----------
+        null : int
+            Number of random frequency sets to fit as well; their fits are the null hypothesis.
+        held_back : bool
+            Also leave out each measured mode in turn and predict it.
+
+        Raises
+        ------
+        CaseError, gearwhine.housing.HousingError
+            Where the case has nothing to fit, or its housing cannot be solved.
+        """
+        from gearwhine.analyses import housing
+
+        return housing.update(self.case, null=null, held_back=held_back, progress=self.progress)
+
+    def render(
+        self,
+        modes: str | None = None,
+        *,
+        line: Sequence[float] = (),
+        measured: bool = False,
+        view: View = "auto",
+        mode_format: Literal["png", "glb", "gif", "mp4"] = "png",
+    ) -> "Result[SolvedHousing]":
+        """Draw mode shapes, operating shapes or measured shapes.
+
+        Parameters
+        ----------
+        modes : str, optional
+            Modes to draw: 'dominant' (default without lines and measured shapes), 'all', '1,4,9' or '1-6'.
+        line : sequence of float
+            Draw the operating shape at the line, nearest to a frequency [Hz], of the run in the results folder. May be
+            repeated.
+        measured : bool
+            Draw measured shapes beside the model's.
+        view : str
+            Direction of view; 'auto': for each shape the corner from which most of its motion is seen.
+        mode_format : {"png", "glb", "gif", "mp4"}
+            Picture, animated glTF model, or film (MP4 needs ffmpeg).
+
+        Raises
+        ------
+        CaseError
+            Where something is asked for that cannot be drawn.
+        gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
+            Where no renderer or encoder is available.
+        """
+        from gearwhine.analyses import housing
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.mode_pictures import check_request
+        from gearwhine.solve.comparison import require_comparable
+
+        if line and self.folder is None:
+            expected = "the results folder of a run, such as `gearwhine.load(case, folder=...)`"
+            raise CaseError([Problem("render: line", list(line), expected)])
+        modes = modes or (None if line or measured else "dominant")
+        check_request(self.case, modes, mode_format, line, measured=measured)
+        if measured:
+            require_comparable(self.case)
+        return housing.render(
+            self.case,
+            modes,
+            view=view,
+            mode_format=mode_format,
+            lines=line,
+            measured=measured,
+            housing=self._required_housing("render"),
+            folder=self.folder,
+            progress=self.progress,
+        )
+
+    def report(self, folder: str | os.PathLike[str], *, interactive: bool = False) -> Path:
+        """Write all results in a folder as one HTML page; return the file.
+
+        See :func:`gearwhine.results_folder.write_report`.
+        """
+        from gearwhine.results_folder import write_report
+
+        written = write_report(Path(folder), self.case, interactive=interactive, progress=self.progress)
+        return Path(folder) / str(written["files"][0])
+
+    def rotors(self, *, write_ross: bool = False, **settings: Any) -> "Result[tuple[SolvedRotor, ...]]":
+        """Lateral and torsional modes, whirl and critical speeds of each rotor; CASE may be a rotor saved by ROSS.
+
+        Parameters
+        ----------
+        write_ross : bool
+            Also write each rotor with its bearings as a file that ROSS loads.
+        **settings
+            Attributes of :class:`gearwhine.rotors.analyses.solved_rotor.RotorSettings` in place of those of the case.
+
+        Raises
+        ------
+        CaseError, gearwhine.rotors.RotorError
+            Where the case has no rotors, or one cannot be solved as it stands.
+        gearwhine.rotors.IncompleteModesError
+            Where modes fail their certificate.
+        """
+        from gearwhine.analyses.machine_results import rotors_result
+        from gearwhine.solve.rotors import write_ross_files
+
+        self.require("rotors")
+        solved = self.solved_rotors(**settings)
+
+        def assemblies() -> "list[RotorAssembly]":
+            from gearwhine.figures.rotors import rotor_assembly
+
+            return [rotor_assembly(self.case, one.rotor, one.bearings) for one in solved]
+
+        def ross_files(place: Path, *, pictures: bool) -> dict[str, Any]:
+            return {"warnings": [warning("ross", remark) for remark in write_ross_files(place, solved)]}
+
+        result = rotors_result(solved, self.origin, assemblies)
+        return replace(result, _files=ross_files) if write_ross else result
+
+    def gears(self, aims: "Sequence[ReliefAim]" = ()) -> "Result[tuple[PairAnalysis, ...]]":
+        """Gear pairs: geometry, mesh stiffness, transmission error, load sharing, contact pressure, optimal tip relief.
+
+        The housing is solved for a tip relief whose aim names a sensor. Else it takes part where it is solved already,
+        or the results folder keeps its modes; without one a misalignment that is found is that of rigid seats, with a
+        warning, and the best relief aims at no sensor.
+
+        Parameters
+        ----------
+        aims : sequence of ReliefAim, optional
+            Objective of the best relief of each pair, in place of those of the case.
+
+        Raises
+        ------
+        CaseError, gearwhine.coupling.gears.GearError, gearwhine.coupling.CouplingError
+            Where the case has no gear pairs, or one cannot be solved as it stands, or in the machine where a tip relief
+            aims at a sensor.
+        """
+        from gearwhine.analyses.machine_results import gears_result, require_aims
+        from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
+        from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
+        from gearwhine.solve.machine import solve_pairs
+
+        case, progress = self.case, self.progress
+        self.require("gears")
+        housing = self._housing_of_gears()
+        loaded, point = solve_pairs(case, housing, progress)
+        analysed = analyse_pairs(case, loaded, point)
+        if aims:
+            require_aims(aims, len(analysed))
+            analysed = tuple(replace(pair, aim_given=True) for pair in analysed)
+        else:
+            aims = relief_aims(case, loaded, progress, point=point, housing=housing)
+        pairs = solve_over_torques(analysed, progress, aims)
+        seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
+        return gears_result(pairs, self.origin, seats)
+
+    def _housing_of_gears(self) -> "SolvedHousing | None":
+        """Return the housing where it takes part in the analysis of gear pairs."""
+        from gearwhine.solve.gear_pairs import aims_at_sensor
+        from gearwhine.solve.housing_modes import kept_housing
+
+        case = self.case
+        if case.housing is None or not case.rotor or case.operation is None:
+            return None
+        if aims_at_sensor(case):
+            return self.housing
+        if self._kept.solved is None:
+            if case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair):
+                return kept_housing(case, self.folder, self.progress)
+            return None
+        return self._kept.solved
+
+    def operating_point(
+        self,
+        *,
+        over_torque: bool = False,
+        sensitivity: bool = False,
+        line: str | None = None,
+        rigid_seats: bool = False,
+    ) -> "Result[SolvedLoad]":
+        """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
+
+        Parameters
+        ----------
+        over_torque : bool
+            Also solve from 10 to 150 % of the torque.
+        sensitivity : bool
+            Also rank walls and bearings by what they change in gear pairs, in the lines of sensors and, with
+            [acoustics], in the sound power of the loudest lines.
+        line : str, optional
+            Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'; or of the
+            sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.
+        rigid_seats : bool
+            Hold the bearings in rigid seats; leave the housing out.
+
+        Raises
+        ------
+        CaseError, gearwhine.coupling.CouplingError
+            Where the parts do not make a machine, nothing loads it, or a load drives a motion that nothing holds.
+        gearwhine.coupling.EquilibriumNotFoundError
+            Where no equilibrium is found.
+        """
+        from gearwhine.analyses.machine_results import load_result
+        from gearwhine.from_case.machine import describe_machine
+        from gearwhine.solve.operating_point import load_of_case, require_load
+
+        require_load(self.case)
+        ranked = sensitivity or line is not None
+        housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
+        machine = describe_machine(self.case) if rigid_seats else self.machine
+        solved = load_of_case(self.case, machine, self.progress, over_torque=over_torque, over_hunting_period=True)
+        if ranked:
+            solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
+        return load_result(solved, replace(self.origin, housing=housing), self.progress)
+
+    def _ranking(
+        self, machine: "Machine", point: "OperatingPoint", housing: "SolvedHousing | None", line: str | None
+    ) -> "LoadSensitivity":
+        """Rank the parts of the machine; a line that there is not is refused by its option."""
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+        from gearwhine.solve.machine import run_of
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
+
+        modelled = None if housing is None else modelled_housing(self.case, housing)
+        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
+        acoustics = acoustics_of(self.case)
+        try:
+            with refused_by_key(acoustics):
+                return solve_load_sensitivity(
+                    machine,
+                    point,
+                    modelled,
+                    changes,
+                    acoustics=None if self.case.acoustics is None else acoustics,
+                    run=run_of(self.case),
+                    line=line,
+                    note=note,
+                    progress=self.progress,
+                )
+        except UnknownLineError as error:
+            raise CaseError([Problem("--line", error.line, error.expected)]) from error
+
+    def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
+        """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
+
+        Without rotors and an operation the sound is that of the modes alone.
+
+        Parameters
+        ----------
+        acoustics : Acoustics, optional
+            Method and medium, floor and microphones, in place of those of `[acoustics]`; or its attributes by name. A
+            case without them has boundary elements in free air.
+        **settings
+            See :class:`gearwhine.coupling.sound.Acoustics`.
+
+        Raises
+        ------
+        CaseError, gearwhine.coupling.CouplingError, gearwhine.coupling.PeriodicError
+            Where the parts do not make a machine, no periodic motion is found, or the housing cannot be wrapped.
+        gearwhine.housing.HousingError
+            Where the power through the surface and in the far field differ by more than 10 %, or a known source inside
+            is lost at a vertex of the surface.
+        """
+        from gearwhine.analyses.machine_results import RadiatingHousing, sound_result
+        from gearwhine.coupling.sound import Acoustics
+
+        # The checks of the surface are for this analysis alone.
+        from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+
+        self.require("sound")
+        given = Acoustics(**settings) if settings else acoustics
+        housing = self._required_housing("sound", with_sound=given is None)
+        field = housing.displacement_field
+        if given is not None:
+            require_acoustics(given, field.mesh, field.widest_bore, given.limit_hz(field))
+        chosen = given or acoustics_of(self.case)
+        warnings, machine = list[ResultWarning](), None
+        if self.has_machine:
+            warnings = self.left_out_of_sound(None)
+            machine = None if warnings else self.under_load()
+        origin = replace(self.origin, housing=housing)
+        with refused_by_key(chosen):
+            return sound_result(RadiatingHousing(origin, field, chosen, housing.up), machine, warnings, self.progress)
+
+    def sweep(
+        self,
+        over: Sequence[str] = (),
+        *,
+        folder: str | os.PathLike[str],
+        workers: Annotated[int | None, _AtLeastOne] = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+    ) -> "Result[Sequence[SweptPoint]]":
+        """Parallel transients over the speeds of [sweep] or over any keys; a sweep in the same folder is resumed.
+
+        Parameters
+        ----------
+        over : sequence of str
+            Vary a key: key.path=from:to:n or key.path=a,b,c, such as operation.torque='10 N*m:100 N*m:10'. Repeated,
+            the keys and the speeds of [sweep] form a grid.
+        folder : path
+            Folder of the points; those that it holds already are not solved again.
+        workers : int, optional
+            Number of processes (default: number of cores).
+        scheduler : str, optional
+            Address of a running Dask scheduler; its workers replace the local ones.
+        fresh : bool
+            Solve again the points and modes that the folder holds.
+
+        Raises
+        ------
+        CaseError
+            Where a key cannot be swept.
+        gearwhine.failures.WorkersError
+            Where the processes do not start.
+        """
+        from gearwhine.analyses.sweep_result import solve_sweep
+        from gearwhine.case import swept_keys
+
+        keys = swept_keys(self.case, over)
+        return solve_sweep(
+            self.case,
+            self._source,
+            keys,
+            Path(folder),
+            workers=workers,
+            scheduler=scheduler,
+            fresh=fresh or self.fresh,
+            progress=self.progress,
+        )
+
+    def export(
+        self,
+        folder: str | os.PathLike[str],
+        formats: "Sequence[Format]" = ("csv", "uff", "wav"),
+        *,
+        signals: "Signals" = "sensors",
+        seconds: float | None = None,
+    ) -> list[str]:
+        """Write results in formats of other programs; see :func:`gearwhine.results_folder.export_results`.
+
+        Returns
+        -------
+        list of str
+            The files, relative to the folder.
+        """
+        from gearwhine.results_folder import export_results
+
+        return list(export_results(Path(folder), formats, signals=signals, seconds=seconds)["files"])
+
+    # What the analyses of a machine ask of its study, as the case has it.
+
+    @property
+    def origin(self) -> "Origin":
+        """What the results are of; results with the housing have that beside it."""
+        from gearwhine.analyses.origin import Origin
+
+        return Origin(self.case.title, case=self.case)
+
+    @property
+    def fresh(self) -> bool:
+        """Whether to solve again what a results folder holds."""
+        return self._is_fresh
+
+    @property
+    def has_housing(self) -> bool:
+        """Whether the case has a housing."""
+        return self.case.housing is not None
+
+    @property
+    def has_machine(self) -> bool:
+        """Whether the case has rotors and an operation."""
+        return bool(self.case.rotor) and self.case.operation is not None
+
+    def require(self, command: str) -> None:
+        """Refuse a command that the case does not allow, before anything is solved."""
+        from gearwhine.case import CaseError, Problem, require
+        from gearwhine.from_case.machine import require_machine
+        from gearwhine.solve.comparison import require_comparable
+
+        require(self.case, *_NEEDS.get(command, ()), command=command)
+        operation = self.case.operation
+        if command == "run":
+            if self.case.transient is not None:
+                require(self.case, "rotor", "operation", command="run")
+            require_comparable(self.case)
+        if command == "steady" and operation is not None and operation.speed == 0.0:
+            raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
+        if command not in ("rotors", "gears"):
+            require_machine(self.case)
+
+    def solved_rotors(self, **settings: Any) -> "tuple[SolvedRotor, ...]":
+        """Solve each rotor with the settings of `[rotor_analysis]`; none in a case without rotors."""
+        from gearwhine.solve.rotors import solve_rotors
+
+        return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
+
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
+        """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
+        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
+
+    def _required_housing(
+        self, command: str, folder: Path | None = None, *, with_sound: bool = False
+    ) -> "SolvedHousing":
+        """Return the solved housing; a case without one is refused in the name of a command."""
+        from gearwhine.solve.acoustics import check_before_modes
+        from gearwhine.solve.housing_modes import solve_housing
+
+        refuse = check_before_modes(self.case) if with_sound else None
+        with self._kept.lock:
+            if self._kept.solved is None:
+                place = folder or self.folder
+                self._kept.solved = solve_housing(
+                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
+                )
+            elif refuse is not None:
+                refuse(self.case, self._kept.solved.mesh)
+            return self._kept.solved
+
+    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+        """Compare the modes of the housing with those of `[measured]`; None without."""
+        from gearwhine.solve.comparison import compare_housing
+
+        return None if self.case.measured is None else compare_housing(self.case, housing, self.progress)
+
+    def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
+        from gearwhine.analyses.machine_results import MachineUnderLoad
+        from gearwhine.coupling.analyses.loaded_machine import load_machine
+        from gearwhine.solve.operating_point import find_load
+
+        load, warnings = find_load(self.case, self.machine, self.progress)
+        loaded = load_machine(self.machine, None if load is None else load.point, run, self.progress)
+        return MachineUnderLoad(replace(self.origin, housing=self.housing), loaded, load, warnings)
+
+    def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
+        """Analyse each gear pair as it stands in the machine under load, or alone."""
+        from gearwhine.from_case.machine import solve_gears
+        from gearwhine.solve.gear_pairs import analyse_pairs
+
+        if machine is None:
+            return analyse_pairs(self.case, solve_gears(self.case, self.progress)) if self.case.gear_pair else ()
+        return analyse_pairs(self.case, machine.loaded.pairs, None if machine.load is None else machine.load.point)
+
+    def motion(
+        self,
+        machine: "MachineUnderLoad",
+        plan: "TransientPlan",
+        modes: "CoupledModes",
+        keep: Callable[[str], Any] | None = None,
+    ) -> "MachineMotion":
+        """Integrate the motion; under a load that no tooth bears the case is refused in place of the integration."""
+        from gearwhine.case.checks.plausible import overload
+        from gearwhine.coupling.errors import TransientError
+
+        try:
+            return super().motion(machine, plan, modes, keep)
+        except TransientError as error:
+            # Under such a load the advice of the integration is beside the point.
+            if overloaded := overload(self.case):
+                raise TransientError(f"{overloaded}; no motion under this load is found") from error
+            raise
+
+    def _assumed_mesh_damping(self) -> tuple[str, ...]:
+        from gearwhine.solve.damping import assumed_mesh_damping
+
+        return assumed_mesh_damping(self.case)
+
+    def _diagram_speeds(self) -> tuple[float, ...]:
+        from gearwhine.case.analysis_speeds import diagram_speeds
+
+        return diagram_speeds(self.machine.speed, self.case.sweep, self._held_speeds())
+
+    def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
+        from gearwhine.case.analysis_speeds import branch_speeds
+
+        return branch_speeds(self.machine.speed, self.case.sweep, self._held_speeds(), downwards=down)
+
+
+def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:
+    """Return changes of keys as ``key=value``."""
+    if isinstance(changes, Mapping):
+        return tuple(f"{key}={_text(value)}" for key, value in changes.items())
+    return tuple(changes)
+
+
+def _text(value: object) -> str:
+    """Return a value as it stands behind ``--set KEY=``, where a text needs no quotes."""
+    return value if isinstance(value, str) else _toml(value)
+
+
+def _toml(value: object) -> str:
+    """Return a value in TOML, on one line."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, str):
+        return json.dumps(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _plain(value: object) -> object:
+    """Return a table as plain dictionaries and lists, as TOML gives it."""
+    from pydantic import BaseModel
+
+    if isinstance(value, BaseModel):
+        return value.model_dump(exclude_unset=True, by_alias=True)
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value

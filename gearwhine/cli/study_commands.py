@@ -1,0 +1,213 @@
+"""Commands on a case: each is made of the method of a study that has its name.
+
+The parameters of the method are the options of the command, their texts and the first paragraphs of its docstring the
+help. The methods stand in :mod:`gearwhine.study`, those that only a case has in :mod:`gearwhine.case_study`.
+"""
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
+
+from cyclopts import Parameter, validators
+from docstring_parser.numpydoc import parse
+
+from gearwhine.case_study import CaseStudy
+from gearwhine.cli.common import NONE_GIVEN, CaseName, Common, on_case, results_folder, written
+from gearwhine.failures import PartlyFailedError
+from gearwhine.numerics.findings import Number
+
+if TYPE_CHECKING:
+    from gearwhine.case import LoadedCase
+    from gearwhine.numerics.progress import Progress
+    from gearwhine.output.sections import Document
+
+_FRESH_MODES = "Solve the housing's modes again, even if OUT holds them."
+_FRESH_RUN = "Start again, even if OUT holds the housing's modes or an interrupted transient."
+_FRESH_POINTS = "Solve again the points and modes that OUT holds."
+_OUT = "Results go to OUT (default: ./<case>-results)."
+
+
+@dataclass(frozen=True)
+class StudyCommand:
+    """A command that is made of a method of a study.
+
+    Attributes
+    ----------
+    name : str
+        Name of the command.
+    sections : str
+        Module of :mod:`gearwhine.results` and function in it that compose what the terminal shows; empty for files
+        alone.
+    method : str
+        Method of :class:`gearwhine.case_study.CaseStudy`; that of the command's name by default.
+    longer : tuple of str
+        Option that shows more, and the module and function that compose it.
+    always_writes : bool
+        Whether results are written without ``--output``, too.
+    writes_with : str
+        Option with which they are.
+    stores : bool
+        Whether the method takes the folder and stores the result itself.
+    names : mapping of str to str
+        Options by another name than that of the parameter.
+    without : sequence of str
+        Parameters that are no options.
+    fresh : str
+        Help of ``--fresh``; empty where there is no such option.
+    timed : bool
+        Whether the terminal shows the time.
+    """
+
+    name: str
+    sections: str = ""
+    method: str = ""
+    longer: tuple[str, str] = ("", "")
+    always_writes: bool = False
+    writes_with: str = ""
+    stores: bool = False
+    names: Mapping[str, str] = field(default_factory=dict)
+    without: Sequence[str] = ()
+    fresh: str = ""
+    timed: bool = False
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """Method of the study."""
+        return getattr(CaseStudy, self.method or self.name)  # type: ignore[no-any-return]
+
+
+STUDY_COMMANDS = (
+    StudyCommand(
+        "run",
+        "run.sections",
+        "run_into",
+        always_writes=True,
+        stores=True,
+        without=("folder",),
+        fresh=_FRESH_RUN,
+        timed=True,
+    ),
+    StudyCommand("check", "check.summary", longer=("verbose", "check.sections")),
+    StudyCommand("mesh", "mesh.sections", always_writes=True, names={"suffix": "format"}),
+    StudyCommand("modes", "housing.sections", longer=("detail", "housing.detailed_sections"), fresh=_FRESH_MODES),
+    StudyCommand("rotors", "rotors.sections", writes_with="write_ross"),
+    StudyCommand("gears", "gears.sections", without=("aims",)),
+    StudyCommand("load", "operating_point.sections", "operating_point", fresh=_FRESH_MODES),
+    StudyCommand("system", "system.sections", fresh=_FRESH_MODES),
+    StudyCommand("steady", "steady_state.sections", fresh=_FRESH_MODES),
+    StudyCommand("sound", "sound.sections", without=("acoustics",), fresh=_FRESH_MODES),
+    StudyCommand(
+        "sweep", "sweep.sections", always_writes=True, without=("folder", "fresh"), fresh=_FRESH_POINTS, timed=True
+    ),
+    StudyCommand("compare", "comparison.sections", fresh=_FRESH_MODES),
+    StudyCommand("survey", "survey.sections", always_writes=True, fresh=_FRESH_MODES),
+    StudyCommand("update", "update.sections", always_writes=True),
+    StudyCommand("render", always_writes=True, names={"mode_format": "format"}, fresh=_FRESH_MODES),
+)
+"""Commands on a case, in the order of the help."""
+
+# Options that are of the terminal alone.
+_SHOWN = {"verbose": ("-v", "Show every part, with the origin of its values.")}
+
+
+def made_command(entry: StudyCommand) -> Callable[..., None]:
+    """Return the function of a command, with the signature and the help that its method gives."""
+    shown = [] if entry.longer[0] not in _SHOWN else [_shown_option(entry.longer[0])]
+    options = [*_method_options(entry), *shown, *_fresh_option(entry)]
+
+    def command(case: str, *, common: Common = NONE_GIVEN, **given: Any) -> None:
+        _perform(entry, case, common, given)
+
+    positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+    first = inspect.Parameter("case", positional, annotation=CaseName)
+    last = inspect.Parameter("common", keyword, default=NONE_GIVEN, annotation=Common)
+    command.__name__ = command.__qualname__ = entry.name
+    command.__doc__ = _described(entry)
+    command.__signature__ = inspect.Signature([first, *options, last])  # type: ignore[attr-defined]
+    command.__annotations__ = {one.name: one.annotation for one in (first, *options, last)}
+    return command
+
+
+def _described(entry: StudyCommand) -> str:
+    """Return the help of a command: the summary of its method, where the results go, and what else the method says."""
+    documented = parse(entry.function.__doc__ or "")
+    summary = f"{documented.short_description} {_OUT if entry.always_writes else ''}".strip()
+    return f"{summary}\n\n{documented.long_description or ''}".strip()
+
+
+def _on_one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _method_options(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+    """Yield the parameters of a method as options."""
+    texts = {one.arg_name: _on_one_line(one.description or "") for one in parse(entry.function.__doc__ or "").params}
+    for parameter in list(inspect.signature(entry.function).parameters.values())[1:]:
+        if parameter.kind is inspect.Parameter.VAR_KEYWORD or parameter.name in entry.without:
+            continue
+        kind, rules = parameter.annotation, list[Number]()
+        if get_origin(kind) is Annotated:
+            kind, *rules = get_args(kind)
+        if get_origin(kind) is Sequence:
+            (item,) = get_args(kind)
+            kind = list[item]  # type: ignore[valid-type]
+        name = f"--{entry.names.get(parameter.name, parameter.name).replace('_', '-')}"
+        limits = [validators.Number(gte=rule.at_least, lte=rule.at_most) for rule in rules]
+        # A flag that is off by default needs no option that puts it off.
+        negative = None if parameter.default is True else ()
+        text = texts[parameter.name]
+        marker = Parameter(name=[name], negative=negative, validator=limits, consume_multiple=False, help=text)
+        default = [] if parameter.default == () else parameter.default
+        yield parameter.replace(
+            kind=inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, marker]
+        )
+
+
+def _shown_option(name: str) -> inspect.Parameter:
+    short, text = _SHOWN[name]
+    marker = Parameter(name=[f"--{name}", short], negative=(), help=text)
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Annotated[bool, marker])
+
+
+def _fresh_option(entry: StudyCommand) -> Iterator[inspect.Parameter]:
+    if entry.fresh:
+        marker = Parameter(name="--fresh", negative=(), help=entry.fresh)
+        yield inspect.Parameter(
+            "fresh", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Annotated[bool, marker]
+        )
+
+
+def _perform(entry: StudyCommand, case: str, common: Common, given: dict[str, Any]) -> None:
+    """Make a study of the case, call its method, and show the result."""
+    from gearwhine.output.terminal import shown_by
+
+    fresh = given.pop("fresh", False)
+    shows_more = given.pop(entry.longer[0], False) if entry.longer[0] in _SHOWN else given.get(entry.longer[0], False)
+    writes = entry.always_writes or bool(given.get(entry.writes_with, False))
+
+    def work(loaded: "LoadedCase", progress: "Progress") -> dict[str, Any]:
+        folder = results_folder(case, common) if writes else common.output
+        study = CaseStudy(loaded, progress, folder=folder, fresh=fresh)
+        to_folder = {"folder": folder} if "folder" in entry.without else {}
+        result = entry.function(study, **given, **to_folder)
+        document: dict[str, Any] = result.document if entry.stores else written(result, folder, progress)
+        return document
+
+    composed_by = entry.longer[1] if shows_more else entry.sections
+    show = shown_by(_sections(composed_by) if composed_by else lambda document: (), timed=entry.timed)
+    files = (f"mesh.{given['suffix']}", "mesh.h5") if "suffix" in given else ()
+    _require_whole(on_case(case, common, work, show, entry.name, writes=files))
+
+
+def _sections(place: str) -> Callable[["Document"], Any]:
+    module, function = place.split(".")
+    return getattr(import_module(f"gearwhine.results.{module}"), function)  # type: ignore[no-any-return]
+
+
+def _require_whole(document: Mapping[str, Any]) -> None:
+    """Refuse to end well where points of a sweep failed; what is there is shown and written before."""
+    if failed := document.get("failed"):
+        total = len(document["points"])
+        raise PartlyFailedError(f"{failed} of {total} points failed; they are tried again on the next run")
