@@ -778,7 +778,7 @@ class CaseStudy(Study):
         from gearwhine.solve.gear_pairs import analyse_pairs
 
         if machine is None:
-            return analyse_pairs(self.case, solve_gears(self.case, self.progress)) if self.case.gear_pair else ()
+            return analyse_pairs(self.case, solve_gears(self.case.parts, self.progress)) if self.case.gear_pair else ()
         return analyse_pairs(self.case, machine.loaded.pairs, None if machine.load is None else machine.load.point)
 
     def motion(
@@ -803,7 +803,7 @@ class CaseStudy(Study):
     def _assumed_mesh_damping(self) -> tuple[str, ...]:
         from gearwhine.solve.damping import assumed_mesh_damping
 
-        return assumed_mesh_damping(self.case)
+        return assumed_mesh_damping(self.case.gear_pair)
 
     def _diagram_speeds(self) -> tuple[float, ...]:
         from gearwhine.case.analysis_speeds import diagram_speeds

@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from gearwhine.case import Case, require, shaft_of
+from gearwhine.case import Case, shaft_of
 from gearwhine.case.model import lacking
+from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
@@ -40,7 +41,7 @@ def describe_machine(case: Case, housing: HousingComponent | None = None) -> Mac
     return machine if housing is None else replace(machine, bearings=case.parts.bearings, housing=housing)
 
 
-def rotor_bearings(case: Case) -> dict[str, BearingsUnderLoad]:
+def rotor_bearings(parts: Parts) -> dict[str, BearingsUnderLoad]:
     """Bearings of each rotor and the states of the rolling ones, linearised about the operating point on rigid seats.
 
     The operating point is solved only if the load of a bearing is left to it.
@@ -51,25 +52,24 @@ def rotor_bearings(case: Case) -> dict[str, BearingsUnderLoad]:
     gearwhine.rotors.EquilibriumError
         Where a bearing cannot exist with its load or geometry, or the machine has no operating point.
     """
-    parts = case.parts
-    on = {bearing.name: bearing.rotor for bearing in case.bearing}
+    on = {bearing.name: bearing.rotor for bearing in parts.bearing}
     built: dict[str, BearingsUnderLoad] = {
         rotor.name: (
             parts.bearings_on(rotor.name),
             {name: state for name, state in parts.rolling_states.items() if on[name] == rotor.name},
         )
-        for rotor in case.rotor
+        for rotor in parts.rotor
     }
-    if not any(parts.finds_load(bearing) for bearing in case.bearing):
+    if parts.machine is None or not any(parts.finds_load(bearing) for bearing in parts.bearing):
         return built
-    under_load = bearings_under_load(describe_machine(case))
+    under_load = bearings_under_load(parts.machine)
     return {name: (under_load[name][0], states | under_load[name][1]) for name, (_, states) in built.items()}
 
 
 def solve_gears(
-    case: Case, progress: Progress = silent, gaps: Mapping[tuple[str, str], tuple[float, ...]] | None = None
+    parts: Parts, progress: Progress = silent, gaps: Mapping[tuple[str, str], tuple[float, ...]] | None = None
 ) -> tuple[LoadedGearPair, ...]:
-    """Solve every gear pair of the case.
+    """Solve every gear pair of a case.
 
     ``gaps`` are those of the flanks over the face by driver and driven gear, where the misalignment is to be found.
     Without one, flanks whose misalignment the case leaves out are aligned.
@@ -77,13 +77,11 @@ def solve_gears(
     Raises
     ------
     CaseError, gearwhine.coupling.gears.GearError
-        Where the case has no gear pairs, or one cannot be solved as it stands.
+        Where one cannot be solved as it stands.
     """
-    require(case, "gear_pair", command="gears")
-    parts = case.parts
-    shafts = {gear.name: shaft_of(gear) for gear in case.gear}
+    shafts = {gear.name: shaft_of(gear) for gear in parts.gear}
     solved = []
-    rows = zip(case.gear_pair, parts.gear_pairs, parts.pair_geometries, parts.pair_torques, strict=True)
+    rows = zip(parts.gear_pair, parts.gear_pairs, parts.pair_geometries, parts.pair_torques, strict=True)
     for entry, pair, geometry, torque in rows:
         progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(
@@ -105,16 +103,16 @@ def _aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ..
 
 
 def misalignments_of_case(
-    case: Case, point: OperatingPoint | None, *, is_sought: bool = True
+    parts: Parts, point: OperatingPoint | None, *, is_sought: bool = True
 ) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of the case, beside that of its operating point where it is solved.
+    """Misalignment of every gear pair of a case, beside that of its operating point where it is solved.
 
     ``is_sought`` is false before that point is sought: flanks that are left to it are not yet taken as aligned.
     """
     misalignments = []
-    for number, entry in enumerate(case.gear_pair):
+    for number, entry in enumerate(parts.gear_pair):
         at_operating_point = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if case.parts.finds_misalignment(entry) and not (is_sought and at_operating_point is None):
+        if parts.finds_misalignment(entry) and not (is_sought and at_operating_point is None):
             misalignments.append(TakenMisalignment(at_operating_point, "operating point", at_operating_point))
         elif isinstance(entry.misalignment, float | int):
             misalignments.append(TakenMisalignment(entry.misalignment, "case", at_operating_point))

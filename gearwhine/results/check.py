@@ -17,7 +17,7 @@ from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.solve.case_summary import check_case
-from gearwhine.solve.damping import damping_document
+from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
@@ -350,7 +350,7 @@ CHECK = (
     _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
     _optional("provenance", lambda checked: checked.case.provenance or None),
     _optional("gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None),
-    _optional("damping", lambda checked: damping_document(checked.case) or None),
+    _optional("damping", lambda checked: damping_document(part_dampings(checked.case)) or None),
     _optional("warnings", lambda checked: checked.warnings or None),
 )
 """Quantities of a checked case."""

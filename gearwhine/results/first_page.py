@@ -127,7 +127,7 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     if case is None:
         return Section("Machine")
     try:
-        rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
+        rotors, pairs = checked_rotors(case.parts), tuple(checked_pairs(case.parts))
     except (ValueError, RuntimeError) as error:
         return Section("Machine", (Finding(f"The machine of the case cannot be built: {error}", passed=False),))
     content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, documents)]

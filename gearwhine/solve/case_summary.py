@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearwhine.case import Case, GearPair, Rotor
+from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
 from gearwhine.coupling.analyses.operation_warnings import operation_warnings
@@ -121,7 +122,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
             material_of(case, name)
         mesh, warnings = mesh_health.preview_mesh(case, progress)
         warnings += _checked_acoustics(case, mesh)
-    rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
+    rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
     for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
         warnings += geometry_warnings(built, geometry)
     warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
@@ -158,21 +159,21 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
     return acoustics_warnings(acoustics_of(case), mesh.bounds, case.housing.frequency_limit)
 
 
-def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
+def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
-    rows = zip(case.rotor, case.parts.rotors, strict=True)
-    return tuple(CheckedRotor(entry, built, case.parts.speeds.get(entry.name)) for entry, built in rows)
+    rows = zip(parts.rotor, parts.rotors, strict=True)
+    return tuple(CheckedRotor(entry, built, parts.speeds.get(entry.name)) for entry, built in rows)
 
 
-def checked_pairs(case: Case) -> Iterator[CheckedPair]:
+def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:
     """Build the gear pairs of a case one by one, each with its mesh frequency and torque."""
-    parts, unknown = case.parts, (None,) * len(case.gear_pair)
+    unknown = (None,) * len(parts.gear_pair)
     rows = zip(
-        case.gear_pair,
+        parts.gear_pair,
         parts.pair_geometries,
-        misalignments_of_case(case, None, is_sought=False),
-        unknown if case.operation is None else parts.mesh_frequencies,
-        unknown if case.operation is None else parts.pair_torques,
+        misalignments_of_case(parts, None, is_sought=False),
+        unknown if parts.operation is None else parts.mesh_frequencies,
+        unknown if parts.operation is None else parts.pair_torques,
         parts.train.force_origins,
         strict=True,
     )

@@ -32,7 +32,9 @@ def analyse_pairs(
     ``point`` is the machine's operating point, where it is solved.
     """
     analysed = []
-    rows = zip(case.gear_pair, solved, misalignments_of_case(case, point), case.parts.train.force_origins, strict=True)
+    rows = zip(
+        case.gear_pair, solved, misalignments_of_case(case.parts, point), case.parts.train.force_origins, strict=True
+    )
     for entry, pair, misalignment, origin in rows:
         driver, driven = (case.gear_named(name).face_width is not None for name in (entry.driver, entry.driven))
         analysis = analyse_pair(pair, misalignment, (driver, driven))

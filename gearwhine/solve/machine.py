@@ -46,7 +46,7 @@ def solve_pairs(
         the machine does not have.
     """
     if not case.rotor or case.operation is None:
-        return solve_gears(case, progress), None
+        return solve_gears(case.parts, progress), None
     if isinstance(housing, SolvedHousing):
         housing = reduce_housing(case, housing, progress)
     machine = describe_machine(case, housing)

@@ -471,7 +471,7 @@ def load_of_case(
     The parameters are those of :func:`solve_load`.
     """
     solved = solve_load(machine, progress, over_torque=over_torque, over_hunting_period=over_hunting_period)
-    taken = misalignments_of_case(case, solved.point)
+    taken = misalignments_of_case(case.parts, solved.point)
     pairs = [replace(pair, misalignment=one) for pair, one in zip(solved.pairs, taken, strict=False)]
     return replace(solved, pairs=tuple(pairs))
 

@@ -35,7 +35,7 @@ def solve_rotors(case: Case, progress: Progress = silent, **chosen: Any) -> tupl
         Where the case has no rotors, or one cannot be solved as it stands.
     """
     require(case, "rotor", command="rotors")
-    built = rotor_bearings(case)
+    built = rotor_bearings(case.parts)
     solved = []
     for table, rotor in zip(case.rotor, case.parts.rotors, strict=True):
         progress(f"rotor {table.name}")

@@ -109,7 +109,7 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     assert angles == pytest.approx([15.0, -15.0])
     assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
     shown_by(check.sections)(document)
-    document = gears_document(solve_over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
+    document = gears_document(solve_over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL.parts))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
     show(document, sections(document))
     shown = " ".join(capsys.readouterr().out.split())
@@ -130,12 +130,12 @@ def test_undercut_and_thin_tips_are_warned_of() -> None:
 def test_backlash_is_that_of_thinned_teeth() -> None:
     """Both thinned by 40 µm along the reference circle, at nominal distance: 80 µm cos 20° along the line of action."""
     thin = TOOTH | {"tooth_thinning": "0.04 mm"}
-    (nominal,) = solve_gears(case_of(TOOTH, TOOTH))
+    (nominal,) = solve_gears(case_of(TOOTH, TOOTH).parts)
     assert nominal.backlash is None
-    (thinned,) = solve_gears(case_of(thin, thin))
+    (thinned,) = solve_gears(case_of(thin, thin).parts)
     expected = 80e-6 * math.cos(math.radians(20.0))
     assert thinned.backlash == pytest.approx(expected, rel=1e-9)
-    (given,) = solve_gears(case_of(thin, thin, backlash="0.1 mm"))
+    (given,) = solve_gears(case_of(thin, thin, backlash="0.1 mm").parts)
     assert given.backlash == 1e-4
 
 
@@ -155,16 +155,16 @@ def test_backlash_has_its_three_sizes_under_their_names(helix: float) -> None:
     along = around * math.cos(transverse)
     named = {"along_line_of_action": along, "circumferential": around, "normal": along * math.cos(base)}
     (checked,) = check_document(case)["gear_pairs"]
-    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case)))["pairs"]
+    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case.parts)))["pairs"]
     for document in (checked, analysed):
         assert document["backlash_m"] == pytest.approx(named, rel=1e-6)
     sizes = f"j_wt {1e3 * around:.4g} mm on the working pitch circle, j_bn {1e3 * named['normal']:.4g} mm normal"
-    (section,) = sections(gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case)))))
+    (section,) = sections(gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case.parts)))))
     assert any(text.startswith(f"Backlash {sizes}") for text in section.sentences)
     lines = [line for part in check.sections(check_document(case)) for line in part.sentences]
     assert any(f"backlash {sizes}" in line for line in lines)
     bare = case_of(TOOTH, TOOTH)
-    assert gears_document(analyse_pairs(bare, solve_gears(bare)))["pairs"][0]["backlash_m"] is None
+    assert gears_document(analyse_pairs(bare, solve_gears(bare.parts)))["pairs"][0]["backlash_m"] is None
 
 
 def test_a_backlash_that_is_not_the_geometrys_is_doubted() -> None:

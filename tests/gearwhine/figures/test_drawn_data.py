@@ -255,7 +255,7 @@ def test_bars_with_and_without_load_have_the_curves_colours() -> None:
 
 def test_the_driver_slides_backwards_where_it_begins() -> None:
     case = load_case("spur-pair").case
-    (pair,) = solve_gears(case)
+    (pair,) = solve_gears(case.parts)
     mesh = pair.static
     pressure = mesh_pressure(pair.geometry, pair.contact, mesh)
     figure = draw_contact_path("p", pair.geometry, pair.contact, mesh, pressure)

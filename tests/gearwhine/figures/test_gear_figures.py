@@ -240,7 +240,7 @@ def test_the_contact_pattern_holds_the_load() -> None:
 def test_every_pair_has_its_files(tmp_path: Path) -> None:
     """Odd names are no paths and no formulas; what one has not is not drawn."""
     case = load_case("spur-pair").case
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     idle = replace(solved, static=loaded_transmission_error(solved.contact, 0.0))
     pairs = [
         replace(pair, solved=replace(one, pair=replace(one.pair, driver=name, driven="ö ö")))

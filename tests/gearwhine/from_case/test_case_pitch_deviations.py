@@ -49,12 +49,12 @@ def test_a_length_for_each_tooth_within_reason() -> None:
 
 def test_bundled_cases_have_none() -> None:
     case = load_case("spur-pair").case
-    assert all(pair.contact.pitch_gaps.size == 0 for pair in solve_gears(case))
+    assert all(pair.contact.pitch_gaps.size == 0 for pair in solve_gears(case.parts))
 
 
 def test_they_reach_both_flanks_of_the_machine() -> None:
     case = case_with([f"{value} um" for value in MICROMETRES])
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     drive, back = coupled(case).system.contacts
     expected = -np.array(MICROMETRES) * 1e-6 * math.cos(math.radians(20.0))
     np.testing.assert_allclose(drive.contact.pitch_gaps, expected, rtol=1e-9)

@@ -19,7 +19,7 @@ Document = dict[str, Any]
 @cache
 def document(name: str, *settings: str) -> Document:
     case = load_case(name, settings).case
-    return gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case))))
+    return gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case.parts))))
 
 
 def said(capsys: pytest.CaptureFixture[str], given: Document) -> str:

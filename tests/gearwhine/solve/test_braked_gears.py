@@ -45,7 +45,7 @@ def exchanged_case() -> Case:
 @cache
 def analysed(*, braked: bool) -> PairAnalysis:
     case = braked_case() if braked else exchanged_case()
-    (pair,) = analyse_pairs(case, solve_gears(case))
+    (pair,) = analyse_pairs(case, solve_gears(case.parts))
     return pair
 
 

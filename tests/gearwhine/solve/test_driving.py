@@ -321,7 +321,7 @@ def test_a_braked_train_on_spread_axes_meets_its_back_flanks() -> None:
     case = load_case("spur-pair", spread).case
     (pair,) = describe_machine(case).loaded_pairs()
     assert pair.backlash == pytest.approx(0.4e-3 * math.sin(math.radians(20.0)), rel=0.01)
-    assert solve_gears(case)[0].backlash == pair.backlash
+    assert solve_gears(case.parts)[0].backlash == pair.backlash
 
 
 def test_a_braked_train_coasts_on_its_back_flanks() -> None:
@@ -330,7 +330,7 @@ def test_a_braked_train_coasts_on_its_back_flanks() -> None:
     (pair,) = transient_document(solved)["gear_pairs"]
     assert pair["flanks"] == "back"
     assert pair["contact_loss_fraction"] == 0.0
-    (mesh,) = solve_gears(case)
+    (mesh,) = solve_gears(case.parts)
     assert pair["mean_force_n"] == pytest.approx(100.0 / mesh.geometry.driver.base_radius, rel=1e-3)
     # One constant spring under a constant torque: the start is the motion, so nothing sets in.
     assert pair["peak_force_n"] == pytest.approx(pair["mean_force_n"], rel=1e-6)

@@ -79,7 +79,7 @@ def housing() -> SolvedHousing:
 
 def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 

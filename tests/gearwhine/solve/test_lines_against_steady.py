@@ -67,7 +67,7 @@ def test_lines_are_those_of_the_motion_where_the_mesh_hardly_varies(case: Case) 
     δ_s of the slices, tilt of the bodies included, to half a nanometre in each harmonic; k times that is the rest.
     """
     housing = solve_housing(case)
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     machine = coupled(case, housing)
     point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     drive, _ = machine.system.contacts

@@ -162,7 +162,7 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     machine = describe_machine(case, found.housing.component(found.housing.modes, weighs=False)).at_operating_point(
         point
     )
-    pairs = solve_gears(case, silent, {one.names: one.station_gap for one in point.pairs})
+    pairs = solve_gears(case.parts, silent, {one.names: one.station_gap for one in point.pairs})
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
     model = LineModel(assembled, point, pairs, found.model.found)
