@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, attribute_findings, refuse
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import warning
 
 if TYPE_CHECKING:
     from gearwhine.analyses.machine_results import MachineUnderLoad
@@ -372,8 +373,10 @@ class Study:
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
         housing = radiating_housing(self.machine, acoustics, self.origin)
-        warnings = self.left_out_of_sound(None)
-        return sound_result(housing, None if warnings else self.under_load(), warnings, self.progress)
+        left_out = self.left_out_of_sound(None)
+        unlikely = [warning("acoustics", str(finding)) for finding in acoustics.findings]
+        machine = None if left_out else self.under_load()
+        return sound_result(housing, machine, [*left_out, *unlikely], self.progress)
 
     def run(self) -> "Result[RunSolution]":
         """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.

@@ -378,6 +378,8 @@ def machine_findings(
         yield from fit_findings(mounted.gear, shaft.rotor, mounted.at)
     for held in bearings:
         shaft, bearing = by_name[held.rotor], held.bearing
+        if held.elements is None and held.law is None:
+            yield from bearing.findings
         if seat_diameters is None:
             continue
         seat = seat_diameters.get(held.seat) if held.seat is not None else None

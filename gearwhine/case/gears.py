@@ -219,11 +219,9 @@ class Fault(Table):
         for key, field in type(self).model_fields.items():
             if key not in ("kind", *needed, *optional) and getattr(self, key) != field.default:
                 raise wrong(f"no '{key}' of a fault of kind {self.kind!r}", key)
-        if self.kind == "spall":
-            assert self.start_roll_angle is not None
-            assert self.end_roll_angle is not None
-            if self.end_roll_angle <= self.start_roll_angle:
-                raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
+        start, end = self.start_roll_angle, self.end_roll_angle
+        if start is not None and end is not None and end <= start:
+            raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
         return self
 
     def build(self) -> BuiltFault:

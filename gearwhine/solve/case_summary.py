@@ -121,7 +121,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
             material_of(case, name)
         mesh, warnings = mesh_health.preview_mesh(case, progress)
-        warnings += _checked_acoustics(case, mesh)
+        warnings += _checked_acoustics(case, mesh, case.housing.frequency_limit)
     rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
     for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
         warnings += geometry_warnings(built, geometry)
@@ -141,8 +141,8 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, machine, warnings)
 
 
-def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]:
-    """Return warnings about the acoustics of a case.
+def _checked_acoustics(case: Case, preview: MeshPreview, limit_hz: float | None) -> list[dict[str, Any]]:
+    """Return warnings about the acoustics of a case, whose housing has modes up to a limit [Hz].
 
     Raises
     ------
@@ -153,10 +153,9 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
         return []
     from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
 
-    assert case.housing is not None
     mesh = preview.mesh or build_mesh(case, order=1)
     refuse(case, mesh)
-    return acoustics_warnings(acoustics_of(case), mesh.bounds, case.housing.frequency_limit)
+    return acoustics_warnings(acoustics_of(case), mesh.bounds, limit_hz)
 
 
 def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:
