@@ -10,13 +10,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
-from gearwhine.case.checks.keys_of_attributes import key_in_gear
-from gearwhine.case.errors import LOOK_UP, NOTHING, UNSAID, Finding, Location
+from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.gears import Gear, GearPair, distance_of_axes, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
 from gearwhine.case.model import Draft
@@ -27,7 +27,6 @@ from gearwhine.numerics.findings import in_mm
 if TYPE_CHECKING:
     from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.gears import Gear as BuiltGear
-    from gearwhine.numerics.findings import Finding as PartFinding
 
 
 def check_shafts(draft: Draft) -> Iterator[Finding]:
@@ -85,15 +84,8 @@ def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Findi
     """Yield a finding where a station lies beyond the right end of its rotor."""
     from gearwhine.rotors.model.shaft import station_findings
 
-    yield from _at(location[:-1], station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length))
-
-
-def _at(entry: Location, findings: Iterable[PartFinding]) -> Iterator[Finding]:
-    """Put findings of a part at its entry of the case; one without a value is of the entry's relation to others."""
-    for finding in findings:
-        steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
-        location = (*entry, *steps)
-        yield Finding(location, finding.expected, UNSAID if finding.value is None else LOOK_UP)
+    findings = station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length)
+    yield from (placed(location[:-1], finding) for finding in findings)
 
 
 def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
@@ -114,7 +106,8 @@ def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
         from gearwhine.coupling.description.parts import bow_findings
 
         places = [point.at for point in rotor.bow]
-        yield from _at(("rotor", index), bow_findings(("shaft", rotor.name), places, rotor.length))
+        findings = bow_findings(("shaft", rotor.name), places, rotor.length)
+        yield from (placed(("rotor", index), finding) for finding in findings)
 
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
@@ -129,7 +122,7 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
     part = ("bearing", bearing.name)
     for finding in seat_findings(part, rotor.name, rotor.axis, rotor.start, bearing.at, place):
         if finding.attribute != "at" or bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
-            yield from _at(("bearing", index), [finding])
+            yield placed(("bearing", index), finding)
 
 
 def check_bearings(draft: Draft) -> Iterator[Finding]:
@@ -142,7 +135,7 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
             from gearwhine.coupling.description.arrangement import pedestal_finding
 
             part = ("bearing", bearing.name)
-            yield from _at(("bearing", index), [pedestal_finding(part, bearing.seat, bearing.pedestal)])
+            yield placed(("bearing", index), pedestal_finding(part, bearing.seat, bearing.pedestal))
         if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
@@ -193,7 +186,8 @@ def _check_reach(
 
     needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
     part = ("bearing", bearing.name)
-    yield from _at(("bearing", index), table_findings_of_speeds(part, bearing.rotor, table, needed))
+    findings = table_findings_of_speeds(part, bearing.rotor, table, needed)
+    yield from (placed(("bearing", index), finding) for finding in findings)
 
 
 def _named_speeds(draft: Draft) -> list[float]:

@@ -8,14 +8,14 @@ finding's part and attribute become a key. A finding that is a warning can be ac
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gearwhine.case.acoustics import Acoustics
 from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
-from gearwhine.case.checks.keys_of_attributes import key_in_gear
-from gearwhine.case.errors import UNSAID, Finding, Location, key_of, label_of, look_up, show_value
+from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
+from gearwhine.case.errors import LOOK_UP, UNSAID, Finding, Location, key_of, label_of, look_up, show_value
 from gearwhine.case.gears import Gear, GearPair, shaft_of
 from gearwhine.case.housing import Housing, Material, Seat
 from gearwhine.case.model import Case
@@ -30,24 +30,7 @@ if TYPE_CHECKING:
     from gearwhine.numerics.findings import Finding as PartFinding
 
 
-@dataclass(frozen=True)
-class PlacedFinding:
-    """A finding of the library at its place in a case."""
-
-    location: Location
-    expected: str
-    warns: bool
-    from_value: bool
-    """Whether the value at the location is what is at fault, not its relation to others."""
-
-    def as_error(self) -> Finding:
-        """Return it as an error of the case."""
-        return (
-            Finding(self.location, self.expected) if self.from_value else Finding(self.location, self.expected, UNSAID)
-        )
-
-
-def library_findings(case: Case) -> Iterator[PlacedFinding]:
+def library_findings(case: Case) -> Iterator[Finding]:
     """Yield what the parts of a case find of themselves and of each other."""
     materials = list(_of_materials(case.material))
     yield from materials
@@ -61,7 +44,7 @@ def library_findings(case: Case) -> Iterator[PlacedFinding]:
         from gearwhine.coupling.description.arrangement import gravity_findings
 
         for finding in gravity_findings(case.operation.gravity):
-            yield _placed(("operation",), finding)
+            yield placed(("operation",), finding)
     if case.gear or case.rotor:
         yield from _of_gears(case.gear, case.parts.gears)
         yield from _of_pairs(case.parts)
@@ -75,7 +58,7 @@ def overload(case: Case) -> str:
     return next((f"operation.torque: expected {finding.expected}" for finding in found), "")
 
 
-def case_warnings(unusual: Iterable[str], findings: Iterable[PlacedFinding], document: object) -> list[str]:
+def case_warnings(unusual: Iterable[str], findings: Iterable[Finding], document: object) -> list[str]:
     """Return a sentence on each finding that is a warning and that the case does not accept by ``unusual``."""
     accepted = [steps for steps in map(parse_key_path, unusual) if steps is not None]
     sentences = []
@@ -84,7 +67,7 @@ def case_warnings(unusual: Iterable[str], findings: Iterable[PlacedFinding], doc
             continue
         key, label = key_of(finding.location), label_of(document, finding.location)
         place = f"{key} ({label})" if label else key
-        got = f", got {show_value(look_up(document, finding.location))}" if finding.from_value else ""
+        got = f", got {show_value(look_up(document, finding.location))}" if finding.value is LOOK_UP else ""
         sentences.append(f"{place}: expected {finding.expected}{got}; 'unusual' accepts it")
     return list(dict.fromkeys(sentences))
 
@@ -100,27 +83,19 @@ def _within(location: Location, steps: tuple[str, ...], document: object) -> boo
     return len(steps) <= len(location)
 
 
-def _placed(location: Location, finding: PartFinding, attribute: Location | None = None) -> PlacedFinding:
-    steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
-    within = steps if attribute is None else attribute
-    return PlacedFinding(
-        (*location, *within), finding.expected, finding.severity == "warning", finding.value is not None
-    )
-
-
-def _of_materials(materials: Mapping[str, Material]) -> Iterator[PlacedFinding]:
+def _of_materials(materials: Mapping[str, Material]) -> Iterator[Finding]:
     from gearwhine.numerics.materials import material_findings
 
     for name, material in materials.items():
         numbers = material.youngs_modulus, material.poisson_ratio, material.density
         for finding in material_findings(("material", name), *numbers):
-            yield _placed(("material", name), finding)
+            yield placed(("material", name), finding)
 
 
 _MOST_DAMPED = 0.1
 
 
-def _of_housing(housing: Housing) -> Iterator[PlacedFinding]:
+def _of_housing(housing: Housing) -> Iterator[Finding]:
     """Yield masses that cannot be fastened where they are, and damping that no housing has."""
     from gearwhine.housing.errors import HousingError
 
@@ -129,37 +104,37 @@ def _of_housing(housing: Housing) -> Iterator[PlacedFinding]:
             mass.build()
         except HousingError as error:
             for finding in error.findings:
-                yield _placed(("housing", "mass", index), finding)
+                yield placed(("housing", "mass", index), finding)
     ratio = housing.damping_ratio
     if isinstance(ratio, float) and ratio > _MOST_DAMPED:
         expected = "at most 0.1: welded, cast and bolted housings have 0.001 to 0.05"
-        yield PlacedFinding(("housing", "damping_ratio"), expected, True, True)
+        yield Finding(("housing", "damping_ratio"), expected, warns=True)
 
 
 _LOWEST_SOUND = 0.05
 """Part of the limit of the housing's modes below which the end of the sound is unlikely."""
 
 
-def _of_acoustics(acoustics: Acoustics, limit: float | None) -> Iterator[PlacedFinding]:
+def _of_acoustics(acoustics: Acoustics, limit: float | None) -> Iterator[Finding]:
     """Yield a medium that is no gas, and a sound that ends far below the limit of the housing's modes [Hz]."""
     for finding in acoustics.build().findings:
-        yield _placed(("acoustics",), finding)
+        yield placed(("acoustics",), finding)
     highest = acoustics.highest_frequency
     if highest is not None and limit is not None and highest < _LOWEST_SOUND * limit:
         expected = f"a frequency near that of the housing's modes, {limit:g} Hz: nothing above it is heard"
-        yield PlacedFinding(("acoustics", "highest_frequency"), expected, True, True)
+        yield Finding(("acoustics", "highest_frequency"), expected, warns=True)
 
 
-def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterator[PlacedFinding]:
+def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterator[Finding]:
     for index, gear in enumerate(tables):
         for finding in gears[gear.name].findings:
             if finding.attribute not in ("youngs_modulus", "density", "poisson_ratio") and not (
                 finding.attribute == "face_width" and gear.face_width is None
             ):
-                yield _placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
+                yield placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
 
 
-def _of_machine(case: Case) -> Iterator[PlacedFinding]:
+def _of_machine(case: Case) -> Iterator[Finding]:
     """Yield findings of the machine's parts at their places."""
     from gearwhine.coupling.errors import CouplingError
     from gearwhine.rotors.errors import RotorError
@@ -183,21 +158,21 @@ def _of_machine(case: Case) -> Iterator[PlacedFinding]:
     for finding in places:
         kind, name = finding.part
         if kind == "force":
-            yield _placed(("operation",), finding)
+            yield placed(("operation",), finding)
             continue
         table = "rotor" if kind == "shaft" else kind
         if name not in numbers[kind]:
             continue  # of a rotor's own file
         location: Location = (table, numbers[kind][name])
         if kind == "bearing" and finding.attribute == "rolling":
-            placed = _placed(location, finding, ("stiffness", "rolling"))
+            found = placed(location, finding, ("stiffness", "rolling"))
             # A rotor of a file may have no journals; one of the case is drawn as it is.
             of_file = case.rotor_named(case.bearing[numbers[kind][name]].rotor).file is not None
-            yield replace(placed, warns=placed.warns or of_file)
+            yield replace(found, warns=found.warns or of_file)
         elif kind == "shaft" and finding.attribute.startswith("discs") and case.rotor[numbers[kind][name]].file:
-            yield _placed(location, finding, ())
+            yield placed(location, finding, ())
         else:
-            yield _placed(location, finding)
+            yield placed(location, finding)
 
 
 def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFinding]:
@@ -251,17 +226,17 @@ def _walls(box: Box, seats: Sequence[Seat]) -> list[Wall]:
     ]
 
 
-def _of_densities(index: int, rotor: Rotor) -> Iterator[PlacedFinding]:
+def _of_densities(index: int, rotor: Rotor) -> Iterator[Finding]:
     """Yield discs of a density that no solid has."""
     from gearwhine.numerics.materials import material_findings
 
     for place, disc in enumerate(rotor.discs):
         density = getattr(disc, "density", None)
         for finding in material_findings(("disc", ""), 207e9, 0.3, density) if density is not None else ():
-            yield _placed(("rotor", index, "discs", place), finding)
+            yield placed(("rotor", index, "discs", place), finding)
 
 
-def _of_discs(index: int, rotor: Rotor, materials: Mapping[str, Material]) -> Iterator[PlacedFinding]:
+def _of_discs(index: int, rotor: Rotor, materials: Mapping[str, Material]) -> Iterator[Finding]:
     """Yield discs that no body is."""
     from gearwhine.rotors.errors import RotorError
 
@@ -270,10 +245,10 @@ def _of_discs(index: int, rotor: Rotor, materials: Mapping[str, Material]) -> It
             disc.build(rotor, materials)
         except RotorError as error:
             for finding in error.findings:
-                yield _placed(("rotor", index, "discs", place), finding)
+                yield placed(("rotor", index, "discs", place), finding)
 
 
-def _of_elements(index: int, entry: Bearing) -> Iterator[PlacedFinding]:
+def _of_elements(index: int, entry: Bearing) -> Iterator[Finding]:
     """Yield a rolling bearing that cannot be built."""
     from gearwhine.rotors.errors import RotorError
 
@@ -283,10 +258,10 @@ def _of_elements(index: int, entry: Bearing) -> Iterator[PlacedFinding]:
         entry.stiffness.rolling.build(entry.name)
     except RotorError as error:
         expected = f"a bearing that can be built; {error}"
-        yield PlacedFinding(("bearing", index, "stiffness", "rolling"), expected, False, False)
+        yield Finding(("bearing", index, "stiffness", "rolling"), expected, UNSAID)
 
 
-def _of_pairs(parts: Parts) -> Iterator[PlacedFinding]:
+def _of_pairs(parts: Parts) -> Iterator[Finding]:
     """Yield findings of gear pairs, and of their load and speed in operation."""
     from gearwhine.coupling.gears.loaded.gear_pair import operation_findings
 
@@ -295,12 +270,12 @@ def _of_pairs(parts: Parts) -> Iterator[PlacedFinding]:
     for index, (pair, geometry, torque) in enumerate(rows):
         for finding in _built_pair(pair).findings(geometry):
             attribute = finding.attribute if finding.attribute in type(pair).model_fields else ""
-            yield _placed(("gear_pair", index), finding, (attribute,) if attribute else ())
+            yield placed(("gear_pair", index), finding, (attribute,) if attribute else ())
         if any(tables[name].face_width is None for name in (pair.driver, pair.driven)):
             continue
         speed = parts.speeds.get(shaft_of(tables[pair.driver]), 0.0)
         for finding in operation_findings(geometry, torque, speed):
-            yield _placed(("operation",), finding)
+            yield placed(("operation",), finding)
 
 
 def _built_pair(pair: GearPair) -> BuiltPair:
