@@ -325,6 +325,19 @@ def lacking(case: Case, *tables: str, command: str) -> CaseError:
     return CaseError(_lacking(table, command) for table in tables if not getattr(case, table))
 
 
+def housing_table(case: Case, command: str) -> Housing:
+    """Return the table of a case's housing, for a command that needs it.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no housing.
+    """
+    require(case, "housing", command=command)
+    assert case.housing is not None
+    return case.housing
+
+
 def _lacking(table: str, command: str) -> Problem:
     table_name = f"[[{table}]]" if table in _LISTS else f"[{table}]"
     purpose = _PURPOSES.get(table, "its table")

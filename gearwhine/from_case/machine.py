@@ -9,9 +9,11 @@ from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
+from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
+from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
 
 
@@ -27,7 +29,7 @@ def require_machine(case: Case) -> None:
         _ = case.parts.machine
 
 
-def describe_machine(case: Case, housing: HousingComponent | None = None) -> Machine:
+def describe_machine(case: Case, housing: HousingModes | HousingComponent | None = None) -> Machine:
     """Return the machine of a case: its shafts, gears, bearings and gear pairs, in a housing or on rigid seats.
 
     Raises
@@ -100,6 +102,15 @@ def _aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ..
     if pair.misalignment is not None or (pair.driver, pair.driven) not in gaps:
         return pair
     return replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
+
+
+def aligned_by_default(parts: Parts) -> tuple[str, ...]:
+    """Return the labels of the pairs whose misalignment the case leaves out, and no operating point has."""
+    return tuple(
+        pair_label(pair.driver, pair.driven)
+        for pair in parts.gear_pair
+        if pair.misalignment is None and not parts.finds_misalignment(pair)
+    )
 
 
 def misalignments_of_case(

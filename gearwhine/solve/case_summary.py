@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from gearwhine.case import Case, GearPair, Rotor
+from gearwhine.case import Case, GearPair, Housing, Rotor
 from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
@@ -14,7 +14,7 @@ from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
 from gearwhine.from_case.machine import misalignments_of_case
 from gearwhine.from_case.mesh import build_mesh, material_of
-from gearwhine.from_case.mesh_health import MeshPreview, surface_point_warnings
+from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
@@ -119,15 +119,13 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings: list[dict[str, Any]] = []
     if case.housing is not None:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
-            material_of(case, name)
-        mesh, warnings = mesh_health.preview_mesh(case, progress)
-        warnings += _checked_acoustics(case, mesh, case.housing.frequency_limit)
+            material_of(case.material, name)
+        mesh, warnings = mesh_health.preview_mesh(case.housing, case.material, case.input_files, progress)
+        warnings += _checked_acoustics(case, case.housing, mesh)
     rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
     for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
         warnings += geometry_warnings(built, geometry)
     warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
-    if mesh is not None and mesh.mesh is not None:
-        warnings += surface_point_warnings(case, mesh.mesh)
     if machine is not None:
         warnings += operation_warnings(machine)
     warnings += centrifugal_warnings(
@@ -141,8 +139,8 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, machine, warnings)
 
 
-def _checked_acoustics(case: Case, preview: MeshPreview, limit_hz: float | None) -> list[dict[str, Any]]:
-    """Return warnings about the acoustics of a case, whose housing has modes up to a limit [Hz].
+def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:
+    """Return warnings about the acoustics of a case.
 
     Raises
     ------
@@ -153,9 +151,9 @@ def _checked_acoustics(case: Case, preview: MeshPreview, limit_hz: float | None)
         return []
     from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
 
-    mesh = preview.mesh or build_mesh(case, order=1)
-    refuse(case, mesh)
-    return acoustics_warnings(acoustics_of(case), mesh.bounds, limit_hz)
+    mesh = preview.mesh or build_mesh(housing, case.material, case.input_files, order=1)
+    refuse(mesh)
+    return acoustics_warnings(acoustics_of(case), mesh.bounds, housing.frequency_limit)
 
 
 def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:

@@ -1,4 +1,4 @@
-"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face.
+"""Fits of a case's parts: bearings in seats and on shafts, gears on shafts and face to face, sensors on the surface.
 
 Fits are checked where the case gives both sizes. A part that does not fit is no error: the model takes neither diameter
 from the other, so that one of them is a slip of the pen or stands for a sleeve that the case leaves out.
@@ -11,6 +11,7 @@ from gearwhine.case import Bearing, Gear, GearPair, Housing, RollingStiffness, S
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.parts import Parts
+from gearwhine.housing.model_warnings import surface_point_warnings
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.numerics.findings import in_mm
@@ -22,7 +23,7 @@ _TOUCHING_OVERLAP = 1e-6  # overlap of a part and a shaft segment up to which it
 
 
 def fit_warnings(parts: Parts, housing: Housing | None, mesh: Mesh | None = None) -> list[dict[str, Any]]:
-    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates.
+    """Warn of diameters that do not fit, bearings beside seats, gears beside their mates, sensors off the surface.
 
     Parameters
     ----------
@@ -47,7 +48,11 @@ def fit_warnings(parts: Parts, housing: Housing | None, mesh: Mesh | None = None
         if gear.bore and gear.rotor is not None and gear.at is not None:
             on = rotors[gear.rotor]
             warnings += _on_shaft(f'gear "{gear.name}"', gear.bore, on, gear.at, gear.face_width or 0.0)
-    return [*warnings, *_of_faces(parts.gear, parts.gear_pair, starts)]
+    warnings += _of_faces(parts.gear, parts.gear_pair, starts)
+    if mesh is not None and housing is not None:
+        sensors, masses = [sensor.build() for sensor in housing.sensor], [mass.build() for mass in housing.mass]
+        warnings += surface_point_warnings(mesh, sensors, masses)
+    return warnings
 
 
 def _in_seat(bearing: Bearing, z: float, seat: Seat, span: tuple[float, float] | None) -> Iterator[dict[str, Any]]:
