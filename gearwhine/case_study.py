@@ -219,23 +219,23 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine
+        from gearwhine.from_case.machine import describe_machine
 
         with self._lock:
             if self._described is None:
-                self._described = described_machine(self.case, self.housing)
+                self._described = describe_machine(self.case, self.housing)
             return self._described
 
     @property
     def settings(self) -> Settings:
         """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
-        from gearwhine.case.speeds_and_torques import with_sense_of_operation
+        from gearwhine.case.analysis_speeds import with_sense_of
         from gearwhine.solve.acoustics import acoustics_of
         from gearwhine.solve.machine import plan_of, tracking_of
 
         case = self.case
         plan = None if case.transient is None else plan_of(case)
-        speeds = () if case.sweep is None else with_sense_of_operation(case, case.sweep.speeds)
+        speeds = () if case.sweep is None else with_sense_of(case.operation, case.sweep.speeds)
         acoustics, in_run = None, None
         if case.acoustics is not None:
             acoustics, in_run = acoustics_of(case), case.acoustics.in_run
@@ -509,7 +509,7 @@ class CaseStudy(Study):
         if aims_at_sensor(case):
             return self.housing
         if self._kept.solved is None:
-            if case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
+            if case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair):
                 return kept_housing(case, self.folder, self.progress)
             return None
         return self._kept.solved
@@ -546,19 +546,18 @@ class CaseStudy(Study):
         """
         from gearwhine.analyses.machine_results import load_result
         from gearwhine.coupling.load_analysis.solved_load import solve_load
-        from gearwhine.from_case.gear_pairs import aligned_by_default
-        from gearwhine.solve.machine import described_machine
+        from gearwhine.from_case.machine import aligned_by_default, describe_machine
 
         self.require("load")
         ranked = sensitivity or line is not None
         housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
-        machine = described_machine(self.case, None) if rigid_seats else self.machine
+        machine = describe_machine(self.case) if rigid_seats else self.machine
         solved = solve_load(
             machine,
             self.progress,
             over_torque=over_torque,
             over_hunting_period=True,
-            aligned_by_default=aligned_by_default(self.case),
+            aligned_by_default=aligned_by_default(self.case.parts),
         )
         if ranked:
             solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
@@ -790,11 +789,11 @@ class CaseStudy(Study):
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load, or alone."""
-        from gearwhine.from_case.gear_pairs import solve_gears
+        from gearwhine.from_case.machine import solve_gears
         from gearwhine.solve.gear_pairs import analyse_pairs
 
         if machine is None:
-            return analyse_pairs(self.case, solve_gears(self.case, self.progress)) if self.case.gear_pair else ()
+            return analyse_pairs(self.case, solve_gears(self.case.parts, self.progress)) if self.case.gear_pair else ()
         return analyse_pairs(self.case, machine.loaded.pairs, None if machine.load is None else machine.load.point)
 
     def motion(
@@ -819,17 +818,17 @@ class CaseStudy(Study):
     def _assumed_mesh_damping(self) -> tuple[str, ...]:
         from gearwhine.solve.damping import assumed_mesh_damping
 
-        return assumed_mesh_damping(self.case)
+        return assumed_mesh_damping(self.case.gear_pair)
 
     def _diagram_speeds(self) -> tuple[float, ...]:
-        from gearwhine.case.speeds_and_torques import diagram_speeds
+        from gearwhine.case.analysis_speeds import diagram_speeds
 
-        return diagram_speeds(self.case)
+        return diagram_speeds(self.machine.speed, self.case.sweep, self._held_speeds())
 
     def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        from gearwhine.case.speeds_and_torques import branch_speeds
+        from gearwhine.case.analysis_speeds import branch_speeds
 
-        return branch_speeds(self.case, downwards=down)
+        return branch_speeds(self.machine.speed, self.case.sweep, self._held_speeds(), downwards=down)
 
 
 def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from gearwhine.numerics.findings import Finding, Number, refuse
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.studied_machine import StudiedMachine
 
 if TYPE_CHECKING:
@@ -297,9 +298,10 @@ class Study(StudiedMachine):
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
         housing = radiating_housing(self.machine, acoustics)
-        warnings = self.left_out_of_sound(None)
-        machine = None if warnings else self.under_load()
-        return sound_result(housing, acoustics, self.origin, machine, warnings, self.progress)
+        left_out = self.left_out_of_sound(None)
+        unlikely = [warning("acoustics", str(finding)) for finding in acoustics.findings]
+        machine = None if left_out else self.under_load()
+        return sound_result(housing, acoustics, self.origin, machine, [*left_out, *unlikely], self.progress)
 
     def run(self) -> "Result[RunSolution]":
         """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.

@@ -51,7 +51,7 @@ from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, 
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
-from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.damping import damping_document, damping_warnings, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
@@ -97,8 +97,9 @@ class MachineUnderLoad:
     def add_parts_to(self, document: dict[str, Any]) -> None:
         """Add the damping, the bodies of the gears, the operating point and its warnings to a document."""
         if self.origin.case is not None:
-            document["damping"] = damping_document(self.origin.case)
-            add_warnings(document, damping_warnings(self.origin.case))
+            dampings = part_dampings(self.origin.case)
+            document["damping"] = damping_document(dampings)
+            add_warnings(document, damping_warnings(dampings))
         if bodies := gear_body_document(self.loaded.machine):
             document["gear_bodies"] = bodies
         if self.load is not None:

@@ -26,6 +26,7 @@ from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, reduce_motion
 from gearwhine.coupling.sweep.resonances import Resonances
 from gearwhine.failures import explain
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.numerics.result_warnings import ResultWarning
@@ -36,7 +37,7 @@ from gearwhine.results.run import transient_document
 from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing, run_of
+from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing, run_of
 from gearwhine.sweep.points import Point, code_digest
 
 FloatArray = npt.NDArray[np.float64]
@@ -92,7 +93,7 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        described = described_machine(case, housing)
+        described = describe_machine(case, housing)
         load, warnings_of_load = load_of_case(case, described)
         loaded = load_machine(described, None if load is None else load.point, run_of(case))
         frequencies = described.mesh_frequencies
