@@ -629,7 +629,7 @@ class CaseStudy(Study):
         with refused_by_key(chosen):
             return sound_result(RadiatingHousing(origin, field, chosen, housing.up), machine, warnings, self.progress)
 
-    def sweep(
+    def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
         self,
         over: Sequence[str] = (),
         *,
