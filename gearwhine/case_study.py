@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.modal_test import PlannedSurvey
     from gearwhine.meshes import Mesh
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
-    from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -131,7 +131,7 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> "CaseStu
 class _KeptHousing:
     """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
 
-    solved: "SolvedHousing | None" = None
+    solved: "HousingModes | None" = None
     lock: threading.RLock = field(default_factory=threading.RLock)
 
 
@@ -201,14 +201,14 @@ class CaseStudy(Study):
         """
         study = CaseStudy(self._source.changed(_texts(changes)), self.progress, folder=self.folder, fresh=self.fresh)
         if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import housing_key
+            from gearwhine.solve.housing_modes import given_housing, housing_key
 
-            if housing_key(self.case) == housing_key(study.case):
+            if housing_key(given_housing(self.case)) == housing_key(given_housing(study.case)):
                 study._kept = self._kept
         return study
 
     @property
-    def housing(self) -> "SolvedHousing | None":
+    def housing(self) -> "HousingModes | None":
         """The solved housing, which the first call meshes and solves; None in a case without one."""
         return self.solved_housing()
 
@@ -218,16 +218,11 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine, reduce_housing
+        from gearwhine.solve.machine import described_machine
 
         with self._lock:
             if self._described is None:
-                solved = self.housing
-                part = None
-                if solved is not None:
-                    part = reduce_housing(self.case, solved, self.progress)
-                    part = replace(part, displacement_field=solved.displacement_field)
-                self._described = described_machine(self.case, part)
+                self._described = described_machine(self.case, self.housing)
             return self._described
 
     @property
@@ -278,7 +273,7 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(self, *, detail: bool = False) -> "Result[SolvedHousing]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Parameters
@@ -293,9 +288,9 @@ class CaseStudy(Study):
         gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
             Where the modes fail their proofs.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import modes_result
 
-        return housing.modes(self.case, detail=detail, housing=self._required_housing("modes"), progress=self.progress)
+        return modes_result(self._required_housing("modes"), self.origin, detail=detail)
 
     def compare(self) -> "Result[Comparison]":
         """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
@@ -305,13 +300,16 @@ class CaseStudy(Study):
         CaseError, gearwhine.housing.HousingError
             Where the case has nothing measured, or its modes are not known as high as the measured ones.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import compare_result
         from gearwhine.case import require
-        from gearwhine.solve.comparison import require_comparable
+        from gearwhine.solve.comparison import compare_measured, require_comparable
 
         require(self.case, "housing", "measured", command="compare")
+        assert self.case.measured is not None
         require_comparable(self.case)
-        return housing.compare(self.case, housing=self._required_housing("compare"), progress=self.progress)
+        housing = self._required_housing("compare")
+        compared = compare_measured(self.case.measured, housing, self.progress, with_responses=True)
+        return compare_result(housing, compared, self.origin)
 
     def survey(
         self, sensors: Annotated[int, _AtLeastOne], modes: Annotated[int | None, _AtLeastOne] = None
@@ -330,10 +328,18 @@ class CaseStudy(Study):
         CaseError
             Where the sensors cannot separate the modes.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import survey_result
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.housing import HousingError
+        from gearwhine.housing.modal_test import plan_modal_survey
 
-        solved = self._required_housing("survey")
-        return housing.survey(self.case, sensors=sensors, modes=modes, housing=solved, progress=self.progress)
+        housing = self._required_housing("survey")
+        self.progress(f"choosing {sensors} sensors")
+        try:
+            planned = plan_modal_survey(housing, sensors, modes)
+        except HousingError as error:
+            raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+        return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
         """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
@@ -362,7 +368,7 @@ class CaseStudy(Study):
         measured: bool = False,
         view: View = "auto",
         mode_format: Literal["png", "glb", "gif", "mp4"] = "png",
-    ) -> "Result[SolvedHousing]":
+    ) -> "Result[HousingModes]":
         """Draw mode shapes, operating shapes or measured shapes.
 
         Parameters
@@ -400,12 +406,12 @@ class CaseStudy(Study):
             require_comparable(self.case)
         return housing.render(
             self.case,
+            self._required_housing("render"),
             modes,
             view=view,
             mode_format=mode_format,
             lines=line,
             measured=measured,
-            housing=self._required_housing("render"),
             folder=self.folder,
             progress=self.progress,
         )
@@ -491,7 +497,7 @@ class CaseStudy(Study):
         seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
         return gears_result(pairs, self.origin, seats)
 
-    def _housing_of_gears(self) -> "SolvedHousing | None":
+    def _housing_of_gears(self) -> "HousingModes | None":
         """Return the housing where it takes part in the analysis of gear pairs."""
         from gearwhine.solve.gear_pairs import aims_at_sensor
         from gearwhine.solve.housing_modes import kept_housing
@@ -558,16 +564,15 @@ class CaseStudy(Study):
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
 
     def _ranking(
-        self, machine: "Machine", point: "OperatingPoint", housing: "SolvedHousing | None", line: str | None
+        self, machine: "Machine", point: "OperatingPoint", housing: "HousingModes | None", line: str | None
     ) -> "LoadSensitivity":
         """Rank the parts of the machine; a line that there is not is refused by its option."""
         from gearwhine.case import CaseError, Problem
         from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
         from gearwhine.solve.acoustics import acoustics_of, refused_by_key
         from gearwhine.solve.machine import run_of
-        from gearwhine.solve.sensitivity.housing_changes import housing_changes, modelled_housing
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes
 
-        modelled = None if housing is None else modelled_housing(self.case, housing)
         changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
         acoustics = acoustics_of(self.case)
         try:
@@ -575,7 +580,7 @@ class CaseStudy(Study):
                 return solve_load_sensitivity(
                     machine,
                     point,
-                    modelled,
+                    housing,
                     changes,
                     acoustics=None if self.case.acoustics is None else acoustics,
                     run=run_of(self.case),
@@ -745,13 +750,13 @@ class CaseStudy(Study):
 
         return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
 
-    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
         return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
 
     def _required_housing(
         self, command: str, folder: Path | None = None, *, with_sound: bool = False
-    ) -> "SolvedHousing":
+    ) -> "HousingModes":
         """Return the solved housing; a case without one is refused in the name of a command."""
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
@@ -764,14 +769,15 @@ class CaseStudy(Study):
                     self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
                 )
             elif refuse is not None:
-                refuse(self.case, self._kept.solved.mesh)
+                refuse(self._kept.solved.mesh)
             return self._kept.solved
 
-    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with those of `[measured]`; None without."""
-        from gearwhine.solve.comparison import compare_housing
+        from gearwhine.solve.comparison import compare_measured
 
-        return None if self.case.measured is None else compare_housing(self.case, housing, self.progress)
+        measured = self.case.measured
+        return None if measured is None else compare_measured(measured, housing, self.progress).comparison
 
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
         from gearwhine.analyses.machine_results import MachineUnderLoad

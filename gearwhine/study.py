@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.solve.housing_modes import SolvedHousing
     from gearwhine.sweep.machine_sweep import SweptSpeed
 
 
@@ -500,14 +500,14 @@ class Study:
 
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
-    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "SolvedHousing | None":
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
         """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
 
         Modes that a ``folder`` keeps are read in place of solving.
         """
         return None
 
-    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with measured ones; None without such."""
         return None
 

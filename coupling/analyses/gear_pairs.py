@@ -57,9 +57,10 @@ class TakenMisalignment:
     Attributes
     ----------
     taken : float or None
-        Misalignment that is taken [rad]; None where the operating point gives it and is not solved.
+        Misalignment that mesh stiffness and motion take [rad]; None where the operating point gives it and is not
+        solved.
     origin : str
-        ``operating point``; ``case``, where the case gives it; or ``default``, which is 0.
+        Origin of that misalignment: ``operating point``, ``case`` where the case gives it, or ``default``, which is 0.
     found : float or None
         Misalignment at the operating point [rad]; None where that is not solved.
     """
@@ -101,13 +102,13 @@ class MeshPeriodCurves:
     stiffness : ndarray, shape (n,)
         Mesh stiffness of all pairs on the path of contact [N/m].
     unloaded : ndarray, shape (n,)
-        Transmission error without load [m].
+        Transmission error without load, along the line of action [m].
     position : ndarray, shape (n, m)
-        Place on the path of contact [base pitches].
+        Place on the path of contact in base pitches [1].
     share : ndarray, shape (n, m)
         Part of the load on each tooth pair.
     pressure : ndarray, shape (n, m)
-        Hertzian pressure, the largest over the face [Pa]; NaN where it is not known.
+        Largest Hertzian pressure over the face [Pa]; NaN where it is not known.
     face_place : ndarray, shape (s,), or None
         Distance of each slice from the middle of the face [m]; None where loads are even along it.
     """
@@ -239,7 +240,7 @@ class PairAnalysis:
 
     @property
     def harmonics(self) -> FloatArray:
-        """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
+        """Peak amplitudes of the transmission error at the mesh frequency and its multiples [m], shape (8,).
 
         They are of the whole hunting period where mesh periods differ: other frequencies average out.
         """

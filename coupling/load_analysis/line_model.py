@@ -20,10 +20,11 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
-from gearwhine.coupling.load_analysis.modelled_housing import ModelledHousing
+from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
+from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.housing import ModeSet
+from gearwhine.housing import HousingModes, ModeSet, modal_damping
 from gearwhine.housing.housing import RESPONSE_ORDERS
 from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.modes.natural_modes import ModeSetExtension
@@ -57,14 +58,14 @@ class SolvedLines:
         Lines of the sensors, the highest first.
     sound : tuple of HarmonicSound
         Lines of the sound, the loudest by their A-weighted power first.
-    housing : ModelledHousing
+    housing : HousingModes
         Housing with residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
     of_sensors: tuple[Line, ...]
     sound: "tuple[HarmonicSound, ...]"
-    housing: ModelledHousing
+    housing: HousingModes
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -147,7 +148,7 @@ class SolvedLines:
 def solve_lines(
     machine: Machine,
     point: OperatingPoint,
-    housing: ModelledHousing | None,
+    housing: HousingModes | None,
     acoustics: "Acoustics | None" = None,
     run: Run | None = None,
     progress: Progress = silent,
@@ -161,7 +162,7 @@ def solve_lines(
     machine : Machine
     point : OperatingPoint
         Operating point of the machine.
-    housing : ModelledHousing or None
+    housing : HousingModes or None
         Housing that the machine stands in.
     acoustics : Acoustics, optional
         Method and medium of the sound, whose lines are sought where it is given.
@@ -180,11 +181,12 @@ def solve_lines(
     """
     if housing is None or not machine.gear_pairs or machine.speed == 0.0:
         return None
-    loaded = housing.bearing_ports(machine)
+    loaded = bearing_ports(housing, machine)
     if not loaded or not (housing.sensors or acoustics):
         return None
     progress("residual modes of the sensors")
-    extension = ModeSetExtension(housing.matrices, housing.modes)
+    matrices = housing.housing.matrices()
+    extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
         ports = [sensor.matrix for sensor in housing.sensors.values()]
@@ -201,16 +203,17 @@ def solve_lines(
     pairs = replace(about, gear_pairs=flanks).loaded_pairs(progress)
     components = about.rotor_components(progress=progress)
     misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
-    limit = _TWO_PI * housing.field.complete_below_hz
-    radiation = _radiation(acoustics, replace(housing, modes=modes).field, progress)
-    weighs = machine.base is not None or machine.gravity is not None
+    limit = _TWO_PI * housing.trusted_limit_hz
+    radiation = _radiation(acoustics, housing.with_modes(modes, None).displacement_field, progress)
 
     def solved(modes: ModeSet, heard: Sequence[float] | None = None) -> SolvedLines:
-        extended = replace(housing, modes=modes)
-        stands = replace(about, housing=housing.component(modes, weighs=weighs))
+        extended = housing.with_modes(modes, modal_damping(modes, matrices) if matrices.damping.nnz else None)
+        part = component_of_housing(extended, participates=about.moves_housing_as_a_body, with_coarser=False)
+        stands = replace(about, housing=part)
         model = LineModel(stands.assemble(pairs, components, run), point, pairs, misalignment_is_found)
         lines = model.lines(limit, count)
-        return SolvedLines(model, lines, _sound(acoustics, extended.field, model, radiation, heard, progress), extended)
+        field = extended.displacement_field
+        return SolvedLines(model, lines, _sound(acoustics, field, model, radiation, heard, progress), extended)
 
     progress("lines of the sensors")
     first = solved(modes)

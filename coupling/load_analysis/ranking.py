@@ -17,9 +17,9 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity, sound_weights
 from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
-from gearwhine.coupling.load_analysis.modelled_housing import ModelledHousing
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
@@ -264,7 +264,7 @@ class Ranking:
 def solve_load_sensitivity(
     machine: Machine,
     point: OperatingPoint,
-    housing: ModelledHousing | None = None,
+    housing: HousingModes | None = None,
     changes: Sequence[HousingChange] = (),
     *,
     acoustics: "Acoustics | None" = None,
@@ -280,7 +280,7 @@ def solve_load_sensitivity(
     machine : Machine
     point : OperatingPoint
         Operating point of the machine.
-    housing : ModelledHousing, optional
+    housing : HousingModes, optional
         Housing that the machine stands in; without one bearings alone are ranked, by what they change in gear pairs.
     changes : sequence of HousingChange
         Parameters of the housing that are ranked.
@@ -314,7 +314,7 @@ def solve_load_sensitivity(
     density, line_density, sound_density = None, None, None
     if ranking.adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
-        fields = housing.fields(point, ranking.adjoints)
+        fields = housing_fields(housing, point, ranking.adjoints)
         density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
@@ -339,7 +339,7 @@ def rank_parts(
     """
     housing, changes, note = None, tuple[HousingChange, ...](), None
     if isinstance(machine.housing, HousingModes):
-        housing = ModelledHousing.of(machine.housing)
+        housing = machine.housing
         changes = face_changes(housing.mesh, [seat.name for seat in housing.housing.seats])
     elif machine.housing is not None:
         note = (

@@ -72,7 +72,7 @@ class LoadedBearing:
 
     @property
     def element_loads(self) -> FloatArray | None:
-        """Loads of all elements on the outer ring, row after row [N]; None for bearings that are no rolling ones."""
+        """Load of each rolling element on the outer ring, row after row [N]; None for other bearings."""
         state = self.load.rolling
         return None if state is None else np.concatenate([row.outer_load for row in state.rows])
 
@@ -145,7 +145,7 @@ class DeflectedShaft:
     at : ndarray, shape (n,)
         Places from the left end [m].
     z : ndarray, shape (n,)
-        The same places along z of the machine [m].
+        Places along z of the machine [m].
     motion : ndarray, shape (6, n)
         Displacements along x, y, z [m] and rotations about them [rad].
     """

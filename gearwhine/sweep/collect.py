@@ -356,10 +356,8 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
 
     along, size = ("sound_line",), (count,)
     for quantity in SWEPT_LINE:
-        if quantity.unit:
-            variables[quantity.name] = grid.rows(
-                along, size, numbers(quantity.key), _unit(quantity.unit, quantity.long_name)
-            )
+        if unit := quantity.file_unit:
+            variables[quantity.name] = grid.rows(along, size, numbers(quantity.key), _unit(unit, quantity.long_name))
         else:
             variables[quantity.name] = grid.words(along, size, words(quantity.key), {"long_name": quantity.long_name})
     harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
@@ -385,9 +383,9 @@ def _add_missed_peaks(peaks: Sequence[MissedPeak], variables: dict[str, Any]) ->
     along = "missed_peak"
     for quantity in PEAK:
         if quantity.name:
-            values = [quantity.of(peak) for peak in peaks]
-            attributes = {"units": quantity.unit} if quantity.unit else {}
-            variables[quantity.name] = (along, values, attributes | {"long_name": quantity.long_name})
+            values = [quantity.value_of(peak) for peak in peaks]
+            attributes = {"units": quantity.file_unit} if quantity.file_unit else {}
+            variables[quantity.name] = (along, values, attributes | {"long_name": quantity.meaning_in(peaks[0])})
 
 
 def _pair_name(pair: Mapping[str, Any]) -> str:

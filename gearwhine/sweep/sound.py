@@ -31,7 +31,7 @@ from gearwhine.sweep.solution import PointResult
 
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
     from gearwhine.sweep.points import Point
     from gearwhine.sweep.run import SweptPoint
 
@@ -46,9 +46,9 @@ def add_sound(
     case: Case,
     keys: Sequence[SweptKey],
     swept: Sequence[SweptPoint],
-    housing: SolvedHousing,
+    housing: HousingModes,
     progress: Progress = silent,
-) -> tuple[list[dict[str, Any]], SolvedHousing, RadiatedLevel | None]:
+) -> tuple[list[dict[str, Any]], HousingModes, RadiatedLevel | None]:
     """Add the sound to the documents of a sweep's points.
 
     Parameters
@@ -58,7 +58,7 @@ def add_sound(
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
         Points, at least one.
-    housing : SolvedHousing
+    housing : HousingModes
         Housing of that case.
     progress : callable
 
@@ -66,7 +66,7 @@ def add_sound(
     -------
     list of dict
         Warnings.
-    SolvedHousing
+    HousingModes
         The housing, whose record holds the radiation over frequency where it is solved.
     callable or None
         Sound power level of other rates of the housing's coordinates, without a solution: interpolated where the

@@ -14,7 +14,7 @@ from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.housing import HousingModes
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
@@ -39,7 +39,7 @@ def small_gearbox() -> gw.CaseStudy:
     return gw.load("small-gearbox")
 
 
-def sounding_housing() -> SolvedHousing:
+def sounding_housing() -> HousingModes:
     """Its solved housing."""
     housing = small_gearbox().housing
     assert housing is not None

@@ -11,18 +11,19 @@ from scipy import sparse
 
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
+from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
-from gearwhine.coupling.load_analysis.modelled_housing import ModelledHousing
+from gearwhine.from_case.housing import bearing_places, build_seats
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
-from gearwhine.housing.housing import bearing_port
-from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.model.seats import bearing_port, seat_matrix, sensor_port
 from gearwhine.housing.updating import ModelSensitivity
 from gearwhine.housing.updating.housing_change import HousingChange, face_changes
 from gearwhine.housing.updating.static_sensitivity import PortRates
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.box.morph import MorphError
-from gearwhine.solve.housing_modes import SolvedHousing, bearing_places, describe_housing
+
+_COMMAND = "load --sensitivity"
 
 
 def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
@@ -42,11 +43,6 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     return tuple(parameters)
 
 
-def modelled_housing(case: Case, solved: SolvedHousing) -> ModelledHousing:
-    """Return a solved housing of a case with the model that it is solved of."""
-    return ModelledHousing(describe_housing(case, solved.mesh), solved.modes, solved.damping_ratios)
-
-
 def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], str | None]:
     """Differentiate the model of a case's housing by the parameters that are ranked.
 
@@ -56,8 +52,7 @@ def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], 
     str or None
         Why flat faces stand in place of walls, where they do.
     """
-    assert case.housing is not None
-    parameters, seats = housing_parameters(case), [seat.name for seat in case.housing.seat]
+    parameters, seats = housing_parameters(case), [seat.name for seat in housing_table(case, _COMMAND).seat]
     if not parameters:
         return face_changes(mesh, seats), None
     try:
@@ -114,10 +109,9 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     facets of its surface and by the nearest point of the surface to a sensor, and so has no formula of its own.
     """
     above, below = meshed.beside(number)
-    assert above.housing is not None
-    assert below.housing is not None
     is_rigid = rate.velocity is None
-    if is_rigid and above.housing.seat == below.housing.seat and above.housing.sensor == below.housing.sensor:
+    tables = [housing_table(case, _COMMAND) for case in (above, below)]
+    if is_rigid and tables[0].seat == tables[1].seat and tables[0].sensor == tables[1].sensor:
         return {}, {}
     meshes = [meshed.mesh] * 2
     if rate.velocity is not None:
@@ -132,10 +126,10 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
 
 def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[str, sparse.csr_array]]:
     """Assemble the ports of a case's bearings and of its sensors on a mesh."""
-    assert case.housing is not None
-    seats = {seat.name: seat.build() for seat in case.housing.seat}
-    places = bearing_places(case)
+    table = housing_table(case, _COMMAND)
+    seats = {seat.name: seat for seat in build_seats(table)}
+    places = bearing_places(table.seat, case.bearing, case.rotor)
     return (
         {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in case.housing.sensor},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in table.sensor},
     )

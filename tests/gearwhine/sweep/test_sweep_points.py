@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from case_housings import mesh_of
 from coupled_cases import coupled
 from matplotlib.figure import Figure
 
@@ -18,7 +19,6 @@ from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
@@ -56,7 +56,7 @@ def test_a_point_is_another_one_where_a_file_read_with_its_mesh_has_changed(tmp_
     begin, end = source.index("[housing.box]"), source.index("[[housing.seat]]")
     case_file = tmp_path / "meshed.toml"
     case_file.write_text(f'{source[:begin]}[housing.mesh]\nfile = "deck.inp"\n\n{source[end:]}')
-    write_mesh(build_mesh(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
+    write_mesh(mesh_of(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
     (tmp_path / "deck.inp").write_text("*INCLUDE, INPUT=box.inp\n")
     loaded = load_case(str(case_file))
     keys = swept_keys(loaded.case, ["operation.torque=50 N*m,60 N*m"])

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from case_housings import materials_on, mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
@@ -21,15 +22,17 @@ from gearwhine.coupling.linear import line_sensitivity
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
 from gearwhine.coupling.load_analysis import ranking
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
+from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
-from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing import HousingModes
 from gearwhine.housing.material import element_constants
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
@@ -37,9 +40,9 @@ from gearwhine.meshes import Mesh
 from gearwhine.numerics.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
-from gearwhine.solve.sensitivity.housing_changes import case_changes, housing_changes, modelled_housing
+from gearwhine.solve.sensitivity.housing_changes import case_changes, housing_changes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -79,7 +82,7 @@ def case() -> Case:
     return parse_case(document)
 
 
-Solved = tuple[SolvedHousing, OperatingPoint, SolvedLines]
+Solved = tuple[HousingModes, OperatingPoint, SolvedLines]
 
 
 def solve(case: Case, mesh: Mesh) -> Solved:
@@ -88,14 +91,14 @@ def solve(case: Case, mesh: Mesh) -> Solved:
         housing = solve_housing(case)
     machine = describe_machine(case, reduce_housing(case, housing))
     point = machine.operating_point()
-    lines = solve_lines(machine, point, modelled_housing(case, housing), count=9)
+    lines = solve_lines(machine, point, housing, count=9)
     assert lines is not None
     return housing, point, lines
 
 
 @pytest.fixture(scope="module")
 def solved(case: Case) -> Solved:
-    return solve(case, build_mesh(case))
+    return solve(case, mesh_of(case))
 
 
 def chosen(lines: Sequence[Line]) -> list[Line]:
@@ -120,7 +123,7 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     lines = chosen(found.lines)
     assert len(lines) == 4
     adjoints = [adjoint(point, found.model.by_static(one)) for one in lines]
-    fields = modelled_housing(case, housing).fields(point, adjoints)
+    fields = housing_fields(housing, point, adjoints)
     changes = case_changes(case, housing.mesh, PARAMETERS)
     rates, slopes = found.rates(fields, changes), slopes_of(changes)
     own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
@@ -160,9 +163,8 @@ class Scaled(RollingElementLaw):
 def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     """Amplitudes of the machine about another equilibrium, on the same modes."""
     _, _, found = solved
-    machine = describe_machine(case, found.housing.component(found.housing.modes, weighs=False)).at_operating_point(
-        point
-    )
+    part = component_of_housing(found.housing, participates=False, with_coarser=False)
+    machine = describe_machine(case, part).at_operating_point(point)
     pairs = solve_gears(case, silent, {one.names: one.station_gap for one in point.pairs})
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
@@ -187,7 +189,7 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved,
         machine = describe_machine(case, reduce_housing(case, housing))
         point = machine.operating_point()
         assert all(load.mounted.damping_time > 0.0 for load in point.bearings)
-        lines = solve_lines(machine, point, modelled_housing(case, housing), count=9)
+        lines = solve_lines(machine, point, housing, count=9)
         assert lines is not None
         solved = housing, point, found = housing, point, lines
     machine = describe_machine(case, reduce_housing(case, housing))
@@ -365,7 +367,7 @@ def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, mon
     housing, point, _ = solved
     machine = describe_machine(case, reduce_housing(case, housing))
     changes, _ = housing_changes(case, housing.mesh)
-    found = ranking.solve_load_sensitivity(machine, point, modelled_housing(case, housing), changes)
+    found = ranking.solve_load_sensitivity(machine, point, housing, changes)
     kinds = {one.kind for one in found.influences}
     assert kinds == {"housing", "bearing stiffness", "bearing position"}
     for kind in kinds:
@@ -405,7 +407,7 @@ def test_the_damping_follows_the_modes() -> None:
 def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
     """Linear fields u = A x and (1 + 2i) B x have Re G = ω² ρ u · λ - σ(A) : ε(B); in the imaginary u it turns over."""
     mesh = solved[0].mesh
-    parted, material, materials = materials_of(case, mesh)
+    parted, material, materials = materials_on(case, mesh)
     constants = element_constants(parted, material, materials)
     gradient, other = np.random.default_rng(2).normal(size=(2, 3, 3))
     motion, against = mesh.points @ gradient.T, mesh.points @ other.T

@@ -6,25 +6,26 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from case_housings import mesh_of
 
 import gearwhine as gw
 from gearwhine.case import Case, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.case.box import FACES
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing import HousingModes
 from gearwhine.housing.updating.housing_change import by_changes, face_changes
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import (
     case_changes,
     housing_parameters,
-    modelled_housing,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -60,12 +61,12 @@ def fitted(case: Case) -> FittedCase:
     return fitted_case(case, parameters=PARAMETERS)
 
 
-Solve = Callable[[Case, Mesh], tuple[SolvedHousing, OperatingPoint]]
+Solve = Callable[[Case, Mesh], tuple[HousingModes, OperatingPoint]]
 
 
 @pytest.fixture(scope="module")
 def solve() -> Solve:
-    def solved(case: Case, mesh: Mesh) -> tuple[SolvedHousing, OperatingPoint]:
+    def solved(case: Case, mesh: Mesh) -> tuple[HousingModes, OperatingPoint]:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
             housing = solve_housing(case)
@@ -76,9 +77,9 @@ def solve() -> Solve:
 
 @pytest.fixture(scope="module")
 def fields(case: Case, solve: Solve) -> StaticSensitivity:
-    housing, point = solve(case, build_mesh(case))
+    housing, point = solve(case, mesh_of(case))
     (pair,) = pair_adjoints(point)
-    return modelled_housing(case, housing).fields(point, list(pair.values()))
+    return housing_fields(housing, point, list(pair.values()))
 
 
 @pytest.mark.slow
@@ -110,11 +111,11 @@ def test_the_weight_of_the_housing(case: Case, solve: Solve) -> None:
     document["operation"]["gravity"] = [3.0, -9.81, 0.0]
     density = [UpdateParameter(name="density", keys=("material.iron.density",), range=("6000 kg/m^3", "8000 kg/m^3"))]
     fitted = fitted_case(parse_case(document), parameters=density)
-    mesh = build_mesh(case)
+    mesh = mesh_of(case)
     lighter, heavy, heavier = (solve(fitted.at([value]), mesh) for value in (7100.0, 7200.0, 7300.0))
     (pair,) = pair_adjoints(heavy[1])
     weighed = parse_case(document)
-    fields = modelled_housing(weighed, heavy[0]).fields(heavy[1], [pair["misalignment"]])
+    fields = housing_fields(heavy[0], heavy[1], [pair["misalignment"]])
     own = by_changes(fields, case_changes(weighed, mesh, density))[0, 0]
     either = [point.pairs[0].misalignment for _, point in (heavier, lighter)]
     assert own == pytest.approx((either[0] - either[1]) / 200.0, rel=1e-6)
