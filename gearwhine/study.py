@@ -219,9 +219,9 @@ class Study:
         over_torque : bool
             Also solve from 10 to 150 % of the torque.
         sensitivity : bool
-            Also rank bearings, and the flat faces of a housing of :meth:`gearwhine.Housing.modes`, by what they change
-            in gear pairs, in the lines of sensors and, with acoustics in the settings, in the sound power of the
-            loudest lines.
+            Also rank bearings, and the walls of a housing of :meth:`gearwhine.Housing.modes` (those of its box, else
+            its flat faces), by what they change in gear pairs, in the lines of sensors and, with acoustics in the
+            settings, in the sound power of the loudest lines.
         line : str, optional
             Line that is ranked: a sensor, or with its frequency in Hz, 'roof@1377'; or of the sound, 'sound@1377'. By
             default the highest, and the A-weighted sum of the loudest. It implies ``sensitivity``.
