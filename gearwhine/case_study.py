@@ -633,7 +633,7 @@ class CaseStudy(Study):
         with refused_by_key(chosen):
             return sound_result(housing, chosen, self.origin, machine, warnings, self.progress)
 
-    def sweep(
+    def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
         self,
         over: Sequence[str] = (),
         *,

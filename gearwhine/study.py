@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.sweep.machine_sweep import SweptSpeed
 
 
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
@@ -123,9 +124,9 @@ class Study(StudiedMachine):
         over_torque : bool
             Also solve from 10 to 150 % of the torque.
         sensitivity : bool
-            Also rank bearings, and the flat faces of a housing of :meth:`gearwhine.Housing.modes`, by what they change
-            in gear pairs, in the lines of sensors and, with acoustics in the settings, in the sound power of the
-            loudest lines.
+            Also rank bearings, and the walls of a housing of :meth:`gearwhine.Housing.modes` (those of its box, else
+            its flat faces), by what they change in gear pairs, in the lines of sensors and, with acoustics in the
+            settings, in the sound power of the loudest lines.
         line : str, optional
             Line that is ranked: a sensor, or with its frequency in Hz, 'roof@1377'; or of the sound, 'sound@1377'. By
             default the highest, and the A-weighted sum of the loudest. It implies ``sensitivity``.
@@ -270,6 +271,39 @@ class Study(StudiedMachine):
         machine = self.under_load(plan)
         modes = coupled_modes(machine.coupled.system, mean_contact(machine.coupled.system))
         return motion_result(machine, self.motion(machine, plan, modes), modes)
+
+    def sweep(
+        self, speeds: Sequence[float] = (), plan: "TransientPlan | None" = None
+    ) -> "Result[Sequence[SweptSpeed]]":
+        """Integrate the motion over time at each of several speeds, one after the other.
+
+        The sound of the motions is no part of it; :meth:`sound` finds that at one speed.
+
+        Parameters
+        ----------
+        speeds : sequence of float
+            Signed speeds of the first driver's shaft [rad/s]; by default those of the settings.
+        plan : TransientPlan, optional
+            Stretch of the motion, by default that of the settings.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where there is no plan or no speed, or a speed is 0. A speed at which no motion is found has its failure in
+            the result.
+        """
+        from gearwhine.analyses.sweep_result import solve_speed_sweep
+        from gearwhine.numerics.result_warnings import warning
+
+        if plan is None:
+            self.require("simulate")
+            plan = self.settings.transient
+        assert plan is not None
+        message = "the sound is left out of a sweep of a machine of Python; study.sound() finds it at one speed"
+        warnings = [] if self.settings.acoustics is None else [warning("sound_of_sweep", message)]
+        return solve_speed_sweep(
+            self.machine, tuple(speeds) or self.settings.speeds, plan, self.origin, warnings, self.progress
+        )
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.

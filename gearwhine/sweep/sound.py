@@ -125,8 +125,7 @@ def add_sound(
     for (number, place, *_), line in zip(jobs, in_order(solve, jobs, "sound of the sweep", progress), strict=True):
         point, outcome = swept[number].point, swept[number].outcome
         assert isinstance(outcome, PointResult)
-        assert point.case.operation is not None
-        entry, order = _entry(line, natural), line.frequency_hz * _TWO_PI / abs(point.case.operation.speed)
+        entry, order = _entry(line, natural), line.frequency_hz * _TWO_PI / abs(point.speed)
         entry.update(order=order, name=outcome.motion.line_names[place], kind=outcome.motion.line_kinds[place])
         lines.setdefault(number, []).append((line, entry))
     failures: list[HousingError] = []
