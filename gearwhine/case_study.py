@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
-    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 _NEEDS = {
     "rotors": ("rotor",),
     "gears": ("gear_pair",),
+    "load": ("rotor", "bearing", "operation"),
     "system": ("rotor", "operation"),
     "system --mesh-phase": ("rotor", "operation", "gear_pair"),
     "steady": ("rotor", "operation"),
@@ -543,14 +544,21 @@ class CaseStudy(Study):
             Where no equilibrium is found.
         """
         from gearwhine.analyses.machine_results import load_result
+        from gearwhine.coupling.load_analysis.solved_load import solve_load
+        from gearwhine.from_case.gear_pairs import aligned_by_default
         from gearwhine.solve.machine import described_machine
-        from gearwhine.solve.operating_point import load_of_case, require_load
 
-        require_load(self.case)
+        self.require("load")
         ranked = sensitivity or line is not None
         housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
         machine = described_machine(self.case, None) if rigid_seats else self.machine
-        solved = load_of_case(self.case, machine, self.progress, over_torque=over_torque, over_hunting_period=True)
+        solved = solve_load(
+            machine,
+            self.progress,
+            over_torque=over_torque,
+            over_hunting_period=True,
+            aligned_by_default=aligned_by_default(self.case),
+        )
         if ranked:
             solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
@@ -728,6 +736,9 @@ class CaseStudy(Study):
             if self.case.transient is not None:
                 require(self.case, "rotor", "operation", command="run")
             require_comparable(self.case)
+        if command == "load" and not self.case.is_loaded:
+            expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
+            raise CaseError([Problem("operation.torque", 0.0, expected)])
         if command == "steady" and operation is not None and operation.speed == 0.0:
             raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
         if command not in ("rotors", "gears"):
@@ -771,9 +782,9 @@ class CaseStudy(Study):
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
         from gearwhine.analyses.machine_results import MachineUnderLoad
         from gearwhine.coupling.analyses.loaded_machine import load_machine
-        from gearwhine.solve.operating_point import find_load
+        from gearwhine.solve.machine import load_of_case
 
-        load, warnings = find_load(self.case, self.machine, self.progress)
+        load, warnings = load_of_case(self.case, self.machine, self.progress)
         loaded = load_machine(self.machine, None if load is None else load.point, run, self.progress)
         return MachineUnderLoad(replace(self.origin, housing=self.housing), loaded, load, warnings)
 

@@ -20,11 +20,11 @@ from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]

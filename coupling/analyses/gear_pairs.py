@@ -4,7 +4,7 @@ Analyses over a range of torques give Harris maps and the optimal tip relief, wh
 harmonics, or the level at a sensor.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -57,9 +57,10 @@ class TakenMisalignment:
     Attributes
     ----------
     taken : float or None
-        Misalignment that is taken [rad]; None where the operating point gives it and is not solved.
+        Misalignment that mesh stiffness and motion take [rad]; None where the operating point gives it and is not
+        solved.
     origin : str
-        ``operating point``; ``case``, where the case gives it; or ``default``, which is 0.
+        Origin of that misalignment: ``operating point``, ``case`` where the case gives it, or ``default``, which is 0.
     found : float or None
         Misalignment at the operating point [rad]; None where that is not solved.
     """
@@ -69,14 +70,19 @@ class TakenMisalignment:
     found: float | None
 
 
-def taken_misalignments(machine: Machine, point: OperatingPoint | None) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of a machine, beside that of its operating point where it is solved."""
+def taken_misalignments(
+    machine: Machine, point: OperatingPoint | None, aligned_by_default: Collection[str] = ()
+) -> tuple[TakenMisalignment, ...]:
+    """Misalignment of every gear pair of a machine, beside that of its operating point where it is solved.
+
+    ``aligned_by_default`` are the labels of pairs that are aligned because nothing is said of their misalignment.
+    """
     misalignments = []
     for number, pair in enumerate(machine.gear_pairs):
         found = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if pair.misalignment is not None:
+        if pair.misalignment is not None and pair.label not in aligned_by_default:
             misalignments.append(TakenMisalignment(pair.misalignment, "case", found))
-        elif found is not None:
+        elif pair.misalignment is None and found is not None:
             misalignments.append(TakenMisalignment(found, "operating point", found))
         else:
             misalignments.append(TakenMisalignment(0.0, "default", found))
@@ -96,13 +102,13 @@ class MeshPeriodCurves:
     stiffness : ndarray, shape (n,)
         Mesh stiffness of all pairs on the path of contact [N/m].
     unloaded : ndarray, shape (n,)
-        Transmission error without load [m].
+        Transmission error without load, along the line of action [m].
     position : ndarray, shape (n, m)
-        Place on the path of contact [base pitches].
+        Place on the path of contact in base pitches [1].
     share : ndarray, shape (n, m)
         Part of the load on each tooth pair.
     pressure : ndarray, shape (n, m)
-        Hertzian pressure, the largest over the face [Pa]; NaN where it is not known.
+        Largest Hertzian pressure over the face [Pa]; NaN where it is not known.
     face_place : ndarray, shape (s,), or None
         Distance of each slice from the middle of the face [m]; None where loads are even along it.
     """
@@ -234,7 +240,7 @@ class PairAnalysis:
 
     @property
     def harmonics(self) -> FloatArray:
-        """Amplitudes of the transmission error at the mesh frequency and its multiples [m], (8,).
+        """Peak amplitudes of the transmission error at the mesh frequency and its multiples [m], shape (8,).
 
         They are of the whole hunting period where mesh periods differ: other frequencies average out.
         """

@@ -96,14 +96,21 @@ class LineTable:
     Attributes
     ----------
     ranks : ndarray, shape (k,)
-    modes, bearings : list of str
-        Modes in the order of their numbers, the local compliance last.
+        Rank of the line, highest first.
+    modes : list of str
+        Housing modes in the order of their numbers, the local compliance last.
+    bearings : list of str
+        Bearings that forces come through.
     frequency : ndarray, shape (s, k)
-        Frequencies [Hz].
+        Frequency of the sensor's line [Hz].
     names : ndarray of str, shape (s, k)
+        What the line is.
     value : ndarray, shape (s, k, 2)
+        Complex amplitude of the sensor's line.
     by_mode : ndarray, shape (s, k, m, 2)
+        Part of a housing mode in the line: the parts add up to it.
     by_bearing : ndarray, shape (s, k, b, 2)
+        Part of a bearing's force in the line.
     """
 
     ranks: npt.NDArray[np.int64]

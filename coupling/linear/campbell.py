@@ -180,7 +180,7 @@ class SystemCrossing:
     Attributes
     ----------
     speed : float
-        Speed of the leading rotor [rad/s], signed as in the diagram.
+        Speed of the leading rotor, the first driver's, at the crossing [rad/s], signed as in the diagram.
     line : ExcitationLine
     eigenvalue : complex
         Eigenvalue λ [1/s] with Im λ = order |Ω|.
@@ -201,7 +201,7 @@ class SystemCrossing:
 
     @property
     def damping_ratio(self) -> float:
-        """-Re λ / |λ|."""
+        """Damping ratio at the crossing, -Re λ / |λ|."""
         return float(-self.eigenvalue.real / abs(self.eigenvalue))
 
 
@@ -212,7 +212,7 @@ class SystemCampbell:
     Attributes
     ----------
     speeds : ndarray, shape (s,)
-        Speed of the leading rotor [rad/s].
+        Speed of the leading rotor, the first driver's [rad/s].
     eigenvalues : ndarray of complex, shape (s, b)
         λ [1/s].
     kinds, where : ndarray of str, shape (s, b)

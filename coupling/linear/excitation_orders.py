@@ -22,7 +22,8 @@ class ExcitationLine:
     Attributes
     ----------
     name : str
-        Name such as ``2× input``, ``3× pinion -> wheel`` or ``1× pinion -> wheel + 1× input`` for a sideband.
+        Name of the order, such as ``2× input``, ``3× pinion -> wheel``, or ``1× pinion -> wheel + 1× input`` for a
+        sideband.
     kind : str
         ``shaft``, ``mesh``, ``sideband``, ``bearing`` or ``load``.
     order : float

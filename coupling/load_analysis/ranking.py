@@ -24,7 +24,7 @@ from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
 from gearwhine.housing import HousingModes
-from gearwhine.housing.updating.housing_change import HousingChange, by_changes, slopes_of
+from gearwhine.housing.updating.housing_change import HousingChange, by_changes, face_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 from gearwhine.numerics.progress import Progress, silent
 
@@ -321,6 +321,33 @@ def solve_load_sensitivity(
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
+    )
+
+
+def rank_parts(
+    machine: Machine,
+    point: OperatingPoint,
+    *,
+    acoustics: "Acoustics | None" = None,
+    run: Run | None = None,
+    line: str | None = None,
+    progress: Progress = silent,
+) -> LoadSensitivity:
+    """Rank the bearings of a machine, and the flat faces of its housing where that has a finite-element model.
+
+    The parameters, and what is raised, are those of :func:`solve_load_sensitivity`.
+    """
+    housing, changes, note = None, tuple[HousingChange, ...](), None
+    if isinstance(machine.housing, HousingModes):
+        housing = machine.housing
+        changes = face_changes(housing.mesh, [seat.name for seat in housing.housing.seats])
+    elif machine.housing is not None:
+        note = (
+            "walls are not ranked, nor are lines of sensors and sound looked at: the machine has a reduced housing, "
+            "without the finite-element model that gearwhine.Housing.modes() keeps"
+        )
+    return solve_load_sensitivity(
+        machine, point, housing, changes, acoustics=acoustics, run=run, line=line, note=note, progress=progress
     )
 
 

@@ -79,7 +79,7 @@ class BearingLoad:
     seat_motion : ndarray, shape (5,)
         Motion of the seat or pedestal [m, rad]; zero on rigid ground.
     stiffness : ndarray, shape (5, 5)
-        Tangent stiffness: N/m among x, y, z; N/rad and N m/m between these and rotations; N m/rad among rotations.
+        Tangent stiffness over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad.
     rolling : RollingState or None
         Loads, angles and pressures of the elements of a rolling bearing.
     """
@@ -144,8 +144,8 @@ class PairLoad:
     approach : ndarray, shape (m,)
         Mean approach of the flanks over the components of the pair's contact [m, rad].
     misalignment : float
-        Angle between the flanks in the plane of action, open towards +z [rad]: minus the slope of the approach's best
-        straight line over the face.
+        Angle between the flanks in the plane of action, open towards +z [rad]. It is minus the slope of the approach's
+        best straight line over the face.
     misalignment_by_cause : dict of str to float
         Parts of the misalignment by `CAUSES`, which add up to it [rad].
     mean : FaceLoad
@@ -168,13 +168,28 @@ class PairLoad:
         return self.pair.driver.name, self.pair.driven.name
 
     @property
+    def label(self) -> str:
+        """Name of the pair, driver -> driven gear."""
+        return " -> ".join(self.names)
+
+    @property
+    def loaded(self) -> "PairLoad | None":
+        """The pair where it carries load; None for an idle one."""
+        return self if self.force > 0.0 else None
+
+    @property
+    def misalignment_over_face(self) -> float:
+        """Misalignment over the width of the face [m]."""
+        return self.misalignment * self.pair.geometry.face_width
+
+    @property
     def z(self) -> FloatArray:
-        """Slices of the face, from its middle [m], shape (s,)."""
+        """Distance of the slices from the middle of the face [m], shape (s,)."""
         return self.pair.contact.z
 
     @property
     def gap(self) -> FloatArray:
-        """Gap of the flanks over the face by the machine's deflection, less its mean [m], shape (s,)."""
+        """Gap of the flanks over the face by the deflection of the machine, less its mean [m], shape (s,)."""
         over = self.pair.contact.over_face @ self.approach[:-1]
         return np.asarray(over.mean() - over)
 
@@ -199,8 +214,23 @@ class PairLoad:
 
     @property
     def line_load(self) -> FloatArray:
-        """Load per width over the face, all tooth pairs together, mean over the mesh period [N/m], shape (s,)."""
+        """Transverse load per face width, all tooth pairs together, mean over the mesh period [N/m], shape (s,)."""
         return np.asarray(self.fine.line_load.mean(axis=0))
+
+    @property
+    def mean_line_load(self) -> float:
+        """Mean line load F / b [N/m]."""
+        return float(self.line_load.mean())
+
+    @property
+    def maximum_line_load(self) -> float:
+        """Maximum line load K_Hβ F / b [N/m]."""
+        return self.k_h_beta * self.mean_line_load
+
+    @property
+    def peak_line_load(self) -> float:
+        """Largest line load over face and mesh period, all tooth pairs together [N/m]."""
+        return float(self.fine.line_load.max())
 
     @cached_property
     def even(self) -> FaceLoad:
@@ -209,16 +239,29 @@ class PairLoad:
 
     @cached_property
     def k_h_beta(self) -> float:
-        """Face load factor K_Hβ (ISO 6336-1): the largest mean load per width over that of an even approach.
+        """Face load factor K_Hβ of ISO 6336-1 at the mean torque, without K_A, K_V, tolerances and running-in.
 
-        It refers to the mean torque, without application and dynamic factor, tolerances and running-in.
+        It is the largest mean load per width over that of an even approach.
         """
         return face_load_factor(self.fine, self.even)
 
     @property
     def transmission_error(self) -> FloatArray:
-        """Static transmission error under load at ``fine.phases`` [m], of teeth and gaps without shafts."""
+        """Static transmission error under the mean load along the line of action, of teeth and gaps without shafts [m].
+
+        It stands at ``fine.phases``.
+        """
         return self.fine.deflection
+
+    @property
+    def mean_transmission_error(self) -> float:
+        """Mean static transmission error under the mean load [m]."""
+        return float(np.mean(self.transmission_error))
+
+    @property
+    def peak_to_peak_transmission_error(self) -> float:
+        """Peak-to-peak static transmission error under the mean load [m]."""
+        return float(np.ptp(self.transmission_error))
 
     @property
     def thrust(self) -> float:

@@ -36,6 +36,8 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -52,7 +54,6 @@ from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
-from gearwhine.solve.operating_point import SolvedLoad, load_warnings, sensitivity_warnings, solve_load
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -124,9 +125,9 @@ def machine_under_load(
     gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
         Where the loads drive a motion that nothing holds, or no equilibrium is found.
     """
-    load = solve_load(machine, progress) if machine.is_loaded else None
+    load, warnings = find_load(machine, progress) if machine.is_loaded else (None, [])
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
-    return MachineUnderLoad(origin, loaded, load, [] if load is None else load_warnings(load))
+    return MachineUnderLoad(origin, loaded, load, warnings)
 
 
 def rotors_result(

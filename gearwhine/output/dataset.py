@@ -148,7 +148,7 @@ def _add_fields(fields: Iterable[Field], objects: Sequence[Any], along: tuple[st
 
 
 def _value_of(field: Field, of: Any) -> Any:
-    value = None if of is None else field.of(of)
+    value = None if of is None else field.value_of(of)
     return None if value is ABSENT else value
 
 
@@ -163,8 +163,9 @@ def _add_quantity(quantity: Quantity, objects: Sequence[Any], along: tuple[str, 
         values = [None if value is None else np.array(list(value.values())) for value in values]
     if quantity.name in variables and quantity.dimensions != (quantity.name,):
         raise ValueError(f"{quantity.name!r} is declared twice")
-    attributes: dict[str, Any] = {} if quantity.unit == "" else {"units": quantity.unit}
-    attributes |= {} if quantity.long_name == "" else {"long_name": quantity.long_name}
+    unit, long_name = quantity.file_unit, quantity.meaning_in(objects[first])
+    attributes: dict[str, Any] = {"units": unit} if unit else {}
+    attributes |= {"long_name": long_name} if long_name else {}
     attributes |= {} if quantity.attributes is None else quantity.attributes(objects[first])
     if quantity.common or not along:
         variables[quantity.name] = (quantity.dimensions, values[first], attributes)

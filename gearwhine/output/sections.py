@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from gearwhine.output.quantity import Quantity
+from gearwhine.output.quantity import Quantity, factor_of
 
 Document = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -30,8 +30,8 @@ class Column:
         callable that takes the text of the cell from the row, for a text that is no number.
     form : str
         Format of a number.
-    scale : float
-        Factor of a number, or of those in a list.
+    scale : float, optional
+        Factor of a number, or of those in a list; None: that from the key's unit to the heading's.
     link : callable, optional
         Returns names of places in the report for a row: the cell links to the first of them that exists.
     shown : callable, optional
@@ -43,7 +43,7 @@ class Column:
     heading: str
     of: str | Callable[[Row], str]
     form: str = ".4g"
-    scale: float = 1.0
+    scale: float | None = None
     link: Callable[[Row], Sequence[str]] | None = None
     shown: Callable[[Row], str] | None = None
     numbers: tuple[str, ...] = ()
@@ -65,7 +65,7 @@ class Column:
         """Return the value of a row in the unit of the heading, with all its digits; None where there is none."""
         if not isinstance(self.of, str):
             return self.of(row)
-        return _scaled(value_at(row, self.of), self.scale)
+        return _scaled(value_at(row, self.of), factor_of(self.of, self.heading) if self.scale is None else self.scale)
 
 
 def value_at(row: Row, key: str) -> Any:

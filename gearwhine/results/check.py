@@ -27,26 +27,6 @@ if TYPE_CHECKING:
     from gearwhine.housing import Joint as BuiltJoint
 
 
-def _optional(key: str, of: Any) -> Quantity:
-    """Declare a quantity whose key is left out where its value is None."""
-
-    def value_or_absent(row: Any) -> Any:
-        value = of(row)
-        return ABSENT if value is None else value
-
-    return Quantity(key, value_or_absent)
-
-
-def _optional_part(key: str, of: Any, fields: Any) -> Part:
-    """Declare a part whose key is left out where its value is None."""
-
-    def value_or_absent(row: Any) -> Any:
-        value = of(row)
-        return ABSENT if value is None else value
-
-    return Part(key, value_or_absent, fields)
-
-
 def _bushing(bushing: "Mount | Joint") -> dict[str, Any]:
     """Return the springs and dashpots that are not zero, by motion; each key has its unit."""
     document: dict[str, Any] = {"name": bushing.name}
@@ -85,7 +65,7 @@ def _names(key: str, table: str) -> Quantity:
 
 def _of_mesh(key: str, of: Any) -> Quantity:
     """Declare a quantity of the mesh of a file."""
-    return _optional(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh))
+    return Quantity(key, lambda checked: None if checked.mesh.mesh is None else of(checked.mesh.mesh), optional=True)
 
 
 HOUSING = (
@@ -93,43 +73,47 @@ HOUSING = (
         "geometry",
         lambda checked: "box" if checked.case.housing.box else "mesh" if checked.case.housing.mesh else "cad",
     ),
-    Quantity("material", lambda checked: checked.case.housing.material),
+    Quantity("material", "case.housing.material"),
     Quantity("frequency_limit_hz", lambda checked: checked.case.housing.frequency_limit),
-    Quantity("modes", lambda checked: checked.case.housing.modes),
+    Quantity("modes", "case.housing.modes"),
     _names("seats", "seat"),
     _names("supports", "support"),
     Quantity("mounts", lambda checked: [_bushing(mount) for mount in checked.case.housing.mount]),
     Quantity("joints", lambda checked: [_joint(joint) for joint in checked.case.housing.joint]),
     Rows(
         "masses",
-        lambda checked: checked.case.housing.mass,
-        (Quantity("name", lambda mass: mass.name), Quantity("mass_kg", lambda mass: mass.mass)),
+        "case.housing.mass",
+        (Quantity("name"), Quantity("mass_kg")),
     ),
     _names("sensors", "sensor"),
     Quantity(
         "regions", lambda checked: [f"{region.name} of {region.material}" for region in checked.case.housing.region]
     ),
-    Quantity("size_m", lambda checked: checked.mesh.size),
-    _optional("mesh_size_m", lambda checked: checked.mesh.mesh_size),
-    _optional("accuracy", lambda checked: checked.case.housing.accuracy),
-    _optional("cover_bolts", lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)]),
+    Quantity("size_m", "mesh.size"),
+    Quantity("mesh_size_m", "mesh.mesh_size", optional=True),
+    Quantity("accuracy", "case.housing.accuracy", optional=True),
+    Quantity(
+        "cover_bolts",
+        lambda checked: None if checked.mesh.bolts is None else [*map(_bolt, checked.mesh.bolts)],
+        optional=True,
+    ),
     Rows("bores", lambda checked: ABSENT if checked.mesh.mesh is None else bores(checked.mesh.mesh), BORE),
     _of_mesh("surfaces", lambda mesh: sorted(mesh.surfaces)),
     _of_mesh("volumes", lambda mesh: sorted(mesh.volumes)),
-    _optional_part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE),
-    _optional("kinds", lambda checked: checked.mesh.mesh.kinds if checked.case.housing.mesh else None),
+    Part("mesh", lambda checked: checked.mesh.mesh if checked.case.housing.mesh else None, MESH_SIZE, optional=True),
+    Quantity("kinds", lambda checked: checked.mesh.mesh.kinds if checked.case.housing.mesh else None, optional=True),
 )
 """Quantities of a housing as the case gives it, and of its mesh as far as that is known."""
 
 ROTOR = (
-    Quantity("name", lambda rotor: rotor.given.name),
-    Quantity("length_m", lambda rotor: rotor.built.length),
+    Quantity("name", "given.name"),
+    Quantity("length_m", "built.length"),
     Quantity("segments", lambda rotor: len(rotor.built.segments)),
     Quantity("couplings", lambda rotor: sum(isinstance(segment, CouplingSegment) for segment in rotor.given.segments)),
-    Quantity("mass_kg", lambda rotor: rotor.built.mass),
-    Quantity("polar_inertia_kg_m2", lambda rotor: rotor.built.polar_inertia),
-    Quantity("speed_rpm", lambda rotor: None if rotor.speed is None else rotor.speed * RPM),
-    Quantity("mass_model", lambda rotor: rotor.given.mass),
+    Quantity("mass_kg", "built.mass"),
+    Quantity("polar_inertia_kg_m2", "built.polar_inertia"),
+    Quantity("speed_rpm"),
+    Quantity("mass_model", "given.mass"),
 )
 """Quantities of a rotor."""
 
@@ -158,7 +142,7 @@ def _swinging_torques(row: _Analysis) -> int:
 
 
 ANALYSIS = (
-    Quantity("rotor", lambda row: row.rotor.name),
+    Quantity("rotor", "rotor.name"),
     Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row.case, row.rotor.name))),
     Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
     Quantity("torques", _swinging_torques),
@@ -166,22 +150,22 @@ ANALYSIS = (
 """Quantities of the analyses that ``gearwhine rotors`` makes of a rotor."""
 
 BEARING = (
-    Quantity("name", lambda bearing: bearing.name),
-    Quantity("rotor", lambda bearing: bearing.rotor),
-    Quantity("seat", lambda bearing: bearing.seat),
+    Quantity("name"),
+    Quantity("rotor"),
+    Quantity("seat"),
     Quantity(
         "table_rpm",
         lambda bearing: (
             None if bearing.speeds is None else [speed * RPM for speed in (bearing.speeds[0], bearing.speeds[-1])]
         ),
     ),
-    Quantity("pedestal_kg", lambda bearing: None if bearing.pedestal is None else bearing.pedestal.mass),
+    Quantity("pedestal_kg", "pedestal.mass"),
 )
 """Quantities of a bearing of the case."""
 
 LOCATION = (
-    Quantity("rotor", lambda location: location.shaft),
-    Quantity("arrangement", lambda location: location.arrangement),
+    Quantity("rotor", "shaft"),
+    Quantity("arrangement"),
     Quantity("thrust_plus_z", lambda location: location.carrying(1)),
     Quantity("thrust_minus_z", lambda location: location.carrying(-1)),
     Quantity(
@@ -192,14 +176,14 @@ LOCATION = (
 """Quantities of a rotor's location: bearings that take its thrust towards +z and -z, and arrangements of rows."""
 
 PAIR = (
-    Quantity("driver", lambda pair: pair.given.driver),
-    Quantity("driven", lambda pair: pair.given.driven),
-    Quantity("ratio", lambda pair: pair.geometry.ratio),
-    Quantity("contact_ratio", lambda pair: pair.geometry.contact_ratio),
-    Quantity("overlap_ratio", lambda pair: pair.geometry.overlap_ratio),
-    Quantity("total_contact_ratio", lambda pair: pair.geometry.total_contact_ratio),
-    Quantity("centre_distance_m", lambda pair: pair.geometry.working_centre_distance),
-    Quantity("working_pressure_angle_deg", lambda pair: np.degrees(pair.geometry.working_pressure_angle)),
+    Quantity("driver", "given.driver"),
+    Quantity("driven", "given.driven"),
+    Quantity("ratio", "geometry.ratio"),
+    Quantity("contact_ratio", "geometry.contact_ratio"),
+    Quantity("overlap_ratio", "geometry.overlap_ratio"),
+    Quantity("total_contact_ratio", "geometry.total_contact_ratio"),
+    Quantity("centre_distance_m", "geometry.working_centre_distance"),
+    Quantity("working_pressure_angle_deg", "geometry.working_pressure_angle"),
     Quantity(
         "backlash_m",
         lambda pair: {
@@ -209,18 +193,18 @@ PAIR = (
         },
     ),
     Quantity("mesh_frequency_hz", lambda pair: pair.mesh_frequency),
-    Quantity("mean_force_n", lambda pair: pair.mean_force),
-    Quantity("mean_force_from", lambda pair: pair.force_origin),
-    Quantity("misalignment_rad", lambda pair: pair.misalignment.taken),
-    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
-    Quantity("stiffness_model", lambda pair: pair.given.stiffness.model),
-    Part("geometry", lambda pair: pair.geometry, GEOMETRY),
+    Quantity("mean_force_n"),
+    Quantity("mean_force_from", "force_origin"),
+    Quantity("misalignment_rad", "misalignment.taken"),
+    Quantity("misalignment_from", "misalignment.origin"),
+    Quantity("stiffness_model", "given.stiffness.model"),
+    Part("geometry", "geometry", GEOMETRY),
 )
 """Quantities of a gear pair."""
 
 _TORQUE_LINE = (
     Quantity("speed_rpm", lambda line: np.array(line.speed) * RPM),
-    Quantity("torque_n_m", lambda line: line.torque),
+    Quantity("torque_n_m"),
 )
 
 
@@ -232,83 +216,89 @@ class _AppliedTorque(NamedTuple):
 
 
 OPERATION = (
-    Quantity("speed_rpm", lambda case: case.operation.speed * RPM),
-    Quantity("torque_n_m", lambda case: case.operation.torque),
+    Quantity("speed_rpm", "operation.speed"),
+    Quantity("torque_n_m", "operation.torque"),
     Rows(
         "torques",
         lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
         (
-            Quantity("rotor", lambda row: row.torque.rotor),
-            Quantity("at_m", lambda row: row.at),
-            Quantity("torque_n_m", lambda row: row.torque.value),
+            Quantity("rotor", "torque.rotor"),
+            Quantity("at_m"),
+            Quantity("torque_n_m", "torque.value"),
         ),
     ),
-    _optional("gravity_m_per_s2", lambda case: case.operation.gravity),
-    _optional_part(
+    Quantity("gravity_m_per_s2", "operation.gravity", optional=True),
+    Part(
         "base",
-        lambda case: case.operation.base,
+        "operation.base",
         (
-            Quantity("point_m", lambda base: base.point),
+            Quantity("point_m"),
             Quantity("harmonics_hz", lambda base: [harmonic.frequency for harmonic in base.harmonic]),
             Quantity("over_time", lambda base: base.over_time is not None),
         ),
+        optional=True,
     ),
-    _optional_part("motor", lambda case: case.operation.motor, _TORQUE_LINE),
-    _optional_part("load", lambda case: case.operation.load, _TORQUE_LINE),
+    Part("motor", "operation.motor", _TORQUE_LINE, optional=True),
+    Part("load", "operation.load", _TORQUE_LINE, optional=True),
 )
 """Quantities of the operation; motor and load by their torque over speed, which drives a run of free speed."""
 
 TRANSIENT = (
-    _optional("revolutions", lambda transient: transient.revolutions if transient.run is None else None),
-    _optional(
+    Quantity("revolutions", lambda transient: transient.revolutions if transient.run is None else None, optional=True),
+    Quantity(
         "recorded_revolutions",
         lambda transient: transient.revolutions - transient.discard if transient.run is None else None,
+        optional=True,
     ),
-    _optional_part(
+    Part(
         "run",
-        lambda transient: transient.run,
+        "run",
         (
-            Quantity("seconds", lambda run: run.duration),
-            Quantity("free", lambda run: run.free),
-            Quantity("times_s", lambda run: run.line[0]),
+            Quantity("seconds", "duration"),
+            Quantity("free"),
+            Quantity("times_s", "line.0"),
             Quantity("speeds_rpm", lambda run: np.array(run.line[1]) * RPM),
         ),
+        optional=True,
     ),
-    _optional("discarded_revolutions", lambda transient: None if transient.run is None else transient.discard),
-    Quantity("tolerance", lambda transient: transient.tolerance),
+    Quantity(
+        "discarded_revolutions", lambda transient: None if transient.run is None else transient.discard, optional=True
+    ),
+    Quantity("tolerance"),
 )
 """Quantities of a transient at one speed, or of a run over speed."""
 
 _SURVEY = (
-    Quantity("remarks", lambda survey: survey.remarks),
+    Quantity("remarks"),
     Part(
         "",
-        lambda survey: survey.modes,
+        "modes",
         (
-            Quantity("frequencies_hz", lambda modes: modes.frequencies / HERTZ),
-            Quantity("damping_ratios", lambda modes: modes.damping_ratios),
+            Quantity("frequencies_hz"),
+            Quantity("damping_ratios"),
             Quantity("complex", lambda modes: modes.shapes is not None and np.any(np.nan_to_num(modes.shapes).imag)),
         ),
     ),
     Part(
         "",
-        lambda survey: survey.geometry,
+        "geometry",
         (
             Quantity("points", lambda geometry: len(geometry.positions)),
             Quantity("degrees_of_freedom", lambda geometry: len(geometry.points)),
             Quantity("extent_m", lambda geometry: np.ptp(geometry.positions, axis=0)),
         ),
     ),
-    _optional_part(
+    Part(
         "responses",
-        lambda survey: survey.responses,
+        "responses",
         (
-            Quantity("of", lambda responses: responses.motion),
+            Quantity("of", "motion"),
             Quantity("references", lambda responses: len(responses.reference_points)),
             Quantity("lines", lambda responses: len(responses.frequencies)),
-            Quantity("from_hz", lambda responses: responses.frequencies[0] / HERTZ),
+            Quantity("from_hz", "frequencies.0"),
             Quantity("to_hz", lambda responses: responses.frequencies[-1] / HERTZ),
         ),
+        optional=True,
     ),
 )
 
@@ -320,38 +310,44 @@ def _alignment(measured: Any) -> bool | str | None:
 
 
 MEASURED = (
-    _optional("frequencies_hz", lambda measured: list(measured.frequencies or ()) if measured.survey is None else None),
-    _optional("file", lambda measured: None if measured.survey is None else str(measured.file)),
-    Part("", lambda measured: measured.survey, _SURVEY),
-    _optional("align", _alignment),
-    Quantity("pairing", lambda measured: measured.paired_by),
+    Quantity(
+        "frequencies_hz",
+        lambda measured: list(measured.frequencies or ()) if measured.survey is None else None,
+        optional=True,
+    ),
+    Quantity("file", lambda measured: None if measured.survey is None else str(measured.file), optional=True),
+    Part("", "survey", _SURVEY),
+    Quantity("align", _alignment, optional=True),
+    Quantity("pairing", "paired_by"),
 )
 """Quantities of the measurement on the housing."""
 
 CHECK = (
-    Quantity("title", lambda checked: checked.case.title),
-    _optional_part("housing", lambda checked: None if checked.mesh is None else checked, HOUSING),
+    Quantity("title", "case.title"),
+    Part("housing", lambda checked: ABSENT if checked.mesh is None else checked, HOUSING),
     Rows("rotors", lambda checked: checked.rotors or ABSENT, ROTOR),
     Rows(
         "rotor_analysis",
         lambda checked: [_Analysis(checked.case, rotor) for rotor in checked.case.rotor] or ABSENT,
         ANALYSIS,
     ),
-    _optional("bearings", lambda checked: _bearings(checked.case) or None),
+    Quantity("bearings", lambda checked: _bearings(checked.case) or None, optional=True),
     Rows(
         "axial_location",
         lambda checked: [location for location in checked.locations if location.bearings] or ABSENT,
         LOCATION,
     ),
     Rows("gear_pairs", lambda checked: checked.pairs or ABSENT, PAIR),
-    _optional_part("operation", lambda checked: None if checked.case.operation is None else checked.case, OPERATION),
-    _optional_part("transient", lambda checked: checked.case.transient, TRANSIENT),
-    _optional_part("sweep", lambda checked: checked.case.sweep, (Quantity("speeds", lambda sweep: len(sweep.speeds)),)),
-    _optional_part("measured", lambda checked: checked.case.measured, MEASURED),
-    _optional("provenance", lambda checked: checked.case.provenance or None),
-    _optional("gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None),
-    _optional("damping", lambda checked: damping_document(checked.case) or None),
-    _optional("warnings", lambda checked: checked.warnings or None),
+    Part("operation", lambda checked: ABSENT if checked.case.operation is None else checked.case, OPERATION),
+    Part("transient", "case.transient", TRANSIENT, optional=True),
+    Part("sweep", "case.sweep", (Quantity("speeds", lambda sweep: len(sweep.speeds)),), optional=True),
+    Part("measured", "case.measured", MEASURED, optional=True),
+    Quantity("provenance", lambda checked: checked.case.provenance or None, optional=True),
+    Quantity(
+        "gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None, optional=True
+    ),
+    Quantity("damping", lambda checked: damping_document(checked.case) or None, optional=True),
+    Quantity("warnings", lambda checked: checked.warnings or None, optional=True),
 )
 """Quantities of a checked case."""
 

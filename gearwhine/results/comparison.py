@@ -25,47 +25,34 @@ if TYPE_CHECKING:
 PAIR = (
     Quantity(
         "measured_hz",
-        lambda pair: pair.measured / HERTZ,
+        "measured",
         "measured_frequency",
-        (),
-        "Hz",
-        "measured frequency",
+        long_name="measured frequency",
         heading="measured [Hz]",
         shown=".1f",
     ),
     Quantity(
-        "model_hz",
-        lambda pair: pair.model / HERTZ,
-        "model_frequency",
-        (),
-        "Hz",
-        "frequency of the model",
-        heading="model [Hz]",
-        shown=".1f",
+        "model_hz", "model", "model_frequency", long_name="frequency of the model", heading="model [Hz]", shown=".1f"
     ),
     Quantity(
         "error_percent",
-        lambda pair: pair.error_percent,
+        "error_percent",
         "frequency_error",
-        (),
-        "percent",
-        "error of the model's frequency",
+        long_name="error of the model's frequency",
         heading="error [%]",
         shown="+.2f",
     ),
-    Quantity("measured_mode", lambda pair: pair.measured_mode, "measured_mode", (), "1", "number of the measured mode"),
-    Quantity(
-        "mode", lambda pair: pair.mode, "model_mode", (), "1", "number of the housing mode", heading="mode", shown="d"
-    ),
-    Quantity("mac", lambda pair: pair.mac, heading="MAC", shown=".3f"),
-    Quantity("confidence", lambda pair: pair.confidence, heading="confidence", shown=".2f"),
-    Quantity("strength", lambda pair: pair.strength, heading="strength [1/kg]", shown=".4g"),
-    Quantity("close_modes", lambda pair: pair.close_modes),
-    Quantity("mixed", lambda pair: pair.mixed),
+    Quantity("measured_mode", "measured_mode", "measured_mode", unit="1", long_name="number of the measured mode"),
+    Quantity("mode", "mode", "model_mode", unit="1", long_name="number of the housing mode", heading="mode", shown="d"),
+    Quantity("mac", heading="MAC", shown=".3f"),
+    Quantity("confidence", heading="confidence", shown=".2f"),
+    Quantity("strength", heading="strength [1/kg]", shown=".4g"),
+    Quantity("close_modes"),
+    Quantity("mixed"),
 )
 """Quantities of a measured mode and its partner in the model."""
 
-ALIKE = (Quantity("modes", lambda pair: [pair.first, pair.second]), Quantity("mac", lambda pair: pair.mac))
+ALIKE = (Quantity("modes", lambda pair: [pair.first, pair.second]), Quantity("mac"))
 """Quantities of two modes of one set that look alike at the points of the survey."""
 
 
@@ -92,7 +79,7 @@ SHAPES = (
         "measured",
         ("measured",),
         "1",
-        "number of the measured mode",
+        long_name="number of the measured mode",
     ),
     Quantity(
         "",
@@ -100,13 +87,13 @@ SHAPES = (
         "housing_mode",
         ("housing_mode",),
         "1",
-        "number of the housing mode",
+        long_name="number of the housing mode",
     ),
     Rows(
         "unpaired_measured",
         lambda shapes: [_Mode(shapes, number) for number in shapes.unpaired_measured],
         (
-            Quantity("measured_mode", lambda row: row.number),
+            Quantity("measured_mode", "number"),
             Quantity("measured_hz", lambda row: row.shapes.measured_frequencies[row.number - 1] / HERTZ),
             Quantity("most_like", lambda row: np.argmax(row.shapes.mac[:, row.number - 1]) + 1),
             Quantity("mac", lambda row: row.shapes.mac[:, row.number - 1].max()),
@@ -116,14 +103,14 @@ SHAPES = (
         "unpaired_model",
         lambda shapes: [_Mode(shapes, number) for number in shapes.unpaired_model],
         (
-            Quantity("mode", lambda row: row.number),
+            Quantity("mode", "number"),
             Quantity("model_hz", lambda row: row.shapes.model_frequencies[row.number - 1] / HERTZ),
         ),
     ),
     _alike("duplicates", lambda shapes: shapes.measured_look_alikes, one_frequency=True),
     Part(
         "look_alikes",
-        lambda shapes: shapes,
+        ".",
         (
             _alike("measured", lambda shapes: shapes.measured_look_alikes, one_frequency=False),
             _alike("model", lambda shapes: shapes.model_look_alikes),
@@ -131,36 +118,34 @@ SHAPES = (
     ),
     Rows(
         "close_modes",
-        lambda shapes: shapes.close,
+        "close",
         (
-            Quantity("modes", lambda group: group.model),
-            Quantity("measured_modes", lambda group: group.measured),
-            Quantity("largest_angle_deg", lambda group: np.degrees(group.largest_angle)),
+            Quantity("modes", "model"),
+            Quantity("measured_modes", "measured"),
+            Quantity("largest_angle_deg"),
         ),
     ),
     Part(
         "auto_mac_off_diagonal",
-        lambda shapes: shapes,
+        ".",
         (
-            Quantity("model", lambda shapes: shapes.largest_model_likeness),
-            Quantity("measured", lambda shapes: shapes.largest_measured_likeness),
+            Quantity("model", "largest_model_likeness"),
+            Quantity("measured", "largest_measured_likeness"),
         ),
     ),
     Part(
         "cross_orthogonality",
-        lambda shapes: shapes,
+        ".",
         (
-            Quantity("modes", lambda shapes: shapes.orthogonality_modes),
-            Quantity("values", lambda shapes: shapes.cross_orthogonality),
-            Quantity("outside", lambda shapes: shapes.outside),
+            Quantity("modes", "orthogonality_modes"),
+            Quantity("values", "cross_orthogonality"),
+            Quantity("outside"),
             Quantity("missing_because", lambda shapes: shapes.no_orthogonality or None),
         ),
     ),
-    Quantity("phase_collinearity", lambda shapes: shapes.collinearity),
-    Quantity("mac", lambda shapes: shapes.mac, "mac", ("housing_mode", "measured"), "1", "modal assurance criterion"),
-    Quantity(
-        "", lambda shapes: shapes.comac, "comac", ("degree_of_freedom",), "1", "coordinate modal assurance criterion"
-    ),
+    Quantity("phase_collinearity", "collinearity"),
+    Quantity("mac", "mac", "mac", ("housing_mode", "measured"), "1", long_name="modal assurance criterion"),
+    Quantity("", "comac", "comac", ("degree_of_freedom",), "1", long_name="coordinate modal assurance criterion"),
 )
 """Quantities of measured shapes beside the model's: missing, double, close and similar modes; quality of the survey."""
 
@@ -170,11 +155,11 @@ def _or_absent(value: Any) -> Any:
 
 
 COMPARISON = (
-    Rows("pairs", lambda comparison: comparison.pairs, PAIR, "pair"),
-    Quantity("rms_error_percent", lambda comparison: comparison.rms_error_percent),
-    Quantity("max_error_percent", lambda comparison: comparison.max_error_percent),
-    Quantity("pairing", lambda comparison: comparison.pairing),
-    Quantity("pairing_rule", lambda comparison: comparison.rule),
+    Rows("pairs", "pairs", PAIR, "pair"),
+    Quantity("rms_error_percent", "rms_error_percent"),
+    Quantity("max_error_percent", "max_error_percent"),
+    Quantity("pairing"),
+    Quantity("pairing_rule", "rule"),
     Quantity("band_hz", lambda comparison: [edge / HERTZ for edge in comparison.band]),
     Quantity("gap", lambda comparison: _or_absent(comparison.gap)),
     Quantity("measures_agree", lambda comparison: _or_absent(comparison.measures_agree)),
@@ -183,56 +168,53 @@ COMPARISON = (
         "unpaired_measured",
         lambda comparison: _or_absent(comparison.unpaired_measured),
         (
-            Quantity("measured_mode", lambda mode: mode.number),
-            Quantity("measured_hz", lambda mode: mode.frequency / HERTZ),
+            Quantity("measured_mode", "number"),
+            Quantity("measured_hz", "frequency"),
         ),
     ),
     Rows(
         "unpaired_model",
         lambda comparison: _or_absent(comparison.unpaired_model),
-        (Quantity("mode", lambda mode: mode.number), Quantity("model_hz", lambda mode: mode.frequency / HERTZ)),
+        (Quantity("mode", "number"), Quantity("model_hz", "frequency")),
     ),
-    Part("", lambda comparison: comparison.shapes, SHAPES),
+    Part("", "shapes", SHAPES),
 )
 """Quantities of the pairs of measured and model modes."""
 
 SURVEY = (
     Quantity("points", lambda survey: len(survey.distances)),
-    Quantity("degrees_of_freedom", lambda survey: survey.matrix.shape[0]),
-    Quantity("rms_distance_m", lambda survey: survey.rms_distance),
+    Quantity("degrees_of_freedom", "matrix.shape.0"),
+    Quantity("rms_distance_m"),
     Quantity("worst_distance_m", lambda survey: survey.distances.max()),
     Quantity("worst_point", lambda survey: survey.geometry.labels[int(np.argmax(survey.distances))]),
-    Quantity("tolerance_m", lambda survey: survey.tolerance),
-    Quantity("far_points", lambda survey: survey.far),
+    Quantity("tolerance_m"),
+    Quantity("far_points", "far"),
     Part(
         "alignment",
-        lambda survey: ABSENT if survey.alignment is None else survey.alignment,
+        "alignment",
         (
-            Quantity("by", lambda alignment: alignment.by),
-            Quantity("rotation", lambda alignment: alignment.motion.rotation),
-            Quantity("translation_m", lambda alignment: alignment.motion.translation),
-            Quantity("turned_degrees", lambda alignment: alignment.motion.angle_degrees),
-            Quantity("rms_m", lambda alignment: alignment.rms),
-            Quantity("largest_m", lambda alignment: alignment.largest),
+            Quantity("by"),
+            Quantity("rotation", "motion.rotation"),
+            Quantity("translation_m", "motion.translation"),
+            Quantity("turned_degrees", "motion.angle_degrees"),
+            Quantity("rms_m"),
+            Quantity("largest_m"),
             Quantity("other_positions", lambda alignment: len(alignment.others)),
-            Quantity("remarks", lambda alignment: alignment.remarks),
+            Quantity("remarks"),
         ),
+        optional=True,
     ),
 )
 """Quantities of a survey on the model."""
 
 RESPONSES = (
     Quantity("criterion", lambda likeness: "FRAC"),
-    Quantity("lines", lambda likeness: likeness.n_lines),
-    Quantity("from_hz", lambda likeness: likeness.band[0] / HERTZ),
-    Quantity("to_hz", lambda likeness: likeness.band[1] / HERTZ),
-    Quantity("measured", lambda likeness: likeness.n_measured),
-    Quantity("mean", lambda likeness: likeness.mean),
-    Quantity(
-        "frac",
-        lambda likeness: likeness.frac,
-        document=lambda frac: [[None if np.isnan(value) else value for value in row] for row in frac],
-    ),
+    Quantity("lines", "n_lines"),
+    Quantity("from_hz", "band.0"),
+    Quantity("to_hz", "band.1"),
+    Quantity("measured", "n_measured"),
+    Quantity("mean"),
+    Quantity("frac", document=lambda frac: [[None if np.isnan(value) else value for value in row] for row in frac]),
 )
 """Quantities of measured responses beside the model's."""
 
@@ -517,7 +499,7 @@ def dof_names(geometry: "MeasuredGeometry") -> list[str]:
 
 def _pair_rows(comparison: "Comparison") -> list[list[object]]:
     """Return the rows of the source's Table II with the evidence for each pair; unpaired modes have rows too."""
-    of = {quantity.key: quantity.of for quantity in PAIR}
+    of = {quantity.key: quantity.value_of for quantity in PAIR}
     rows: list[list[object]] = [[_cell(of[key](pair)) for key in _PAIR_COLUMNS] for pair in comparison.pairs]
     for mode in comparison.unpaired_measured or ():
         rows.append([mode.number, _cell(mode.frequency / HERTZ), *[""] * 6])

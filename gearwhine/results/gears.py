@@ -66,16 +66,16 @@ def _relief(row: _Gear) -> dict[str, Any] | None:
 _MM, _MICRO, _MEGA = 1e3, 1e6, 1e-6
 
 GEAR = (
-    Quantity("name", lambda row: row.gear.name, heading="[mm]"),
-    Quantity("teeth", lambda row: row.gear.teeth, heading="teeth", shown="d"),
-    Quantity("virtual_teeth", lambda row: row.gear.virtual_teeth),
-    Quantity("module_m", lambda row: row.gear.module),
-    Quantity("pressure_angle_rad", lambda row: row.gear.pressure_angle),
-    Quantity("helix_angle_rad", lambda row: row.gear.helix_angle),
+    Quantity("name", "gear.name", heading="[mm]"),
+    Quantity("teeth", "gear.teeth", heading="teeth", shown="d"),
+    Quantity("virtual_teeth", "gear.virtual_teeth"),
+    Quantity("module_m", "gear.module"),
+    Quantity("pressure_angle_rad", "gear.pressure_angle"),
+    Quantity("helix_angle_rad", "gear.helix_angle"),
     Quantity("lead_m", lambda row: None if row.gear.helix_angle == 0.0 else row.gear.lead),
-    Quantity("profile_shift", lambda row: row.gear.profile_shift, heading="shift [modules]"),
-    Quantity("rack_tip_radius_m", lambda row: row.gear.rack_tip_radius),
-    Quantity("undercut", lambda row: row.gear.is_undercut),
+    Quantity("profile_shift", "gear.profile_shift", heading="shift [modules]"),
+    Quantity("rack_tip_radius_m", "gear.rack_tip_radius"),
+    Quantity("undercut", "gear.is_undercut"),
     Quantity(
         "face_width_m",
         lambda row: row.gear.face_width if row.width_given else None,
@@ -148,7 +148,7 @@ def _of_sides(name: str, unit: str, quantity: str) -> Quantity:
         f"contact_point_{name}",
         ("side", "contact_point"),
         unit,
-        f"{quantity} of the point",
+        long_name=f"{quantity} of the point",
     )
 
 
@@ -158,18 +158,17 @@ PATH = (
         lambda path: list(POINTS_OF_CONTACT),
         "contact_point",
         ("contact_point",),
-        "",
-        "of the driver",
+        long_name="of the driver",
         common=True,
     ),
     Quantity("", lambda path: ["driver", "driven"], "side", ("side",), common=True),
     Quantity(
         "",
-        lambda path: path.position,
+        "position",
         "contact_point_position",
         ("contact_point",),
         "1",
-        "place on the path of contact in base pitches",
+        long_name="place on the path of contact in base pitches",
     ),
     _of_sides("roll_angle", "rad", "roll angle"),
     _of_sides("radius", "m", "distance from the gear's centre"),
@@ -191,89 +190,33 @@ GEOMETRY = (
 
 _PHASE, _TOOTH = ("mesh_phase",), ("mesh_phase", "tooth_pair")
 CURVES = (
-    Quantity("", lambda curves: curves.phases, "mesh_phase", _PHASE, "1", "part of the mesh period", common=True),
-    Quantity(
-        "",
-        lambda curves: curves.stiffness,
-        "mesh_stiffness",
-        _PHASE,
-        "N/m",
-        "mesh stiffness of all pairs on the path of contact",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.mesh.tangent_stiffness,
-        "loaded_flank_stiffness",
-        _PHASE,
-        "N/m",
-        "stiffness of the pairs that touch under the mean torque",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.mesh.transmission_error,
-        "transmission_error",
-        _PHASE,
-        "m",
-        "static transmission error under the mean torque, along the line of action",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.unloaded,
-        "unloaded_transmission_error",
-        _PHASE,
-        "m",
-        "transmission error without load, along the line of action",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.position,
-        "tooth_pair_position",
-        _TOOTH,
-        "1",
-        "place on the path of contact in base pitches",
-    ),
-    Quantity("", lambda curves: curves.share, "load_share", _TOOTH, "1", "part of the load on the pair"),
-    Quantity(
-        "",
-        lambda curves: curves.pressure,
-        "contact_pressure",
-        _TOOTH,
-        "Pa",
-        "Hertzian pressure of the pair, the largest over its face",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.face_place,
-        "face_place",
-        ("slice",),
-        "m",
-        "distance of the slice from the middle of the face",
-    ),
-    Quantity(
-        "",
-        lambda curves: curves.mesh.line_loads,
-        "line_load",
-        (*_TOOTH, "slice"),
-        "N/m",
-        "line load of the tooth pair: transverse load per face width",
-    ),
+    Quantity("", "phases", "mesh_phase", _PHASE, "1", common=True),
+    Quantity("", "stiffness", "mesh_stiffness", _PHASE, "N/m"),
+    Quantity("", "mesh.tangent_stiffness", "loaded_flank_stiffness", _PHASE, "N/m"),
+    Quantity("", "mesh.transmission_error", "transmission_error", _PHASE, "m"),
+    Quantity("", "unloaded", "unloaded_transmission_error", _PHASE, "m"),
+    Quantity("", "position", "tooth_pair_position", _TOOTH, "1"),
+    Quantity("", "share", "load_share", _TOOTH, "1"),
+    Quantity("", "pressure", "contact_pressure", _TOOTH, "Pa"),
+    Quantity("", "face_place", "face_place", ("slice",), "m"),
+    Quantity("", "mesh.line_loads", "line_load", (*_TOOTH, "slice"), "N/m"),
 )
 """Quantities of a pair at even phases of the mesh period."""
 
 _SEATS = {"rigid": " in rigid seats", "housing": " on the modes of the housing"}
 
 HUNTING = (
-    Quantity("", lambda mesh: mesh.phases, "hunting_phase", ("hunting_step",), "1", "mesh periods"),
+    Quantity("", "phases", "hunting_phase", ("hunting_step",), "1", long_name="mesh periods"),
     Quantity(
         "",
-        lambda mesh: mesh.transmission_error,
+        "transmission_error",
         "hunting_transmission_error",
         ("hunting_step",),
         "m",
-        "static transmission error under the mean torque",
+        long_name="static transmission error under the mean torque",
     ),
-    Quantity("mean", lambda mesh: mesh.mean_transmission_error),
-    Quantity("peak_to_peak", lambda mesh: mesh.peak_to_peak_transmission_error),
+    Quantity("mean", "mean_transmission_error"),
+    Quantity("peak_to_peak", "peak_to_peak_transmission_error"),
 )
 """Transmission error over the whole hunting period."""
 
@@ -284,75 +227,64 @@ HARRIS_MAP = (
         lambda pair: pair.harris.forces * pair.solved.geometry.driver.base_radius,
         "harris_torque",
         _LOADS,
-        "N m",
-        "torque on the driver",
+        long_name="torque on the driver",
     ),
-    Quantity("", lambda pair: pair.harris.phases, "harris_phase", ("harris_step",), "1", "part of the mesh period"),
+    Quantity("", "harris.phases", "harris_phase", ("harris_step",), "1"),
     Quantity(
         "",
-        lambda pair: pair.harris.transmission_error,
+        "harris.transmission_error",
         "harris_transmission_error",
         (*_LOADS, "harris_step"),
         "m",
-        "static transmission error under the torque",
+        long_name="static transmission error under the torque",
     ),
-    Quantity("peak_to_peak_m", lambda pair: pair.harris.peak_to_peak),
+    Quantity("peak_to_peak_m", "harris.peak_to_peak"),
     Quantity("quietest_torque_n_m", lambda pair: pair.harris.quietest * pair.solved.geometry.driver.base_radius),
 )
 """The transmission error over the mesh period for a range of torques."""
 
 STIFFNESS = (
-    Quantity("mean", lambda pair: pair.solved.contact.unloaded_mean_mesh_stiffness),
+    Quantity("mean", "solved.contact.unloaded_mean_mesh_stiffness"),
     Quantity("min", lambda pair: pair.stiffness.min()),
     Quantity("max", lambda pair: pair.stiffness.max()),
-    Quantity("loaded_mean", lambda pair: pair.solved.static.mean_mesh_stiffness),
+    Quantity("loaded_mean", "solved.static.mean_mesh_stiffness"),
 )
 TRANSMISSION_ERROR = (
-    Quantity("mean", lambda pair: pair.solved.static.mean_transmission_error),
-    Quantity("peak_to_peak", lambda pair: pair.solved.static.peak_to_peak_transmission_error),
-    Quantity(
-        "harmonics",
-        lambda pair: pair.harmonics,
-        "transmission_error_harmonic",
-        ("harmonic",),
-        "m",
-        "peak amplitude of the transmission error at whole multiples of the mesh frequency, from the first",
-    ),
+    Quantity("mean", "solved.static.mean_transmission_error"),
+    Quantity("peak_to_peak", "solved.static.peak_to_peak_transmission_error"),
+    Quantity("harmonics", "harmonics", "transmission_error_harmonic", ("harmonic",), "m"),
     Quantity("unloaded_peak_to_peak", lambda pair: float(np.ptp(pair.unloaded))),
-    Part("over_hunting_period", lambda pair: pair.solved.hunting, HUNTING),
+    Part("over_hunting_period", "solved.hunting", HUNTING),
 )
 _PATH = ("path_step",)
 LOAD_SHARING = (
-    Quantity("pairs_in_contact", lambda pair: pair.pairs_in_contact),
-    Quantity("loaded_contact_ratio", lambda pair: pair.loaded_contact_ratio),
+    Quantity("pairs_in_contact"),
+    Quantity("loaded_contact_ratio"),
     Quantity("largest_share", lambda pair: pair.shares[1].max()),
-    Quantity("corner_force_n", lambda pair: pair.corner_force),
-    Quantity(
-        "", lambda pair: pair.shares[0], "path_position", _PATH, "1", "place on the path of contact in base pitches"
-    ),
+    Quantity("corner_force_n"),
+    Quantity("", "shares.0", "path_position", _PATH, "1", long_name="place on the path of contact in base pitches"),
     Quantity(
         "",
         lambda pair: pair.solved.geometry.driver_roll_angle(pair.shares[0]),
         "path_roll_angle",
         _PATH,
         "rad",
-        "roll angle of the driver there",
+        long_name="roll angle of the driver there",
     ),
-    Quantity("", lambda pair: pair.shares[1], "path_load_share", _PATH, "1", "part of the load on a tooth pair there"),
+    Quantity("", "shares.1", "path_load_share", _PATH, "1", long_name="part of the load on a tooth pair there"),
 )
 """Number of tooth pairs in contact, and the load share of one of them along its path."""
 PRESSURE = (
-    Quantity("max", lambda pair: pair.largest_pressure[0]),
-    Quantity("at_driver_roll_angle_rad", lambda pair: pair.largest_pressure[1]),
-    Quantity("pitch_point", lambda pair: pair.pitch_pressure),
+    Quantity("max", "largest_pressure.0"),
+    Quantity("at_driver_roll_angle_rad", "largest_pressure.1"),
+    Quantity("pitch_point", "pitch_pressure"),
 )
 
 
 BACKLASH = (
-    Quantity("along_line_of_action", lambda pair: pair.solved.backlash),
+    Quantity("along_line_of_action", "solved.backlash"),
     Quantity(
-        "circumferential",
-        lambda pair: pair.solved.backlash / math.cos(pair.solved.geometry.working_pressure_angle),
+        "circumferential", lambda pair: pair.solved.backlash / math.cos(pair.solved.geometry.working_pressure_angle)
     ),
     Quantity("normal", lambda pair: pair.solved.backlash * math.cos(pair.solved.geometry.driver.base_helix_angle)),
 )
@@ -387,15 +319,15 @@ def _best_start(side: str) -> Quantity:
 
 RELIEF = (
     Quantity("aim", _aim),
-    Quantity("shape", lambda pair: None if pair.optimum.relief is None else pair.optimum.relief.shape),
+    Quantity("shape", "optimum.relief.shape"),
     Quantity("amount_m", lambda pair: 0.0 if pair.optimum.relief is None else pair.optimum.relief.amount),
-    Quantity("length_m", lambda pair: None if pair.optimum.relief is None else pair.optimum.relief.length),
+    Quantity("length_m", "optimum.relief.length"),
     _best_start("driver"),
     _best_start("driven"),
-    Quantity("torque_n_m", lambda pair: pair.solved.torque),
-    Quantity("peak_to_peak_m", lambda pair: pair.optimum.peak_to_peak[0]),
-    Quantity("peak_to_peak_without_relief_m", lambda pair: pair.optimum.unmodified[0]),
-    Quantity("peak_to_peak_as_given_m", lambda pair: pair.as_given),
+    Quantity("torque_n_m", "solved.torque"),
+    Quantity("peak_to_peak_m", "optimum.peak_to_peak.0"),
+    Quantity("peak_to_peak_without_relief_m", "optimum.unmodified.0"),
+    Quantity("peak_to_peak_as_given_m", "as_given"),
 )
 """The relief that suits the torque, beside that of the case and none at all."""
 
@@ -413,28 +345,26 @@ class _Flanks(NamedTuple):
 
 PAIR = (
     Quantity("", lambda pair: pair.label.replace("→", "->"), "gear_pair"),
-    Quantity("driver", lambda pair: pair.solved.pair.driver, heading="driver"),
-    Quantity("driven", lambda pair: pair.solved.pair.driven, heading="driven"),
-    Quantity("model", lambda pair: pair.solved.model.name),
-    Quantity("contact_ratio", lambda pair: pair.solved.geometry.contact_ratio, heading="contact ratio", shown=".4f"),
-    Quantity("overlap_ratio", lambda pair: pair.solved.geometry.overlap_ratio),
-    Quantity("total_contact_ratio", lambda pair: pair.solved.geometry.total_contact_ratio),
-    Quantity("centre_distance_m", lambda pair: pair.solved.geometry.working_centre_distance),
-    Quantity("working_pressure_angle_rad", lambda pair: pair.solved.geometry.working_pressure_angle),
+    Quantity("driver", "solved.pair.driver", heading="driver"),
+    Quantity("driven", "solved.pair.driven", heading="driven"),
+    Quantity("model", "solved.model.name"),
+    Quantity("contact_ratio", "solved.geometry.contact_ratio", heading="contact ratio", shown=".4f"),
+    Quantity("overlap_ratio", "solved.geometry.overlap_ratio"),
+    Quantity("total_contact_ratio", "solved.geometry.total_contact_ratio"),
+    Quantity("centre_distance_m", "solved.geometry.working_centre_distance"),
+    Quantity("working_pressure_angle_rad", "solved.geometry.working_pressure_angle"),
     Part("backlash_m", lambda pair: _where(pair.solved.backlash, pair), BACKLASH),
     Quantity("mesh_frequency_hz", lambda pair: pair.solved.mesh_frequency, heading="mesh frequency [Hz]", shown=".2f"),
-    Quantity("torque_n_m", lambda pair: pair.solved.torque),
+    Quantity("torque_n_m", "solved.torque"),
     Quantity(
         "misalignment_rad",
-        lambda pair: pair.misalignment.taken,
+        "misalignment.taken",
         "pair_misalignment",
-        (),
-        "rad",
-        "misalignment of the flanks that mesh stiffness and motion take",
+        long_name="misalignment of the flanks that mesh stiffness and motion take",
     ),
-    Quantity("misalignment_from", lambda pair: pair.misalignment.origin),
-    Quantity("mean_force_n", lambda pair: pair.solved.static.force),
-    Quantity("mean_force_from", lambda pair: pair.force_origin),
+    Quantity("misalignment_from", "misalignment.origin"),
+    Quantity("mean_force_n", "solved.static.force"),
+    Quantity("mean_force_from", "force_origin"),
     Rows("gears", lambda pair: _gears(pair.solved.geometry, pair.widths_given), GEAR),
     Quantity("path_of_contact", lambda pair: _points(path_of_contact(pair.solved.geometry))),
     Part("", lambda pair: path_of_contact(pair.solved.geometry), PATH),
@@ -445,37 +375,31 @@ PAIR = (
         (
             Quantity(
                 "",
-                lambda flanks: flanks.roll_angle,
+                "roll_angle",
                 "flank_roll_angle",
                 ("side", "flank_place"),
                 "rad",
-                "roll angle from form circle to tip",
+                long_name="roll angle from form circle to tip",
             ),
             Quantity(
-                "",
-                lambda flanks: flanks.deviation,
-                "flank_deviation",
-                ("side", "flank_place"),
-                "m",
-                "material over the involute",
+                "", "deviation", "flank_deviation", ("side", "flank_place"), "m", long_name="material over the involute"
             ),
         ),
     ),
-    Part("stiffness_n_per_m", lambda pair: pair, STIFFNESS),
-    Part("transmission_error_m", lambda pair: pair, TRANSMISSION_ERROR),
+    Part("stiffness_n_per_m", ".", STIFFNESS),
+    Part("transmission_error_m", ".", TRANSMISSION_ERROR),
     Part("load_sharing", lambda pair: _where(pair.shares, pair), LOAD_SHARING),
     Part("contact_pressure_pa", lambda pair: _where(pair.pressure, pair), PRESSURE),
     Part("harris_map", lambda pair: _where(pair.harris, pair), HARRIS_MAP),
     Part("optimal_tip_relief", lambda pair: _where(pair.optimum, pair), RELIEF),
     Quantity(
-        "roll_angle_rad",
-        lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.teeth,
+        "roll_angle_rad", lambda pair: 2.0 * np.pi * pair.solved.static.phases / pair.solved.geometry.driver.teeth
     ),
-    Quantity("stiffness", lambda pair: pair.stiffness),
+    Quantity("stiffness"),
 )
 """Quantities of one gear pair under the case's torque; angles in rad, positions in base pitches."""
 
-GEARS = (Rows("pairs", lambda pairs: pairs, PAIR, "gear_pair"),)
+GEARS = (Rows("pairs", ".", PAIR, "gear_pair"),)
 """Quantities of all gear pairs of a case."""
 
 
@@ -510,9 +434,9 @@ _TRANSMISSION_ERROR_ALONE = "of transmission error alone: load shuttling excites
 _WORTH_IT = 0.9  # a relief with less than this part of the given one's error is worth naming as better
 OVERVIEW = (
     *columns_of(PAIR),
-    Column("mean stiffness [N/µm]", "stiffness_n_per_m.mean", ".1f", _MEGA),
-    Column("mean transmission error [µm]", "transmission_error_m.mean", ".2f", _MICRO),
-    Column("peak to peak [µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+    Column("mean stiffness [N/µm]", "stiffness_n_per_m.mean", ".1f"),
+    Column("mean transmission error [µm]", "transmission_error_m.mean", ".2f"),
+    Column("peak to peak [µm]", "transmission_error_m.peak_to_peak", ".3f"),
 )
 
 

@@ -53,26 +53,19 @@ def _modes(solved: "HousingModes") -> list[_Mode]:
 
 MODE = (
     Quantity(
-        "number",
-        lambda mode: mode.number,
-        "housing_mode",
-        unit="1",
-        long_name="number of the housing mode",
-        heading="mode",
-        shown="d",
+        "number", "number", "housing_mode", unit="1", long_name="number of the housing mode", heading="mode", shown="d"
     ),
     Quantity(
         "frequency_hz",
         lambda mode: mode.frequency,
         "housing_frequency",
-        unit="Hz",
         long_name="housing natural frequency",
         heading="frequency [Hz]",
         shown=".2f",
     ),
     Quantity(
         "damping_ratio",
-        lambda mode: mode.damping_ratio,
+        "damping_ratio",
         "housing_damping_ratio",
         unit="1",
         long_name="housing modal damping ratio",
@@ -81,50 +74,49 @@ MODE = (
     ),
     Quantity(
         "discretisation_error",
-        lambda mode: mode.discretisation_error,
+        "discretisation_error",
         "housing_discretisation_error",
         unit="1",
         long_name="estimate of the natural frequency's relative error by the mesh",
         heading="mesh error [%]",
         shown=".2g",
-        scale=100.0,
     ),
     Quantity(
         "strength",
-        lambda mode: mode.strength,
+        "strength",
         "housing_strength",
         unit="kg-1",
         long_name="lateral acceleration strength",
         heading="strength [1/kg]",
         shown=".4g",
     ),
-    Quantity("effective_mass", lambda mode: mode.effective_mass),
+    Quantity("effective_mass"),
     Quantity(
         "",
-        lambda mode: mode.survey_shape,
+        "survey_shape",
         "survey_shape",
         ("survey_point", "component"),
         "kg-0.5",
-        "mass-normalised mode shapes at the survey points",
+        long_name="mass-normalised mode shapes at the survey points",
     ),
 )
 """Quantities of one mode."""
 
 COUNT_CERTIFICATE = (
-    Quantity("limit_hz", lambda certificate: certificate.limit / HERTZ),
-    Quantity("expected", lambda certificate: certificate.expected),
-    Quantity("found", lambda certificate: certificate.found),
-    Quantity("complete", lambda certificate: certificate.complete),
-    Quantity("max_residual", lambda certificate: certificate.max_residual),
+    Quantity("limit_hz"),
+    Quantity("expected"),
+    Quantity("found"),
+    Quantity("complete"),
+    Quantity("max_residual"),
 )
 """Proof of modes by their count below a limit, of a housing or of a rotor."""
 
-CERTIFICATE = (*COUNT_CERTIFICATE, Quantity("max_overlap", lambda certificate: certificate.max_overlap))
+CERTIFICATE = (*COUNT_CERTIFICATE, Quantity("max_overlap"))
 """Proof of the housing's modes by the inertia count."""
 
 MESH_SIZE = (
     Quantity("nodes", lambda mesh: len(mesh.points)),
-    Quantity("elements", lambda mesh: mesh.n_elements),
+    Quantity("elements", "n_elements"),
     Quantity("dofs", lambda mesh: 3 * len(mesh.points)),
 )
 """Quantities of a mesh."""
@@ -132,7 +124,7 @@ MESH_SIZE = (
 _MOTIONS = ["x", "y", "z", "rotation_x", "rotation_y"]  # of a bearing
 STATIC_ERROR = (
     Quantity("without_attachments", lambda solved: solved.missing_compliance.max()),
-    Quantity("with_attachments", lambda solved: solved.modes.residual_modes.proof.error),
+    Quantity("with_attachments", "modes.residual_modes.proof.error"),
     Quantity("attachments", lambda solved: len(solved.modes.residual_modes.frequencies)),
     Quantity(
         "without_attachments_at",
@@ -150,14 +142,14 @@ SELECTION = (
     Quantity("to", lambda solved: list(solved.sensors)),
     Part(
         "",
-        lambda solved: solved.selection,
+        "selection",
         (
             Quantity("band_hz", lambda chosen: [edge / HERTZ for edge in chosen.band]),
-            Quantity("tolerance", lambda chosen: chosen.tolerance),
+            Quantity("tolerance"),
             Quantity("keep", lambda chosen: chosen.kept + 1),
             Quantity("ranking", lambda chosen: chosen.ranking + 1),
-            Quantity("strength_m_per_n", lambda chosen: chosen.strength),
-            Quantity("error_left", lambda chosen: chosen.error_left),
+            Quantity("strength_m_per_n", "strength"),
+            Quantity("error_left"),
         ),
     ),
 )
@@ -167,7 +159,7 @@ ORIGIN = (
     Quantity("reused", lambda solved: solved.source is not None),
     Quantity("modes_read_from", lambda solved: ABSENT if solved.source is None else str(solved.source)),
     Quantity("seconds_when_solved", lambda solved: ABSENT if solved.source is None else solved.record.notes["seconds"]),
-    Quantity("warnings", lambda solved: solved.warnings),
+    Quantity("warnings"),
 )
 """Origin of the modes, for every command that uses them."""
 
@@ -186,13 +178,13 @@ SOLID = (
 HOUSING: Fields = (
     Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
     Rows("modes", _modes, MODE, "housing_mode"),
-    Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
-    Part("mesh", lambda solved: solved.mesh, MESH_SIZE),
+    Part("certificate", "modes.certificate", CERTIFICATE),
+    Part("mesh", "mesh", MESH_SIZE),
     Quantity("refinement", lambda solved: solved.refinement or ABSENT),
     Quantity("size_m", lambda solved: np.ptp(solved.mesh.points, axis=0)),
-    Quantity("mass_kg", lambda solved: solved.mass),
-    Quantity("center_of_mass_m", lambda solved: solved.health.body.center),
-    Quantity("attached_mass_kg", lambda solved: solved.housing.attached_mass),
+    Quantity("mass_kg"),
+    Quantity("center_of_mass_m", "health.body.center"),
+    Quantity("attached_mass_kg", "housing.attached_mass"),
     Quantity(
         "effective_mass",
         lambda solved: effective_mass_document(solved.effective_mass),
@@ -200,25 +192,23 @@ HOUSING: Fields = (
     Part("static_error", static_error, STATIC_ERROR),
     Quantity("health", lambda solved: health_document(solved.health)),
     Part("solid", lambda solved: solved.housing.solid(), SOLID),
-    Quantity("seconds", lambda solved: solved.seconds),
+    Quantity("seconds"),
     Quantity(
         "",
-        lambda solved: solved.survey.positions,
+        "survey.positions",
         "survey_position",
         ("survey_point", "component"),
         "m",
-        "survey points on the housing's outer faces",
+        long_name="survey points on the housing's outer faces",
     ),
-    Quantity(
-        "", lambda solved: solved.survey.normals, "survey_normal", ("survey_point", "component"), "1", "outward normals"
-    ),
+    Quantity("", "survey.normals", "survey_normal", ("survey_point", "component"), "1", long_name="outward normals"),
     Quantity(
         "",
         lambda solved: {name: port.position for name, port in solved.sensors.items()} or None,
         "sensor_position",
         ("sensor", "component"),
         "m",
-        "point of the surface that the sensor is on",
+        long_name="point of the surface that the sensor is on",
     ),
     Quantity(
         "",
@@ -226,9 +216,9 @@ HOUSING: Fields = (
         "sensor_direction",
         ("sensor", "component"),
         "1",
-        "direction of the sensor's acceleration",
+        long_name="direction of the sensor's acceleration",
     ),
-    Part("", lambda solved: solved, ORIGIN),
+    Part("", ".", ORIGIN),
 )
 """Quantities of a solved housing."""
 
@@ -312,7 +302,7 @@ def line_picture(frequency_hz: float, name: str | None) -> Picture:
 _LINES = (
     line_frequency(lambda line: (line_picture(line["frequency_hz"], None).place,)),
     LINE_NAME,
-    Column("largest [µm, peak]", "largest_displacement_m", ".3g", 1e6),
+    Column("largest [µm, peak]", "largest_displacement_m", ".3g"),
     Column("largest [m/s², peak]", "largest_acceleration_m_per_s2", ".3g"),
     Column(
         "kinetic energy by mode",
@@ -354,7 +344,7 @@ _MODES = (
     Column("mode", "number", "d"),
     Column("frequency [Hz]", "frequency_hz", ".2f"),
     Column("damping", "damping_ratio", ".4g"),
-    Column("mesh error [%]", "discretisation_error", ".2g", 100.0),
+    Column("mesh error [%]", "discretisation_error", ".2g"),
     Column("strength [1/kg]", "strength", ".3e"),
 )
 _CHECKS = (

@@ -24,24 +24,24 @@ def bores(mesh: Mesh) -> list[BoreAlongAxis]:
 
 
 BORE = (
-    Quantity("center_m", lambda row: row.bore.center),
-    Quantity("diameter_m", lambda row: row.bore.diameter),
-    Quantity("length_m", lambda row: row.bore.length),
-    Quantity("axis", lambda row: row.axis),
+    Quantity("center_m", "bore.center"),
+    Quantity("diameter_m", "bore.diameter"),
+    Quantity("length_m", "bore.length"),
+    Quantity("axis"),
 )
 """Quantities of a bore; a row is a :class:`BoreAlongAxis`."""
 
 QUALITY = (
-    Quantity("volume_m3", lambda quality: quality.volume),
+    Quantity("volume_m3", "volume"),
     Quantity("edge_length_m", lambda quality: dict(zip(("min", "median", "max"), quality.edge_length, strict=True))),
     Quantity("shape_number", lambda quality: dict(zip(("min", "median"), quality.shape, strict=True))),
 )
 """Quality of the elements: the shape number is 1 at best."""
 
 MESH = (
-    Part("mesh", lambda mesh: mesh, MESH_SIZE),
-    Quantity("order", lambda mesh: mesh.order),
-    Quantity("kinds", lambda mesh: mesh.kinds),
+    Part("mesh", ".", MESH_SIZE),
+    Quantity("order"),
+    Quantity("kinds"),
     Quantity("surfaces", lambda mesh: {name: sum(map(len, facets)) for name, facets in sorted(mesh.surfaces.items())}),
     Quantity("volumes", lambda mesh: {name: len(members) for name, members in sorted(mesh.volumes.items())}),
     Part("", mesh_quality, QUALITY),

@@ -36,8 +36,8 @@ class NamedParts(NamedTuple):
 
 
 MESH = (
-    Quantity("driver", lambda row: row.mesh.driver.name, heading="driver"),
-    Quantity("driven", lambda row: row.mesh.driven.name, heading="driven"),
+    Quantity("driver", "mesh.driver.name", heading="driver"),
+    Quantity("driven", "mesh.driven.name", heading="driven"),
     Quantity(
         "mean_force_n", lambda row: float(row.figures.mean_force[row.contact]), heading="mean force [N]", shown=".0f"
     ),
@@ -49,13 +49,12 @@ MESH = (
         lambda row: float(row.figures.contact_loss[row.contact]),
         heading="apart [%]",
         shown=".2f",
-        scale=100.0,
     ),
 )
 """Quantities of a gear mesh in motion; a row is a :class:`MeshFigures`."""
 
 BEARING = (
-    Quantity("name", lambda row: row.name, heading="bearing"),
+    Quantity("name", heading="bearing"),
     Quantity("mean_force_n", lambda row: row.parts.mean[:3], heading="mean force x, y, z [N]", shown=".1f"),
     Quantity("rms_force_n", lambda row: row.parts.rms[:3], heading="a.c. force x, y, z [N rms]", shown=".2f"),
     Quantity("mean_moment_n_m", lambda row: row.parts.mean[3:], heading="mean moment x, y [N m]", shown=".2f"),
@@ -212,7 +211,7 @@ LINE_COLUMNS = (
     Column("amplitude [m/s², peak]", "amplitude_m_per_s2", shown=amplitude_words),
     Column("level [dB re 1e-6 m/s²]", "level_db", shown=level_words),
     Column("by damping × 2 and / 2 [dB]", band_words, numbers=("band_db.0", "band_db.1")),
-    Column("± by the modal basis [%]", "uncertainty", ".1f", 100.0),
+    Column("± by the modal basis [%]", "uncertainty", ".1f"),
     LINE_NAME,
     MECHANISM,
     shape_column("mostly by"),

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,7 +9,8 @@ import numpy as np
 from gearwhine.coupling.description.gear_train import EQUAL_MESHES
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.housing.acoustics.sound_levels import power_level
-from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
+from gearwhine.output.attributes import meaning_of, value_at
+from gearwhine.output.quantity import ABSENT, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import (
     Column,
     Document,
@@ -28,10 +28,9 @@ from gearwhine.results.bearing_lives import life_quantities
 if TYPE_CHECKING:
     from gearwhine.coupling.linear.line_sensitivity import Line
     from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
-    from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
-    from gearwhine.solve.operating_point import LoadedBearing, SolvedLoad
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6
@@ -39,32 +38,27 @@ _DIRECTION, _ROTATION, _MOTION = ("direction",), ("rotation",), ("bearing_motion
 _MOTIONS = (*_AXES, *_TILTS)
 
 
-def _along(values: Any) -> dict[str, float]:
-    """Components along x, y, z."""
-    return dict(zip(_AXES, values[:3].tolist(), strict=True))
+def _along(key: str, of: str, name: str, long_name: str, *, optional: bool = False) -> Quantity:
+    """Declare the components along x, y, z of a load or motion."""
+    return _components(key, of, name, long_name, _DIRECTION, dict(zip(_AXES, range(3), strict=True)), optional)
 
 
-def _about(values: Any) -> dict[str, float]:
-    """Components about x and y."""
-    return dict(zip(_TILTS, values[3:5].tolist(), strict=True))
+def _about(key: str, of: str, name: str, long_name: str) -> Quantity:
+    """Declare the components about x and y of a load or motion."""
+    return _components(key, of, name, long_name, _ROTATION, dict(zip(_TILTS, (3, 4), strict=True)), False)
 
 
-def _list(values: dict[str, float]) -> list[float]:
-    return list(values.values())
+def _components(
+    key: str, of: str, name: str, long_name: str, along: tuple[str, ...], places: dict[str, int], optional: bool
+) -> Quantity:
+    def labelled(row: Any) -> Any:
+        values = value_at(row, of)
+        return None if values is None else {label: float(values[place]) for label, place in places.items()}
 
+    def listed(values: dict[str, float]) -> list[float]:
+        return list(values.values())
 
-def _of_bearing(key: str, of: str, name: str, unit: str, long_name: str) -> Quantity:
-    """Declare components along x, y, z of an attribute of a bearing's load."""
-    return Quantity(
-        key, lambda bearing: _along(getattr(bearing.load, of)), name, _DIRECTION, unit, long_name, document=_list
-    )
-
-
-def _turns_of_bearing(key: str, of: str, name: str, unit: str, long_name: str) -> Quantity:
-    """Declare components about x and y of an attribute of a bearing's load."""
-    return Quantity(
-        key, lambda bearing: _about(getattr(bearing.load, of)), name, _ROTATION, unit, long_name, document=_list
-    )
+    return Quantity(key, labelled, name, along, long_name=long_name, document=listed, optional=optional)
 
 
 def _force(axis: int) -> Column:
@@ -75,83 +69,34 @@ def _moment(axis: int) -> Column:
     return Column(f"{_TILTS[axis]} [N m]", f"moment_n_m.{axis}", "z.1f")
 
 
-def _rated(of: "Callable[[BearingLife], Any]") -> "Callable[[LoadedBearing], Any]":
-    """Take a value of a rolling bearing's ratings; other bearings have none."""
-    return lambda bearing: None if bearing.rated is None else of(bearing.rated)
-
-
 BEARING = (
-    Quantity("name", lambda bearing: bearing.load.name, "loaded_bearing", heading="bearing"),
-    Quantity("shaft", lambda bearing: bearing.load.mounted.rotor),
+    Quantity("name", "load.name", "loaded_bearing", heading="bearing"),
+    Quantity("shaft", "load.mounted.rotor"),
     Quantity("seat", lambda bearing: bearing.load.mounted.seat or "ground"),
-    _of_bearing("force_n", "force", "bearing_mean_force", "N", "force of the shaft on the bearing"),
-    Quantity(
+    _along("force_n", "load.force", "bearing_mean_force", "force of the shaft on the bearing"),
+    _along(
         "given_load_n",
-        lambda bearing: ABSENT if bearing.given_load is None else _along(bearing.given_load),
+        "given_load",
         "bearing_given_load",
-        _DIRECTION,
-        "N",
         "force on the bearing for which the case has its stiffness made",
-        document=_list,
+        optional=True,
     ),
-    _turns_of_bearing("moment_n_m", "force", "bearing_mean_moment", "N m", "moment of the shaft on the bearing"),
-    _of_bearing("displacement_m", "deflection", "bearing_displacement", "m", "displacement of the shaft in its seat"),
-    _turns_of_bearing("rotation_rad", "deflection", "bearing_rotation", "rad", "rotation of the shaft in its seat"),
-    _of_bearing("seat_displacement_m", "seat_motion", "seat_displacement", "m", "displacement of the seat"),
-    _turns_of_bearing("seat_rotation_rad", "seat_motion", "seat_rotation", "rad", "rotation of the seat"),
-    Quantity(
-        "tilt_rad",
-        lambda bearing: bearing.load.tilt,
-        "bearing_tilt",
-        (),
-        "rad",
-        "angle between the shaft and its seat",
-        heading="tilt\n[µrad]",
-        shown=".0f",
-        scale=_MICRO,
-    ),
-    Quantity(
-        "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
-        lambda bearing: bearing.load.stiffness,
-        "bearing_tangent_stiffness",
-        _MOTION,
-        "",
-        "tangent stiffness over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad",
-    ),
-    Quantity(
-        "peak_pressure_pa",
-        lambda bearing: bearing.peak_pressure,
-        "bearing_peak_pressure",
-        (),
-        "Pa",
-        "greatest pressure of the rolling elements",
-        heading="pressure\n[GPa]",
-        shown=".3g",
-        scale=1e-9,
-    ),
-    Quantity(
-        "preload_n",
-        lambda bearing: bearing.preload,
-        "bearing_preload",
-        (),
-        "N",
-        "axial force with which the rows are pressed without torque and weight",
-        heading="preload [N]",
-        shown=".0f",
-    ),
-    Quantity("most_loaded_element", lambda bearing: bearing.most_loaded),
-    Quantity(
-        "",
-        lambda bearing: bearing.element_loads,
-        "bearing_element_load",
-        ("rolling_element",),
-        "N",
-        "load of the rolling element on the outer ring, row after row",
-    ),
-    Quantity("equivalent_load_n", _rated(lambda rated: rated.equivalent_load)),
-    *life_quantities(lambda key: _rated(attrgetter(key)), "bearing", ("L10\n[h]", "L10r\n[h]")),
+    _about("moment_n_m", "load.force", "bearing_mean_moment", "moment of the shaft on the bearing"),
+    _along("displacement_m", "load.deflection", "bearing_displacement", "displacement of the shaft in its seat"),
+    _about("rotation_rad", "load.deflection", "bearing_rotation", "rotation of the shaft in its seat"),
+    _along("seat_displacement_m", "load.seat_motion", "seat_displacement", "displacement of the seat"),
+    _about("seat_rotation_rad", "load.seat_motion", "seat_rotation", "rotation of the seat"),
+    Quantity("tilt_rad", "load.tilt", "bearing_tilt", heading="tilt\n[µrad]", shown=".0f"),
+    # Over x, y, z and the rotations about x and y.
+    Quantity("stiffness", "load.stiffness", "bearing_tangent_stiffness", _MOTION),
+    Quantity("peak_pressure_pa", "peak_pressure", "bearing_peak_pressure", heading="pressure\n[GPa]", shown=".3g"),
+    Quantity("preload_n", "preload", "bearing_preload", heading="preload [N]", shown=".0f"),
+    Quantity("most_loaded_element", "most_loaded"),
+    Quantity("", "element_loads", "bearing_element_load", ("rolling_element",), "N"),
+    Quantity("equivalent_load_n", "rated.equivalent_load"),
+    *life_quantities("rated", "bearing", ("L10\n[h]", "L10r\n[h]")),
 )
-"""Quantities of a bearing at the operating point."""
+"""Quantities of a bearing at the operating point; a row is a :class:`LoadedBearing`."""
 
 
 def _stiffness(row: Row) -> str:
@@ -173,203 +118,102 @@ _ROLLING_COLUMNS = (_NAME, *_OF_ELEMENTS, Column("x, y, z [N/µm]", _stiffness, 
 _SLICE, _PHASE = ("face_slice",), ("load_phase",)
 
 
-def _of_loaded(value: Callable[[PairLoad], Any]) -> Callable[[PairLoad], Any]:
-    """Take a value of a pair that carries load; an idle one has none."""
-    return lambda load: value(load) if load.force > 0.0 else None
+_MISALIGNMENT = Quantity("misalignment_rad", "misalignment", "misalignment", heading="misaligned\n[µrad]", shown="z.2f")
+_K_H_BETA = Quantity("k_h_beta", "loaded.k_h_beta", "face_load_factor", unit="1", heading="K_Hβ", shown=".3f")
+_MEAN_STIFFNESS = Quantity(
+    "mean_stiffness_n_per_m",
+    "loaded.mean_stiffness",
+    "mesh_mean_stiffness",
+    heading="mesh stiffness\nunder load [N/µm]",
+    shown=".1f",
+)
+_PEAK_TO_PEAK = Quantity(
+    "transmission_error_peak_to_peak_m",
+    "loaded.peak_to_peak_transmission_error",
+    "transmission_error_peak_to_peak",
+    heading="TE p-p\n[µm]",
+    shown=".3f",
+)
+_OUTCOMES = (_MISALIGNMENT, _K_H_BETA, _MEAN_STIFFNESS, _PEAK_TO_PEAK)
+"""Quantities of a pair that are followed over torque; a row is a :class:`PairLoad`, of an idle pair without most."""
 
-
-def _line_load(key: str, name: str, of: Callable[[PairLoad], float], long_name: str) -> Quantity:
-    """Declare a line load of a pair: transverse load, along the line of action, per face width."""
-    return Quantity(key, of, name, (), "N/m", long_name)
-
-
+_GEARS = (
+    Quantity("driver", "pair.driver.name", heading="driver"),
+    Quantity("driven", "pair.driven.name", heading="driven"),
+)
 PAIR = (
-    Quantity("", lambda load: f"{load.pair.driver.name} -> {load.pair.driven.name}", "loaded_pair"),
-    Quantity("driver", lambda load: load.pair.driver.name, heading="driver"),
-    Quantity("driven", lambda load: load.pair.driven.name, heading="driven"),
-    Quantity(
-        "force_n",
-        lambda load: load.force,
-        "mesh_mean_force",
-        (),
-        "N",
-        "mean mesh force along the line of action",
-        heading="force\n[N]",
-        shown=".0f",
-    ),
-    Quantity("thrust_n", lambda load: load.thrust, "mesh_thrust", (), "N", "axial force on the driven gear along z"),
-    Quantity("face_width_m", lambda load: load.pair.geometry.face_width),
-    Quantity(
-        "misalignment_rad",
-        lambda load: load.misalignment,
-        "misalignment",
-        (),
-        "rad",
-        "angle between the flanks in the plane of action, open towards +z",
-    ),
+    Quantity("", "label", "loaded_pair"),
+    *_GEARS,
+    Quantity("force_n", "force", "mesh_mean_force", heading="force\n[N]", shown=".0f"),
+    Quantity("thrust_n", "thrust", "mesh_thrust"),
+    Quantity("face_width_m", "pair.geometry.face_width"),
+    _MISALIGNMENT,
     Quantity(
         "misalignment_by_cause_rad",
         lambda load: {cause: load.misalignment_by_cause[cause] for cause in CAUSES},
         "misalignment_by_cause",
         ("cause",),
-        "rad",
-        "part of the misalignment",
+        long_name="part of the misalignment",
     ),
-    Quantity(
-        "misalignment_over_face_m",
-        lambda load: load.misalignment * load.pair.geometry.face_width,
-        heading="misaligned\n[µm]",
-        shown="z.2f",
-        scale=_MICRO,
-    ),
-    Quantity(
-        "k_h_beta",
-        _of_loaded(lambda load: load.k_h_beta),
-        "face_load_factor",
-        (),
-        "1",
-        "face load factor K_Hbeta of ISO 6336-1 at the mean torque, without K_A, K_V, tolerances and running-in",
-        heading="K_Hβ",
-        shown=".3f",
-    ),
-    Quantity(
-        "mean_stiffness_n_per_m",
-        _of_loaded(lambda load: load.mean_stiffness),
-        "mesh_mean_stiffness",
-        (),
-        "N/m",
-        "mean mesh stiffness under load over the mesh period",
-        heading="mesh stiffness\nunder load [N/µm]",
-        shown=".1f",
-        scale=_MEGA,
-    ),
+    Quantity("misalignment_over_face_m", heading="misaligned\n[µm]", shown="z.2f"),
+    _K_H_BETA,
+    _MEAN_STIFFNESS,
     Part(
         "transmission_error_m",
-        _of_loaded(lambda load: load.transmission_error),
-        (
-            Quantity("mean", np.mean),
-            Quantity("peak_to_peak", np.ptp),
-        ),
+        "loaded",
+        (Quantity("mean", "mean_transmission_error"), Quantity("peak_to_peak", "peak_to_peak_transmission_error")),
     ),
+    # Transverse loads along the line of action, by face width.
     Part(
         "line_load_n_per_m",
-        _of_loaded(lambda load: load),
+        "loaded",
         (
-            _line_load("mean", "mean_line_load", lambda load: load.line_load.mean(), "mean line load F / b"),
-            _line_load(
-                "maximum",
-                "maximum_line_load",
-                lambda load: load.k_h_beta * load.line_load.mean(),
-                "maximum line load K_Hbeta F / b",
-            ),
-            _line_load(
-                "peak",
-                "peak_line_load",
-                lambda load: load.fine.line_load.max(),
-                "peak line load: largest over face and mesh period, all tooth pairs together",
-            ),
-            _line_load(
-                "peak_of_tooth_pair",
-                "peak_line_load_of_tooth_pair",
-                lambda load: load.fine.peak_line_load,
-                "peak line load of one tooth pair over its face and the mesh period",
-            ),
+            Quantity("mean", "mean_line_load", "mean_line_load", unit="N/m"),
+            Quantity("maximum", "maximum_line_load", "maximum_line_load", unit="N/m"),
+            Quantity("peak", "peak_line_load", "peak_line_load", unit="N/m"),
+            Quantity("peak_of_tooth_pair", "fine.peak_line_load", "peak_line_load_of_tooth_pair", unit="N/m"),
         ),
     ),
-    Quantity("contact_pressure_max_pa", _of_loaded(lambda load: load.peak_pressure)),
-    Quantity("carrying_part", _of_loaded(lambda load: load.carrying_part)),
-    Quantity(
-        "", lambda load: load.z, "face_slice_place", _SLICE, "m", "distance of the slice from the middle of the face"
-    ),
-    Quantity(
-        "",
-        lambda load: load.gap,
-        "face_gap",
-        _SLICE,
-        "m",
-        "gap of the flanks by the deflection of the machine, its mean taken off",
-    ),
-    Quantity(
-        "",
-        lambda load: load.pair.contact.flank_gap,
-        "flank_gap",
-        _SLICE,
-        "m",
-        "gap of the flanks by their modifications",
-    ),
-    Quantity(
-        "",
-        _of_loaded(lambda load: load.line_load),
-        "face_mean_line_load",
-        _SLICE,
-        "N/m",
-        "line load: transverse load per face width, all tooth pairs together, mean over the mesh period",
-    ),
-    Quantity(
-        "",
-        _of_loaded(lambda load: load.fine.line_load),
-        "face_line_load",
-        (*_PHASE, *_SLICE),
-        "N/m",
-        "line load: transverse load per face width, all tooth pairs together",
-    ),
-    Quantity("", lambda load: load.fine.phases, "load_phase", _PHASE, "1", "part of the mesh period", common=True),
-    Quantity(
-        "",
-        _of_loaded(lambda load: load.transmission_error),
-        "loaded_transmission_error",
-        _PHASE,
-        "m",
-        "static transmission error under the mean load: of teeth and reliefs, along the line of action",
-    ),
+    Quantity("contact_pressure_max_pa", "loaded.peak_pressure"),
+    Quantity("carrying_part", "loaded.carrying_part"),
+    Quantity("", "z", "face_slice_place", _SLICE, "m"),
+    Quantity("", "gap", "face_gap", _SLICE, "m"),
+    Quantity("", "pair.contact.flank_gap", "flank_gap", _SLICE, "m"),
+    Quantity("", "loaded.line_load", "face_mean_line_load", _SLICE, "N/m"),
+    Quantity("", "loaded.fine.line_load", "face_line_load", (*_PHASE, *_SLICE), "N/m"),
+    Quantity("", "fine.phases", "load_phase", _PHASE, "1", common=True),
+    Quantity("", "loaded.transmission_error", "loaded_transmission_error", _PHASE, "m"),
 )
-"""Quantities of a gear pair at the operating point."""
+"""Quantities of a gear pair at the operating point; a row is a :class:`PairLoad`."""
 
 TAKEN = (
-    Quantity(
-        "misalignment_taken_rad",
-        lambda pair: pair.misalignment.taken,
-        "misalignment_taken",
-        (),
-        "rad",
-        "misalignment that mesh stiffness and motion take",
-    ),
-    Quantity("misalignment_taken_from", lambda pair: pair.misalignment.origin, "misalignment_taken_from"),
+    Quantity("misalignment_taken_rad", "misalignment.taken", "misalignment_taken"),
+    Quantity("misalignment_taken_from", "misalignment.origin", "misalignment_taken_from"),
     Part(
         "transmission_error_over_hunting_period_m",
-        lambda pair: pair.hunting,
-        (
-            Quantity("mean", lambda mesh: mesh.mean_transmission_error),
-            Quantity("peak_to_peak", lambda mesh: mesh.peak_to_peak_transmission_error),
-        ),
+        "hunting",
+        (Quantity("mean", "mean_transmission_error"), Quantity("peak_to_peak", "peak_to_peak_transmission_error")),
     ),
 )
 """Misalignment that the motion takes of a gear pair, and its static transmission error over the hunting period."""
 
 _PAIR_COLUMNS = (
-    *columns_of(PAIR),
-    Column("TE p-p\n[µm]", "transmission_error_m.peak_to_peak", ".3f", _MICRO),
+    *columns_of(field for field in PAIR if field is not _MISALIGNMENT),
+    Column(_PEAK_TO_PEAK.heading, "transmission_error_m.peak_to_peak", ".3f", _MICRO),
 )
 _CAUSE_COLUMNS = (
-    *columns_of(PAIR)[:2],
-    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
+    *columns_of((*_GEARS, _MISALIGNMENT)),
     *(Column(f"by\n{cause}", f"misalignment_by_cause_rad.{cause}", "z.2f", _MICRO) for cause in CAUSES),
 )
 
 _PLACE = ("shaft_place",)
 SHAFT = (
-    Quantity("name", lambda shaft: shaft.name, "deflected_shaft", heading="shaft"),
-    Quantity("largest_deflection_m", lambda shaft: shaft.largest[0], heading="largest [µm]", shown=".4g", scale=_MICRO),
-    Quantity(
-        "largest_deflection_at_m",
-        lambda shaft: shaft.largest[1],
-        heading="at, from its left end [mm]",
-        shown=".4g",
-        scale=1e3,
-    ),
-    Quantity("twist_rad", lambda shaft: shaft.twist, heading="twist [µrad]", shown=".4g", scale=_MICRO),
-    Quantity("", lambda shaft: shaft.at, "shaft_position", _PLACE, "m", "distance from the left end of the shaft"),
-    Quantity("", lambda shaft: shaft.z, "shaft_z", _PLACE, "m", "z of the machine"),
+    Quantity("name", "name", "deflected_shaft", heading="shaft"),
+    Quantity("largest_deflection_m", "largest.0", heading="largest [µm]", shown=".4g"),
+    Quantity("largest_deflection_at_m", "largest.1", heading="at, from its left end [mm]", shown=".4g"),
+    Quantity("twist_rad", heading="twist [µrad]", shown=".4g"),
+    Quantity("", "at", "shaft_position", _PLACE, "m"),
+    Quantity("", "z", "shaft_z", _PLACE, "m"),
     Quantity(
         "",
         lambda shaft: dict(zip(_AXES, shaft.motion[:3], strict=True)),
@@ -391,30 +235,21 @@ SHAFT = (
 
 
 class _Torque(NamedTuple):
-    """Torque of the first driver [N m], and the operating point there."""
+    """Operating point at a torque.
+
+    Attributes
+    ----------
+    torque : float
+        Torque of the first driver [N m].
+    point : OperatingPoint
+    """
 
     torque: float
     point: "OperatingPoint"
 
 
-TORQUE = (
-    Quantity("torque_n_m", lambda row: row.torque, "operating_torque", (), "N m", "torque of the first driver"),
-    Rows(
-        "gear_pairs",
-        lambda row: row.point.pairs,
-        (
-            Quantity("driver", lambda load: load.pair.driver.name),
-            Quantity("driven", lambda load: load.pair.driven.name),
-            Quantity("misalignment_rad", lambda load: load.misalignment),
-            Quantity("k_h_beta", _of_loaded(lambda load: load.k_h_beta)),
-            Quantity("mean_stiffness_n_per_m", _of_loaded(lambda load: load.mean_stiffness)),
-            Quantity("transmission_error_peak_to_peak_m", _of_loaded(lambda load: np.ptp(load.transmission_error))),
-        ),
-    ),
-)
+TORQUE = (Quantity("torque_n_m", "torque"), Rows("gear_pairs", "point.pairs", (*_GEARS, *_OUTCOMES)))
 """Quantities of an operating point over torque."""
-
-_HZ = 0.5 / np.pi
 
 
 class _SensorLine(NamedTuple):
@@ -426,29 +261,11 @@ class _SensorLine(NamedTuple):
 
 
 SENSOR_LINE = (
-    Quantity("sensor", lambda row: row.line.output.sensor, "line_sensor", heading="sensor"),
-    Quantity("excitation", lambda row: row.excitation, "line_excitation", heading="excitation"),
-    Quantity(
-        "frequency_hz",
-        lambda row: row.line.frequency * _HZ,
-        "line_frequency",
-        (),
-        "Hz",
-        "frequency of the line",
-        heading="[Hz]",
-        shown=".1f",
-    ),
-    Quantity(
-        "amplitude_m_per_s2",
-        lambda row: row.line.value,
-        "line_amplitude",
-        (),
-        "m/s2",
-        "amplitude of acceleration of the line, linear about the operating point",
-        heading="[m/s²]",
-        shown=".3g",
-    ),
-    Quantity("ranked", lambda row: row.ranked),
+    Quantity("sensor", "line.output.sensor", "line_sensor", heading="sensor"),
+    Quantity("excitation", "excitation", "line_excitation", heading="excitation"),
+    Quantity("frequency_hz", "line.frequency", "line_frequency", heading="[Hz]", shown=".1f"),
+    Quantity("amplitude_m_per_s2", "line.value", "line_amplitude", heading="[m/s²]", shown=".3g"),
+    Quantity("ranked"),
 )
 """Quantities of a sensor's line."""
 
@@ -462,46 +279,31 @@ class _LoudestLine(NamedTuple):
 
 
 SOUND_LINE = (
-    Quantity("excitation", lambda row: row.excitation, "loudest_line_excitation", heading="excitation"),
-    Quantity(
-        "frequency_hz",
-        lambda row: row.sound.line.frequency * _HZ,
-        "loudest_line_frequency",
-        (),
-        "Hz",
-        "frequency of the line",
-        heading="[Hz]",
-        shown=".1f",
-    ),
+    Quantity("excitation", "excitation", "loudest_line_excitation", heading="excitation"),
+    Quantity("frequency_hz", "sound.line.frequency", "loudest_line_frequency", heading="[Hz]", shown=".1f"),
     Quantity(
         "",
-        lambda row: row.sound.line.value,
+        "sound.line.value",
         "loudest_line_power",
-        (),
-        "W",
-        "sound power of the line, linear about the operating point",
+        unit="W",
+        long_name="sound power of the line, linear about the operating point",
     ),
-    Quantity(
-        "sound_power_db",
-        lambda row: float(power_level(row.sound.line.value)),
-        heading="L_W [dB]",
-        shown=".1f",
-    ),
+    Quantity("sound_power_db", lambda row: float(power_level(row.sound.line.value)), heading="L_W [dB]", shown=".1f"),
     Quantity(
         "sound_power_db_a",
         lambda row: float(power_level(row.sound.weighting * row.sound.line.value)),
         heading="L_WA [dB]",
         shown=".1f",
     ),
-    Quantity("ranked", lambda row: row.ranked),
+    Quantity("ranked"),
 )
 """Quantities of a loudest line."""
 
 _LEVELS = (
-    Quantity("level_db", lambda change: change.level),
-    Quantity("first_order_db", lambda change: change.first_order_level),
-    Quantity("reverse_level_db", lambda change: change.reverse_level),
-    Quantity("first_order_is_off", lambda change: change.first_order_is_off),
+    Quantity("level_db"),
+    Quantity("first_order_db", "first_order_level"),
+    Quantity("reverse_level_db"),
+    Quantity("first_order_is_off"),
 )
 
 
@@ -528,19 +330,19 @@ def _pair_changes(row: _Influence) -> list[_PairChange]:
 
 
 INFLUENCE = (
-    Quantity("parameter", lambda row: row.influence.parameter),
-    Quantity("kind", lambda row: row.influence.kind),
-    Quantity("step", lambda row: row.influence.step_text),
-    Quantity("step_words", lambda row: row.influence.words[0]),
-    Quantity("reverse_words", lambda row: row.influence.words[1]),
+    Quantity("parameter", "influence.parameter"),
+    Quantity("kind", "influence.kind"),
+    Quantity("step", "influence.step_text"),
+    Quantity("step_words", "influence.words.0"),
+    Quantity("reverse_words", "influence.words.1"),
     Rows(
         "lines",
         lambda row: row.sensitivity.sensor_changes(row.influence) if row.sensitivity.sensor_lines else ABSENT,
         (
-            Quantity("sensor", lambda change: change.line.output.sensor),
-            Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
-            Quantity("amplitude_m_per_s2", lambda change: change.change),
-            Quantity("first_order_m_per_s2", lambda change: change.first_order),
+            Quantity("sensor", "line.output.sensor"),
+            Quantity("frequency_hz", "line.frequency"),
+            Quantity("amplitude_m_per_s2", "change"),
+            Quantity("first_order_m_per_s2"),
             Quantity("reverse_amplitude_m_per_s2", lambda change: _unless_none(change.reverse)),
             *_LEVELS,
         ),
@@ -549,9 +351,9 @@ INFLUENCE = (
         "sound",
         lambda row: row.sensitivity.sound_changes(row.influence) if row.sensitivity.loudest_lines else ABSENT,
         (
-            Quantity("frequency_hz", lambda change: change.line.frequency * _HZ),
-            Quantity("power_w", lambda change: change.change),
-            Quantity("first_order_w", lambda change: change.first_order),
+            Quantity("frequency_hz", "line.frequency"),
+            Quantity("power_w", "change"),
+            Quantity("first_order_w"),
             Quantity("reverse_power_w", lambda change: _unless_none(change.reverse)),
             *_LEVELS,
         ),
@@ -565,9 +367,9 @@ INFLUENCE = (
         "gear_pairs",
         _pair_changes,
         (
-            Quantity("driver", lambda row: row.load.pair.driver.name),
-            Quantity("driven", lambda row: row.load.pair.driven.name),
-            Quantity("misalignment_rad", lambda row: row.misalignment),
+            Quantity("driver", "load.pair.driver.name"),
+            Quantity("driven", "load.pair.driven.name"),
+            Quantity("misalignment_rad"),
             Quantity("k_h_beta", lambda row: _unless_idle(row.k_h_beta)),
             Quantity("transmission_error_peak_to_peak_m", lambda row: _unless_idle(row.transmission_error)),
         ),
@@ -587,16 +389,16 @@ def _unless_idle(value: float) -> Any:
     return ABSENT if np.isnan(value) else value
 
 
-def _influence(name: str, unit: str, long_name: str, column: int) -> Quantity:
-    """Declare a change of every gear pair by every parameter's step, for the file."""
+def _change(outcome: Quantity, column: int) -> Quantity:
+    """Declare the change of an outcome of every gear pair by every parameter's step, for the file."""
 
     def changes(solved: "SolvedLoad") -> Any:
         if solved.sensitivity is None or not solved.point.pairs:
             return None
         return np.array([influence.changes[:, column] for influence in solved.sensitivity.influences])
 
-    long_name = f"change of the {long_name} by a step of the parameter, to first order"
-    return Quantity("", changes, f"{name}_change", ("influence", "loaded_pair"), unit, long_name)
+    long_name = f"change by a step of the parameter, to first order: {_meaning(outcome)}"
+    return Quantity("", changes, f"{outcome.name}_change", ("influence", "loaded_pair"), outcome.file_unit, long_name)
 
 
 def _line_changes(name: str, of: str, long_name: str, unit: str, changes: str, dimension: str) -> Quantity:
@@ -616,7 +418,7 @@ def _line_changes(name: str, of: str, long_name: str, unit: str, changes: str, d
     how = "to first order" if of == "first_order" else "the response solved anew"
     step = "reverse step" if of == "reverse" else "step"
     long_name = f"change of the line's {long_name} by a {step} of the parameter, {how}"
-    return Quantity("", values, name, ("influence", dimension), unit, long_name)
+    return Quantity("", values, name, ("influence", dimension), unit, long_name=long_name)
 
 
 def _sensor_lines(solved: "SolvedLoad") -> Any:
@@ -655,34 +457,39 @@ def _lines_without(solved: "SolvedLoad") -> Any:
     return ABSENT if sensitivity is None or sensitivity.lines is None else sensitivity.lines.held
 
 
-def _over_torque(name: str, unit: str, long_name: str, of: Any) -> Quantity:
-    """Declare a quantity of every gear pair over torque, for the file."""
+def _over_torque(outcome: Quantity) -> Quantity:
+    """Declare an outcome of every gear pair over torque, for the file."""
 
     def values(solved: "SolvedLoad") -> Any:
         if not solved.over_torque or not solved.point.pairs:
             return None
-        rows = [[of(pair) for pair in point.pairs] for point in solved.over_torque.values()]
+        rows = [[outcome.value_of(pair) for pair in point.pairs] for point in solved.over_torque.values()]
         return np.array(rows, dtype=np.float64)  # NaN of pairs that carry nothing
 
-    return Quantity("", values, f"{name}_over_torque", ("load_torque", "loaded_pair"), unit, f"{long_name} over torque")
+    along, long_name = ("load_torque", "loaded_pair"), f"over torque: {_meaning(outcome)}"
+    return Quantity("", values, f"{outcome.name}_over_torque", along, outcome.file_unit, long_name)
+
+
+def _meaning(outcome: Quantity) -> str:
+    return meaning_of(PairLoad, outcome.attribute.removeprefix("loaded."))
 
 
 _OF_SENSORS = ("amplitude of acceleration", "m/s2", "sensor_changes", "sensor_line")
 _OF_SOUND = ("sound power", "W", "sound_changes", "loudest_line")
 
-LOAD = (
+LOAD: Fields = (
     Quantity("speed_rpm", lambda solved: solved.machine.speed * 30.0 / np.pi),
-    Quantity("torque_n_m", lambda solved: solved.machine.torque),
-    Quantity("gravity_m_per_s2", lambda solved: ABSENT if solved.gravity is None else solved.gravity),
+    Quantity("torque_n_m", "machine.torque"),
+    Quantity("gravity_m_per_s2", optional=True),
     Quantity("seats", lambda solved: "housing" if solved.on_housing else "rigid"),
-    Quantity("residual", lambda solved: solved.point.residual),
-    Quantity("iterations", lambda solved: solved.point.iterations),
-    Quantity("free_motions", lambda solved: solved.point.free),
+    Quantity("residual", "point.residual"),
+    Quantity("iterations", "point.iterations"),
+    Quantity("free_motions", "point.free"),
     Quantity("", lambda solved: list(_MOTIONS), _MOTION[0], _MOTION[:1]),
     Quantity("", lambda solved: list(_MOTIONS), _MOTION[1], _MOTION[1:]),
-    Rows("shafts", lambda solved: solved.shafts, SHAFT, "deflected_shaft"),
-    Rows("bearings", lambda solved: solved.bearings, BEARING, "loaded_bearing"),
-    Rows("gear_pairs", lambda solved: solved.pairs, (Part("", lambda pair: pair.load, PAIR), *TAKEN), "loaded_pair"),
+    Rows("shafts", "shafts", SHAFT, "deflected_shaft"),
+    Rows("bearings", "bearings", BEARING, "loaded_bearing"),
+    Rows("gear_pairs", "pairs", (Part("", "load", PAIR), *TAKEN), "loaded_pair"),
     Rows("over_torque", lambda solved: [_Torque(*each) for each in solved.over_torque.items()] or ABSENT, TORQUE),
     Rows("sensor_lines", lambda solved: _sensor_lines(solved), SENSOR_LINE, "sensor_line"),
     Rows("loudest_lines", _loudest_lines, SOUND_LINE, "loudest_line"),
@@ -713,9 +520,10 @@ LOAD = (
         "influence",
         ("influence",),
     ),
-    _influence("misalignment", "rad", "angle between the flanks", 0),
-    _influence("face_load_factor", "1", "face load factor K_Hbeta", 1),
-    _influence("transmission_error_peak_to_peak", "m", "peak-to-peak static transmission error", 2),
+    *(
+        _change(outcome, column)
+        for column, outcome in enumerate((_MISALIGNMENT, _K_H_BETA, _PEAK_TO_PEAK))  # as in `OUTCOMES`
+    ),
     _line_changes("line_amplitude_change", "change", *_OF_SENSORS),
     _line_changes("line_amplitude_first_order_change", "first_order", *_OF_SENSORS),
     _line_changes("line_amplitude_reverse_change", "reverse", *_OF_SENSORS),
@@ -728,17 +536,9 @@ LOAD = (
         "load_torque",
         ("load_torque",),
         "N m",
-        "torque of the first driver",
+        long_name="torque of the first driver",
     ),
-    _over_torque("misalignment", "rad", "angle between the flanks", lambda pair: pair.misalignment),
-    _over_torque("face_load_factor", "1", "face load factor K_Hbeta", _of_loaded(lambda pair: pair.k_h_beta)),
-    _over_torque("mesh_mean_stiffness", "N/m", "mean mesh stiffness", _of_loaded(lambda pair: pair.mean_stiffness)),
-    _over_torque(
-        "transmission_error_peak_to_peak",
-        "m",
-        "peak-to-peak static transmission error",
-        _of_loaded(lambda pair: np.ptp(pair.transmission_error)),
-    ),
+    *(_over_torque(outcome) for outcome in _OUTCOMES),
 )
 """Quantities of the operating point."""
 
@@ -852,14 +652,7 @@ _PICTURES = (
 )
 
 
-_TORQUE_COLUMNS = (
-    Column("torque\n[N m]", "torque_n_m", ".4g"),
-    Column("pair", "pair"),
-    Column("misaligned\n[µrad]", "misalignment_rad", "z.2f", _MICRO),
-    Column("K_Hβ", "k_h_beta", ".3f"),
-    Column("mesh stiffness\nunder load [N/µm]", "mean_stiffness_n_per_m", ".1f", _MEGA),
-    Column("TE p-p\n[µm]", "transmission_error_peak_to_peak_m", ".3f", _MICRO),
-)
+_TORQUE_COLUMNS = (Column("torque\n[N m]", "torque_n_m", ".4g"), Column("pair", "pair"), *columns_of(_OUTCOMES))
 
 _MOST_INFLUENCES = 10  # parameters of a table
 _MOST_BEARINGS = 8  # of a sentence
@@ -876,9 +669,9 @@ _INFLUENCE_COLUMNS = (
     Column("of", lambda row: str(row["kind"]).removeprefix("bearing ")),
     Column("step", _short_step),
     Column("pair", "pair"),
-    Column("misaligned\n[µrad]", "misalignment_rad", "+.3f", _MICRO),
+    Column("misaligned\n[µrad]", "misalignment_rad", "+.3f"),
     Column("K_Hβ", "k_h_beta", "+.4f"),
-    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+.2f", 1e9),
+    Column("TE p-p\n[nm]", "transmission_error_peak_to_peak_m", "+.2f"),
 )
 
 

@@ -29,10 +29,6 @@ _ROTATING = (
 )
 
 
-def _in_rpm(speed: float | None) -> float | None:
-    return None if speed is None else speed * RPM
-
-
 class _Whirl(NamedTuple):
     """Rotor, and its whirl modes at one speed."""
 
@@ -84,7 +80,7 @@ def _strain(kind: str) -> Quantity:
         f"whirl_{kind}_strain_share",
         ("whirl_number", f"strained_{kind}"),
         "1",
-        f"share of a {kind} in the strain energy of the whirl mode",
+        long_name=f"share of a {kind} in the strain energy of the whirl mode",
     )
 
 
@@ -96,10 +92,10 @@ class _Crossing(NamedTuple):
 
 
 CROSSING = (
-    Quantity("speed_rpm", lambda row: row.crossing.speed * RPM),
-    Quantity("direction", lambda row: row.crossing.direction),
-    Quantity("axial_share", lambda row: row.crossing.axial_share),
-    Quantity("log_decrement", lambda row: row.crossing.log_decrement),
+    Quantity("speed_rpm", "crossing.speed"),
+    Quantity("direction", "crossing.direction"),
+    Quantity("axial_share", "crossing.axial_share"),
+    Quantity("log_decrement", "crossing.log_decrement"),
     Quantity(
         "margin", lambda row: abs(row.crossing.speed / row.solved.operation) - 1.0 if row.solved.operation else None
     ),
@@ -127,20 +123,13 @@ CRITICAL_SPEEDS = (
 
 WHIRL = (
     Quantity("", lambda row: f"{row.solved.rotor.name} at {row.whirl.speed * RPM:.6g} rpm", "whirl_state"),
-    Quantity("speed_rpm", lambda row: row.whirl.speed * RPM, "whirl_speed", (), "rpm", "speed of the rotor"),
-    Quantity(
-        "frequency_hz",
-        lambda row: row.whirl.frequencies / HERTZ,
-        "whirl_frequency",
-        ("whirl_number",),
-        "Hz",
-        "natural frequency of whirl",
-    ),
-    Quantity("damping_ratio", lambda row: row.whirl.damping_ratios),
-    Quantity("log_decrement", lambda row: row.whirl.log_decrements),
-    Quantity("direction", lambda row: row.whirl.direction),
-    Quantity("axial_share", lambda row: row.whirl.axial_share),
-    Quantity("stable", lambda row: row.whirl.stable),
+    Quantity("speed_rpm", "whirl.speed", "whirl_speed"),
+    Quantity("frequency_hz", "whirl.frequencies", "whirl_frequency", ("whirl_number",)),
+    Quantity("damping_ratio", "whirl.damping_ratios"),
+    Quantity("log_decrement", "whirl.log_decrements"),
+    Quantity("direction", "whirl.direction"),
+    Quantity("axial_share", "whirl.axial_share"),
+    Quantity("stable", "whirl.stable"),
     Quantity("most_strained", _most_strained),
     _strain("segment"),
     _strain("bearing"),
@@ -150,53 +139,18 @@ WHIRL = (
 
 _STEPS = ("campbell_step", "whirl_branch")
 CAMPBELL = (
-    Quantity(
-        "speed_rpm",
-        lambda solved: solved.campbell.speeds * RPM,
-        "campbell_speed",
-        _STEPS[:1],
-        "rpm",
-        "speed of the rotor",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.campbell.frequencies / HERTZ,
-        "campbell_frequency",
-        _STEPS,
-        "Hz",
-        "natural frequency of whirl",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.campbell.log_decrements,
-        "campbell_log_decrement",
-        _STEPS,
-        "1",
-        "log decrement of whirl",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.campbell.direction,
-        "campbell_direction",
-        _STEPS,
-        "1",
-        "1 counter-clockwise, -1 clockwise",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.campbell.axial_share,
-        "campbell_axial_share",
-        _STEPS,
-        "1",
-        "share of motion along the axis in the kinetic energy of whirl",
-    ),
-    Quantity("unstable_from_rpm", lambda solved: _in_rpm(solved.campbell.unstable_from)),
+    Quantity("speed_rpm", "campbell.speeds", "campbell_speed", _STEPS[:1]),
+    Quantity("", "campbell.frequencies", "campbell_frequency", _STEPS, "Hz"),
+    Quantity("", "campbell.log_decrements", "campbell_log_decrement", _STEPS, "1"),
+    Quantity("", "campbell.direction", "campbell_direction", _STEPS, "1"),
+    Quantity("", "campbell.axial_share", "campbell_axial_share", _STEPS, "1"),
+    Quantity("unstable_from_rpm", "campbell.unstable_from"),
     Quantity("proved_at_rpm", lambda solved: solved.campbell.speeds[solved.campbell.proved] * RPM),
     Part("", lambda solved: _Order(solved, 1.0, solved.crossings), CRITICAL_SPEEDS),
     Rows(
         "orders",
         lambda solved: [_Order(solved, order, crossings) for order, crossings in solved.orders.items()],
-        (Quantity("order", lambda row: row.order), *CRITICAL_SPEEDS),
+        (Quantity("order"), *CRITICAL_SPEEDS),
     ),
 )
 """Whirl over speed: a row for each speed, a column for each branch, which keeps its place through its crossings."""
@@ -208,58 +162,67 @@ class _Rolling(NamedTuple):
     solved: "SolvedRotor"
     name: str
 
+    @property
+    def label(self) -> str:
+        """Rotor and bearing."""
+        return f"{self.solved.rotor.name}: {self.name}"
 
-def _loaded(row: _Rolling) -> "RollingState":
-    return row.solved.rolling[row.name]
+    @property
+    def loaded(self) -> "RollingState":
+        """The bearing under its load."""
+        return self.solved.rolling[self.name]
 
+    @property
+    def rated(self) -> "BearingLife":
+        """Ratings and lives at the speed of operation."""
+        return self.solved.lives[self.name]
 
-def _rated(row: _Rolling) -> "BearingLife":
-    """Ratings and lives at the speed of operation."""
-    return row.solved.lives[row.name]
+    @property
+    def elements(self) -> int:
+        """Number of rolling elements."""
+        return sum(each.count for each in self.loaded.bearing.rows)
 
+    @property
+    def characteristic_frequencies_hz(self) -> dict[str, float] | None:
+        """Characteristic frequencies of the first row at the speed of operation [Hz]."""
+        from gearwhine.rotors.rolling_bearings import characteristic_frequencies
 
-def _frequencies(row: _Rolling) -> dict[str, float] | None:
-    """Characteristic frequencies of the first row at the speed of operation [Hz]."""
-    from gearwhine.rotors.rolling_bearings import characteristic_frequencies
-
-    operation = row.solved.operation
-    if not operation:
-        return None
-    frequencies = characteristic_frequencies(_loaded(row).bearing.rows[0], operation)
-    return {name: frequency / HERTZ for name, frequency in frequencies.named().items()}
+        operation = self.solved.operation
+        if not operation:
+            return None
+        frequencies = characteristic_frequencies(self.loaded.bearing.rows[0], operation)
+        return {name: frequency / HERTZ for name, frequency in frequencies.named().items()}
 
 
 ROLLING = (
-    Quantity("", lambda row: f"{row.solved.rotor.name}: {row.name}", "rolling_bearing"),
-    Quantity("name", lambda row: row.name, heading="bearing"),
+    Quantity("", "label", "rolling_bearing"),
+    Quantity("name", heading="bearing"),
     Quantity(
         "load_n",
-        lambda row: _loaded(row).load[:3],
+        lambda row: row.loaded.load[:3],
         heading="x, y, z [N]",
         shown=lambda row: ", ".join(f"{load:z.5g}" for load in row["load_n"]),
     ),
-    Quantity("elements", lambda row: sum(each.count for each in _loaded(row).bearing.rows)),
+    Quantity("elements"),
     Quantity(
         "loaded_elements",
-        lambda row: _loaded(row).loaded,
+        "loaded.loaded",
         heading="loaded",
         shown=lambda row: f"{row['loaded_elements']} of {row['elements']}",
         numbers=("elements",),
     ),
-    Quantity("peak_pressure_pa", lambda row: _loaded(row).peak_pressure, heading="peak [GPa]", shown=".3g", scale=1e-9),
+    Quantity("peak_pressure_pa", "loaded.peak_pressure", heading="peak [GPa]", shown=".3g"),
     Quantity(
         "stiffness",  # over x, y, z and the rotations about x and y, in N/m, N/rad and N m/rad
-        lambda row: _loaded(row).stiffness,
+        "loaded.stiffness",
         heading="stiffness [N/m]",
         shown=lambda row: ", ".join(f"{row['stiffness'][motion][motion]:.3g}" for motion in range(3)),
     ),
-    *life_quantities(
-        lambda key: lambda row: getattr(_rated(row), key), "rolling_bearing", ("rated life L10 [h]", "L10r [h]")
-    ),
-    Quantity("estimated", lambda row: _loaded(row).bearing.estimated),
-    Quantity("characteristic_frequencies_hz", _frequencies),
-    Quantity("displacement_m", lambda row: _loaded(row).displacement[:3]),
-    Quantity("residual", lambda row: _loaded(row).residual),
+    *life_quantities("rated", "rolling_bearing", ("rated life L10 [h]", "L10r [h]")),
+    Quantity("estimated", "loaded.bearing.estimated"),
+    Quantity("characteristic_frequencies_hz", "characteristic_frequencies_hz"),
+    Quantity("displacement_m", lambda row: row.loaded.displacement[:3]),
+    Quantity("residual", "loaded.residual"),
 )
 """Quantities of a rolling bearing under its load."""
 
@@ -275,16 +238,16 @@ class _BearingLoad(NamedTuple):
 
 
 STATIC = (
-    Quantity("gravity_m_per_s2", lambda solved: solved.weight.deflection.gravity),
+    Quantity("gravity_m_per_s2", "weight.deflection.gravity"),
     Rows(
         "forces",
-        lambda solved: solved.weight.forces,
+        "weight.forces",
         (
-            Quantity("at_m", lambda force: force.at),
+            Quantity("at_m"),
             Quantity("force_n", lambda force: [force.x, force.y, force.z]),
         ),
     ),
-    Quantity("bearings_at_rpm", lambda solved: None if solved.rest_speed is None else _in_rpm(solved.weight.speed)),
+    Quantity("bearings_at_rpm", lambda solved: None if solved.rest_speed is None else solved.weight.speed * RPM),
     Rows(
         "bearings",
         lambda solved: [
@@ -292,22 +255,15 @@ STATIC = (
             for each in zip(solved.weight.deflection.bearings, solved.weight.deflection.bearing_loads, strict=True)
         ],
         (
-            Quantity("name", lambda row: row.name, heading="bearing carries"),
+            Quantity("name", heading="bearing carries"),
             Quantity("load_n", lambda row: row.load[:3]),
             Quantity("moment_n_m", lambda row: row.load[3:]),
         ),
     ),
-    Quantity("largest_deflection_m", lambda solved: solved.weight.largest[0]),
-    Quantity("largest_deflection_at_m", lambda solved: solved.weight.largest[1]),
-    Quantity("", lambda solved: solved.weight.places, "static_place", _SAG, "m", "distance from the rotor's left end"),
-    Quantity(
-        "",
-        lambda solved: solved.weight.displacement,
-        "static_deflection",
-        ("plane", *_SAG),
-        "m",
-        "deflection of the shaft under its weight, x and y",
-    ),
+    Quantity("largest_deflection_m", "weight.largest.0"),
+    Quantity("largest_deflection_at_m", "weight.largest.1"),
+    Quantity("", "weight.places", "static_place", _SAG, "m"),
+    Quantity("", "weight.displacement", "static_deflection", ("plane", *_SAG), "m"),
     _PLANE,
 )
 """Bearing loads under gravity and constant forces, and the shaft's sag."""
@@ -324,36 +280,26 @@ class _Probe(NamedTuple):
 
 PROBE = (
     Quantity("", lambda row: f"{row.reading.rotor}: {row.reading.probe.name}", "probe"),
-    Quantity("", lambda row: row.reading.speeds * RPM, "response_speed", _PROBE, "rpm", "speed of the rotor"),
-    Quantity("name", lambda row: row.reading.probe.name),
-    Quantity("at_m", lambda row: row.reading.probe.at),
-    Quantity("angle_deg", lambda row: math.degrees(row.reading.probe.angle)),
+    Quantity("", "reading.speeds", "response_speed", _PROBE, "rpm"),
+    Quantity("name", "reading.probe.name"),
+    Quantity("at_m", "reading.probe.at"),
+    Quantity("angle_deg", "reading.probe.angle"),
     Quantity(
         "",
         lambda row: np.abs(row.reading.amplitude),
         "probe_amplitude",
         _PROBE,
         "m",
-        "reading of the probe, zero to peak",
+        long_name="reading of the probe, zero to peak",
     ),
-    Quantity(
-        "",
-        lambda row: row.reading.phase_lag,
-        "probe_phase_lag",
-        _PROBE,
-        "rad",
-        "lag of the reading behind the mark",
-    ),
-    Quantity("", lambda row: row.reading.major_axis, "orbit_major_axis", _PROBE, "m", "half the length of the orbit"),
-    Quantity("largest_amplitude_m", lambda row: row.reading.largest[0]),
-    Quantity("largest_at_rpm", lambda row: row.reading.largest[1] * RPM),
+    Quantity("", "reading.phase_lag", "probe_phase_lag", _PROBE, "rad"),
+    Quantity("", "reading.major_axis", "orbit_major_axis", _PROBE, "m"),
+    Quantity("largest_amplitude_m", "reading.largest.0"),
+    Quantity("largest_at_rpm", "reading.largest.1"),
     Quantity(
         "operation_amplitude_m", lambda row: None if row.at_operation is None else np.abs(row.at_operation.amplitude[0])
     ),
-    Quantity(
-        "operation_phase_lag_deg",
-        lambda row: None if row.at_operation is None else np.degrees(row.at_operation.phase_lag[0]),
-    ),
+    Quantity("operation_phase_lag_deg", "at_operation.phase_lag.0"),
 )
 """Quantities of a probe."""
 
@@ -387,24 +333,19 @@ RESPONSE = (
             for place, name in enumerate(solved.response.bearings)
         ],
         (
-            Quantity("", lambda row: row.name, "unbalance_bearing"),
-            Quantity("name", lambda row: row.name),
+            Quantity("", "name", "unbalance_bearing"),
+            Quantity("name"),
             Quantity("largest_force_n", lambda row: row.force.max(axis=1)),
             Quantity(
                 "",
-                lambda row: row.force,
+                "force",
                 "unbalance_bearing_force",
                 ("plane", *_PROBE),
                 "N",
-                "force on the bearing along x and y, zero to peak",
+                long_name="force on the bearing along x and y, zero to peak",
             ),
             Quantity(
-                "",
-                lambda row: row.solved.response.speeds * RPM,
-                "unbalance_bearing_speed",
-                _PROBE,
-                "rpm",
-                "speed of the rotor",
+                "", "solved.response.speeds", "unbalance_bearing_speed", _PROBE, "rpm", long_name="speed of the rotor"
             ),
             _PLANE,
         ),
@@ -416,25 +357,27 @@ RESPONSE = (
 _TORSION = ("torsion_step",)
 TORSION_PROBE = (
     Quantity("", lambda reading: f"{reading.rotor}: {reading.probe.name}", "torsion_probe"),
+    Quantity("", "frequencies", "torsion_frequency", _TORSION, "Hz", long_name="frequency of the torques"),
+    Quantity("name", "probe.name"),
+    Quantity("at_m", "probe.at"),
+    Quantity(
+        "", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", long_name="angle, zero to peak"
+    ),
     Quantity(
         "",
-        lambda reading: reading.frequencies / HERTZ,
-        "torsion_frequency",
+        lambda reading: np.angle(reading.angle),
+        "torsion_angle_phase",
         _TORSION,
-        "Hz",
-        "frequency of the torques",
+        "rad",
+        long_name="phase of the angle",
     ),
-    Quantity("name", lambda reading: reading.probe.name),
-    Quantity("at_m", lambda reading: reading.probe.at),
-    Quantity("", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", "angle, zero to peak"),
-    Quantity("", lambda reading: np.angle(reading.angle), "torsion_angle_phase", _TORSION, "rad", "phase of the angle"),
     Quantity(
         "",
         lambda reading: np.abs(reading.torque),
         "torsion_torque",
         _TORSION,
         "N m",
-        "torque in the shaft, zero to peak",
+        long_name="torque in the shaft, zero to peak",
     ),
     Quantity(
         "",
@@ -442,23 +385,23 @@ TORSION_PROBE = (
         "torsion_torque_phase",
         _TORSION,
         "rad",
-        "phase of that torque",
+        long_name="phase of that torque",
     ),
-    Quantity("largest_angle_rad", lambda reading: reading.largest_angle[0]),
-    Quantity("largest_angle_at_hz", lambda reading: reading.largest_angle[1] / HERTZ),
-    Quantity("largest_torque_n_m", lambda reading: reading.largest_torque[0]),
-    Quantity("largest_torque_at_hz", lambda reading: reading.largest_torque[1] / HERTZ),
+    Quantity("largest_angle_rad", "largest_angle.0"),
+    Quantity("largest_angle_at_hz", "largest_angle.1"),
+    Quantity("largest_torque_n_m", "largest_torque.0"),
+    Quantity("largest_torque_at_hz", "largest_torque.1"),
 )
 """Angle and torque at a probe over frequency."""
 
 TORSION = (
     *_range("hz", lambda solved: solved.response.frequencies / HERTZ),
-    Quantity("damping_ratio", lambda solved: solved.response.damping_ratio),
+    Quantity("damping_ratio", "response.damping_ratio"),
     Quantity("amplitude_convention", lambda solved: "zero to peak"),
-    Rows("probes", lambda solved: solved.readings, TORSION_PROBE, "torsion_probe"),
-    Quantity("largest_torque_n_m", lambda solved: solved.worst[0]),
-    Quantity("largest_torque_at_m", lambda solved: solved.worst[1]),
-    Quantity("largest_torque_at_hz", lambda solved: solved.worst[2] / HERTZ),
+    Rows("probes", "readings", TORSION_PROBE, "torsion_probe"),
+    Quantity("largest_torque_n_m", "worst.0"),
+    Quantity("largest_torque_at_m", "worst.1"),
+    Quantity("largest_torque_at_hz", "worst.2"),
 )
 """Torsional response to harmonic torques."""
 
@@ -471,7 +414,7 @@ def _rest_strain(kind: str, place: int) -> Quantity:
         f"rotor_{kind}_strain_share",
         ("lateral_mode", f"strained_{kind}"),
         "1",
-        f"share of a {kind} in the strain energy of the lateral mode",
+        long_name=f"share of a {kind} in the strain energy of the lateral mode",
     )
 
 
@@ -483,18 +426,17 @@ def _critical_speed_map(whirl: str, direction: int) -> Quantity:
         "map_critical_speed",
         ("map_step", "map_curve"),
         "rpm",
-        f"undamped critical speeds of {whirl} whirl",
+        long_name=f"undamped critical speeds of {whirl} whirl",
     )
 
 
 STIFFNESS_MAP = (
     Quantity(
         "stiffness_n_per_m",
-        lambda speed_map: speed_map.stiffnesses,
+        "stiffnesses",
         "map_stiffness",
         ("map_step",),
-        "N/m",
-        "stiffness of every bearing",
+        long_name="stiffness of every bearing",
         common=True,
     ),
     _critical_speed_map("forward", 1),
@@ -502,18 +444,11 @@ STIFFNESS_MAP = (
 )
 
 ROTOR = (
-    Quantity("name", lambda solved: solved.rotor.name, "rotor", heading="rotor"),
-    Quantity("mass_kg", lambda solved: solved.rotor.mass, heading="mass [kg]", shown=".3f"),
-    Quantity("length_m", lambda solved: solved.rotor.length),
+    Quantity("name", "rotor.name", "rotor", heading="rotor"),
+    Quantity("mass_kg", "rotor.mass", heading="mass [kg]", shown=".3f"),
+    Quantity("length_m", "rotor.length"),
     Quantity("bearings", lambda solved: [bearing.name for bearing in solved.bearings]),
-    Quantity(
-        "",
-        lambda solved: solved.rest.frequencies / HERTZ,
-        "rotor_rest_frequency",
-        ("rest_mode",),
-        "Hz",
-        "lateral natural frequencies at rest, both planes",
-    ),
+    Quantity("", "rest.frequencies", "rotor_rest_frequency", ("rest_mode",), "Hz"),
     Quantity(
         "lateral_hz",
         lambda solved: solved.rest.frequencies[solved.lateral_at_rest] / HERTZ,
@@ -523,23 +458,21 @@ ROTOR = (
     Quantity("lateral_axial_share", lambda solved: solved.rest.axial_share[solved.lateral_at_rest]),
     Quantity(
         "torsional_hz",
-        lambda solved: solved.torsional.frequencies / HERTZ,
+        "torsional.frequencies",
         "rotor_torsional_frequency",
         ("torsional_mode",),
-        "Hz",
-        "free torsional natural frequencies",
         heading="torsion [Hz]",
         shown=".1f",
     ),
-    Quantity("axial_hz", lambda solved: solved.axial / HERTZ, heading="along the axis [Hz]", shown=".1f"),
-    Quantity("", lambda solved: solved.places, "rotor_place", ("place",), "m", "distance from the rotor's left end"),
+    Quantity("axial_hz", heading="along the axis [Hz]", shown=".1f"),
+    Quantity("", "places", "rotor_place", ("place",), "m"),
     Quantity(
         "",
         lambda solved: solved.lateral.evaluate(solved.places)[0],
         "rotor_lateral_shape",
         ("lateral_mode", "place"),
         "kg-0.5",
-        "orthonormal lateral mode shapes",
+        long_name="orthonormal lateral mode shapes",
     ),
     Quantity(
         "",
@@ -547,43 +480,27 @@ ROTOR = (
         "rotor_torsional_shape",
         ("torsional_mode", "place"),
         "kg-0.5 m-1",
-        "orthonormal torsional mode shapes",
+        long_name="orthonormal torsional mode shapes",
     ),
     _rest_strain("segment", 0),
     _rest_strain("bearing", 1),
-    Quantity("rest_bearings_at_rpm", lambda solved: _in_rpm(solved.rest_speed)),
-    Quantity("operation_rpm", lambda solved: _in_rpm(solved.operation)),
+    Quantity("rest_bearings_at_rpm", "rest_speed"),
+    Quantity("operation_rpm"),
     Rows("whirl", lambda solved: [_Whirl(solved, whirl) for whirl in solved.whirl], WHIRL, "whirl_state"),
-    Quantity(
-        "",
-        lambda solved: solved.whirl_deflection,
-        "rotor_whirl_deflection",
-        ("whirl_mode", "place"),
-        "kg-0.5",
-        "largest deflection over a cycle of the whirl modes at operation, of unit norm in mass",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.whirl_moment,
-        "rotor_whirl_moment",
-        ("whirl_mode", "place"),
-        "N kg-0.5",
-        "largest bending moment over a cycle of the whirl modes at operation, of unit norm in mass",
-    ),
-    Quantity(
-        "critical_speeds_rpm", lambda solved: solved.critical.speeds * RPM, heading="critical speeds [rpm]", shown=".0f"
-    ),
+    Quantity("", "whirl_deflection", "rotor_whirl_deflection", ("whirl_mode", "place"), "kg-0.5"),
+    Quantity("", "whirl_moment", "rotor_whirl_moment", ("whirl_mode", "place"), "N kg-0.5"),
+    Quantity("critical_speeds_rpm", "critical.speeds", heading="critical speeds [rpm]", shown=".0f"),
     Quantity("critical_directions", lambda solved: solved.critical.direction.round(6)),
-    Quantity("critical_axial_share", lambda solved: solved.critical.axial_share),
-    Quantity("critical_margins", lambda solved: solved.margins),
+    Quantity("critical_axial_share", "critical.axial_share"),
+    Quantity("critical_margins", "margins"),
     Part("campbell", lambda solved: None if solved.campbell is None else solved, CAMPBELL),
     Part("static", lambda solved: ABSENT if isinstance(solved.weight, str) else solved, STATIC),
     Part(
         "static",
         lambda solved: solved if isinstance(solved.weight, str) else ABSENT,
-        (Quantity("bearings", lambda solved: None), Quantity("why_not", lambda solved: solved.weight)),
+        (Quantity("bearings", lambda solved: None), Quantity("why_not", "weight")),
     ),
-    Part("unbalance_response", lambda solved: solved.response, RESPONSE),
+    Part("unbalance_response", "response", RESPONSE),
     Rows(
         "rolling_bearings",
         lambda solved: [_Rolling(solved, name) for name in solved.rolling],
@@ -593,9 +510,9 @@ ROTOR = (
     Quantity(
         "damping", lambda solved: "of the bearings; that of the shaft and of its couplings acts in the coupled system"
     ),
-    Part("torsional_response", lambda solved: solved.torsion, TORSION),
-    Part("stiffness_map", lambda solved: solved.stiffness_map, STIFFNESS_MAP),
-    Part("certificate", lambda solved: solved.rest.certificate, COUNT_CERTIFICATE),
+    Part("torsional_response", "torsion", TORSION),
+    Part("stiffness_map", "stiffness_map", STIFFNESS_MAP),
+    Part("certificate", "rest.certificate", COUNT_CERTIFICATE),
     Quantity("seats", lambda solved: "rigid"),
 )
 """Quantities of one rotor on grounded bearings."""
@@ -608,7 +525,7 @@ def _numbers(dimension: str, of: Any, kind: str) -> Quantity:
         count = max((len(modes) for modes in map(of, solved) if modes is not None), default=0)
         return np.arange(1, count + 1) if count else None
 
-    return Quantity("", numbers, dimension, (dimension,), "1", f"number of the {kind}")
+    return Quantity("", numbers, dimension, (dimension,), "1", long_name=f"number of the {kind}")
 
 
 ROTORS = (
@@ -616,7 +533,7 @@ ROTORS = (
     _numbers("lateral_mode", lambda rotor: rotor.lateral.frequencies, "lateral mode"),
     _numbers("torsional_mode", lambda rotor: rotor.torsional.frequencies, "torsional mode"),
     _numbers("whirl_mode", lambda rotor: rotor.whirl_deflection, "whirl mode"),
-    Rows("rotors", lambda solved: solved, ROTOR, "rotor"),
+    Rows("rotors", ".", ROTOR, "rotor"),
 )
 """Quantities of all rotors of a case."""
 
@@ -885,7 +802,7 @@ _PROBES = (
         lambda row: f"{row['name']}, {1e3 * row['at_m']:.5g} mm, {row['angle_deg']:.0f}°",
         numbers=("at_m", "angle_deg"),
     ),
-    Column("at operation [µm, peak]", "operation_amplitude_m", ".3g", 1e6),
+    Column("at operation [µm, peak]", "operation_amplitude_m", ".3g"),
     Column(
         "lag",
         "operation_phase_lag_deg",
@@ -894,7 +811,6 @@ _PROBES = (
     Column(
         "largest [µm, peak]",
         "largest_amplitude_m",
-        scale=1e6,
         shown=lambda row: f"{1e6 * row['largest_amplitude_m']:.3g} at {row['largest_at_rpm']:.5g} rpm",
         numbers=("largest_at_rpm",),
     ),
@@ -909,7 +825,6 @@ def _torsion(response: Document) -> Iterator[str | Table]:
         Column(
             "largest angle [mrad, peak]",
             "largest_angle_rad",
-            scale=1e3,
             shown=lambda row: f"{1e3 * row['largest_angle_rad']:.3g} at {row['largest_angle_at_hz']:.5g} Hz",
             numbers=("largest_angle_at_hz",),
         ),

@@ -127,30 +127,30 @@ def _near_mode(row: _NamedPeak) -> dict[str, Any] | None:
 
 
 NAMED = (
-    Quantity("name", lambda row: row.named.name),
-    Quantity("kind", lambda row: row.named.kind),
-    Quantity("order", lambda row: row.named.order),
+    Quantity("name", "named.name"),
+    Quantity("kind", "named.kind"),
+    Quantity("order", "named.order"),
     Quantity("near_mode", _near_mode),
 )
 """Quantities of a named peak."""
 
 CONTRIBUTION = (
-    Quantity("name", lambda part: part.name),
+    Quantity("name"),
     Quantity("amplitude_m_per_s2", lambda part: abs(part.value)),
-    Quantity("share", lambda part: part.share),
-    Quantity("number", lambda part: ABSENT if part.mode is None else part.mode),
+    Quantity("share"),
+    Quantity("number", "mode", optional=True),
 )
 TRACED = (
     *NAMED,
     Quantity("phase_rad", lambda row: np.angle(row.line.value)),
-    Quantity("level_db", lambda row: float(row.line.level_db)),
+    Quantity("level_db", "line.level_db"),
     Part(
         "contributions",
-        lambda row: row.line,
+        "line",
         (
-            Rows("housing_modes", lambda line: line.listed_modes, CONTRIBUTION),
-            Rows("bearings", lambda line: line.listed_bearings, CONTRIBUTION),
-            Part("free_vibration", lambda line: line.free, CONTRIBUTION),
+            Rows("housing_modes", "listed_modes", CONTRIBUTION),
+            Rows("bearings", "listed_bearings", CONTRIBUTION),
+            Part("free_vibration", "free", CONTRIBUTION),
         ),
     ),
 )
@@ -171,16 +171,16 @@ class _Sidebands(NamedTuple):
 def _sidebands(unit: str) -> tuple[Quantity, ...]:
     """Declare the quantities of a mesh's shaft and one pair of sidebands."""
     return (
-        Quantity("gear_pair", lambda row: row.shafts.mesh),
-        Quantity("shafts", lambda row: row.shafts.shafts),
+        Quantity("gear_pair", "shafts.mesh"),
+        Quantity("shafts", "shafts.shafts"),
         Quantity("carrier_hz", lambda row: row.pair.carrier),
-        Quantity("number", lambda row: row.pair.number),
+        Quantity("number", "pair.number"),
         Quantity("distance_hz", lambda row: row.pair.distance),
         Quantity(f"carrier_amplitude_{unit}", lambda row: row.pair.carrier_amplitude),
         Quantity(f"lower_amplitude_{unit}", lambda row: row.pair.lower),
         Quantity(f"upper_amplitude_{unit}", lambda row: row.pair.upper),
-        Quantity("amplitude_modulation", lambda row: row.pair.amplitude_modulation),
-        Quantity("phase_modulation_rad", lambda row: row.pair.phase_modulation),
+        Quantity("amplitude_modulation", "pair.amplitude_modulation"),
+        Quantity("phase_modulation_rad", "pair.phase_modulation"),
     )
 
 
@@ -212,7 +212,7 @@ def _clear(signature: "SolvedSignature", sidebands: "tuple[ShaftSidebands, ...]"
 
 
 SENSOR = (
-    Quantity("name", lambda row: row.name),
+    Quantity("name"),
     Quantity("rms_m_per_s2", lambda row: row.transient.sensor_rms(row.name)),
     Rows(
         "peaks",
@@ -336,9 +336,9 @@ SIGNATURE = (
         "gears",
         lambda row: [NamedParts(*each) for each in row.transient.gear_parts()],
         (
-            Quantity("name", lambda gear: gear.name),
-            Quantity("mean_displacement_m", lambda gear: gear.parts.mean),
-            Quantity("peak_displacement_m", lambda gear: gear.parts.peak),
+            Quantity("name"),
+            Quantity("mean_displacement_m", "parts.mean"),
+            Quantity("peak_displacement_m", "parts.peak"),
         ),
     ),
     Quantity("conventions", lambda row: CONVENTIONS),
@@ -348,12 +348,12 @@ RUN = (
     Quantity("from_rpm", lambda solved: solved.speed * solved.speed_profile.speed_ratios[0] * RPM),
     Quantity("to_rpm", lambda solved: solved.speed * solved.speed_profile.speed_ratios[-1] * RPM),
     Quantity("seconds", lambda solved: solved.speed_profile.times[-1]),
-    Quantity("revolutions", lambda solved: solved.revolutions),
-    Quantity("train_inertia_kg_m2", lambda solved: solved.machine.train_inertia),
+    Quantity("revolutions"),
+    Quantity("train_inertia_kg_m2", "machine.train_inertia"),
     Part(
         "accelerating_torque_n_m",
-        lambda solved: solved.accelerating_torque,
-        (Quantity("least", lambda ends: ends[0]), Quantity("largest", lambda ends: ends[1])),
+        "accelerating_torque",
+        (Quantity("least", "0"), Quantity("largest", "1")),
     ),
 )
 """Speeds of the first driver's rotor over a run, and the torque on it that changes them."""
@@ -370,16 +370,16 @@ def _acceleration(run: Document) -> str:
 
 
 RECORD = (
-    Quantity("samples", lambda solved: solved.record.samples),
-    Quantity("interval_s", lambda solved: solved.record.sampling.interval),
-    Quantity("decimation", lambda solved: solved.record.sampling.decimation.factor),
+    Quantity("samples", "record.samples"),
+    Quantity("interval_s", "record.sampling.interval"),
+    Quantity("decimation", "record.sampling.decimation.factor"),
     Part(
         "spectra",
-        lambda solved: solved,
+        ".",
         (
-            Quantity("window", lambda solved: solved.record.sampling.window),
+            Quantity("window", "record.sampling.window"),
             Quantity("samples", lambda solved: min(solved.record.sampling.stretch, solved.record.samples)),
-            Quantity("averages", lambda solved: solved.averages),
+            Quantity("averages"),
         ),
     ),
 )
@@ -431,7 +431,7 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
             name,
             (dimension, "frequency"),
             unit,
-            f"peak amplitude of {quantity}",
+            long_name=f"peak amplitude of {quantity}",
             attributes=attributes,
         ),
         Quantity(
@@ -440,7 +440,7 @@ def _spectra(of: Any, name: str, dimension: str, unit: str, quantity: str) -> tu
             f"{name}_phase",
             (dimension, "frequency"),
             "rad",
-            f"phase of {quantity}: the cosine's at t = 0",
+            long_name=f"phase of {quantity}: the cosine's at t = 0",
             attributes=_trusted,
         ),
     )
@@ -456,7 +456,7 @@ def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quant
         f"bearing_{name}_spectrum",
         ("bearing", *axis, "frequency"),
         unit,
-        f"peak amplitude of the {quantity}",
+        long_name=f"peak amplitude of the {quantity}",
         attributes=lambda row: {"window": next(iter(row.signature.bearing_spectra.values())).window} | _trusted(row),
     )
 
@@ -464,36 +464,17 @@ def _load_spectrum(name: str, rows: Any, axis: tuple[str, ...], unit: str, quant
 _COMPLEX = Quantity("", lambda table: ["real", "imaginary"], "part", ("part",))
 _LINE = ("sensor", "line")
 LINES = (
-    Quantity("", lambda table: table.ranks, "line", ("line",), "1", "rank of the line, highest first"),
+    Quantity("", "ranks", "line", ("line",), "1"),
     _COMPLEX,
-    Quantity("", lambda table: table.modes, "mode_path", ("mode_path",)),
-    Quantity("", lambda table: table.bearings, "bearing_path", ("bearing_path",)),
-    Quantity("", lambda table: table.frequency, "line_frequency", _LINE, "Hz", "frequency of the sensor's line"),
-    Quantity("", lambda table: table.names, "line_name", _LINE, "", "what the line is"),
+    Quantity("", "modes", "mode_path", ("mode_path",)),
+    Quantity("", "bearings", "bearing_path", ("bearing_path",)),
     Quantity(
-        "",
-        lambda table: table.value,
-        "line_amplitude",
-        (*_LINE, "part"),
-        "m/s2",
-        "complex amplitude of the sensor's line",
+        "", lambda table: table.frequency, "line_frequency", _LINE, "Hz", long_name="frequency of the sensor's line"
     ),
-    Quantity(
-        "",
-        lambda table: table.by_mode,
-        "line_by_mode",
-        (*_LINE, "mode_path", "part"),
-        "m/s2",
-        "part of a housing mode in the line; they add up to it",
-    ),
-    Quantity(
-        "",
-        lambda table: table.by_bearing,
-        "line_by_bearing",
-        (*_LINE, "bearing_path", "part"),
-        "m/s2",
-        "part of a bearing's force in the line",
-    ),
+    Quantity("", "names", "line_name", _LINE),
+    Quantity("", "value", "line_amplitude", (*_LINE, "part"), "m/s2"),
+    Quantity("", "by_mode", "line_by_mode", (*_LINE, "mode_path", "part"), "m/s2"),
+    Quantity("", "by_bearing", "line_by_bearing", (*_LINE, "bearing_path", "part"), "m/s2"),
 )
 """Quantities of the lines of all sensors with their parts."""
 
@@ -512,15 +493,15 @@ def _modal_spectrum(row: TracedTransient) -> _ModalSpectrum | None:
 
 
 MODAL = (
-    Quantity("", lambda row: row.names, "modal_coordinate", ("modal_coordinate",)),
+    Quantity("", "names", "modal_coordinate", ("modal_coordinate",)),
     Quantity("", lambda row: row.spectrum.frequencies, "frequency", ("frequency",), *_HERTZ_LONG),
     Quantity(
         "",
-        lambda row: row.spectrum.amplitude,
+        "spectrum.amplitude",
         "modal_displacement_spectrum",
         ("modal_coordinate", "frequency"),
         "m kg0.5",
-        f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
+        long_name=f"peak amplitude of the {MODAL_COORDINATE}; its d.c. part at 0 Hz",
         attributes=lambda row: {"window": row.spectrum.window, "trusted_below_hz": row.limit},
     ),
 )
@@ -551,25 +532,25 @@ HOUSING_LINES = (
         "housing_acceleration_spectrum",
         ("housing_mode", "housing_line", "part"),
         "m kg0.5 s-2",
-        "complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
+        long_name="complex peak amplitude of a housing mode's acceleration at t = 0, by unit modal mass",
         attributes=lambda row: {"window": row.window, "record_start_s": row.record_start},
     ),
 )
 """Quantities of the spectrum of the housing modes, for operating shapes."""
 
 TRANSIENT: Fields = (
-    Quantity("speed_rpm", lambda row: row.transient.speed * RPM),
+    Quantity("speed_rpm", "transient.speed"),
     Part("run", lambda row: None if row.transient.speed_profile is None else row.transient, RUN),
-    Quantity("method", lambda row: row.transient.method),
-    Quantity("steps", lambda row: row.transient.result.steps),
-    Quantity("rejected_steps", lambda row: row.transient.result.rejected),
-    Quantity("smallest_step_s", lambda row: row.transient.result.smallest_step),
-    Quantity("steps_per_second", lambda row: row.transient.steps_per_second),
-    Quantity("energy_error", lambda row: row.transient.result.energy.error),
-    Part("energy_j", lambda row: row.transient.result.energy, ENERGY),
-    Quantity("coordinates", lambda row: row.transient.machine.system.size),
+    Quantity("method", "transient.method"),
+    Quantity("steps", "transient.result.steps"),
+    Quantity("rejected_steps", "transient.result.rejected"),
+    Quantity("smallest_step_s", "transient.result.smallest_step"),
+    Quantity("steps_per_second", "transient.steps_per_second"),
+    Quantity("energy_error", "transient.result.energy.error"),
+    Part("energy_j", "transient.result.energy", ENERGY),
+    Quantity("coordinates", "transient.machine.system.size"),
     Quantity("trusted_below_hz", lambda row: row.transient.trusted_limit),
-    Part("record", lambda row: row.transient, RECORD),
+    Part("record", "transient", RECORD),
     Rows(
         "sensors",
         lambda row: [_Sensor(row.transient, row.signature, row.orders, name) for name in row.transient.sensor_spectra],
@@ -658,7 +639,7 @@ def _run_table(name: str, tables: str, dimensions: tuple[str, ...], quantity: st
         name,
         ("run_signal", *dimensions),
         _EACH_UNIT,
-        f"peak amplitude {quantity}",
+        long_name=f"peak amplitude {quantity}",
         attributes=_run_attributes,
     )
 
@@ -668,22 +649,15 @@ def _first(tables: Any) -> Any:
 
 
 RUN_SIGNATURE = (
-    Quantity("from_rpm", lambda signature: signature.speeds_rpm[0]),
+    Quantity("from_rpm", "speeds_rpm.0"),
     Quantity("to_rpm", lambda signature: signature.speeds_rpm[-1]),
     Quantity("stretches", lambda signature: len(signature.speeds_rpm)),
-    Quantity("window_turns", lambda signature: signature.turns),
+    Quantity("window_turns", "turns"),
     Quantity("trusted_below_hz", lambda signature: signature.limit),
     Quantity("orders", lambda signature: signature.highest()),
     Quantity("overall", lambda signature: signature.loudest()),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
-    Quantity(
-        "",
-        lambda signature: signature.speeds_rpm,
-        "run_speed",
-        ("run_speed",),
-        "rpm",
-        "speed in the middle of each stretch",
-    ),
+    Quantity("", "speeds_rpm", "run_speed", ("run_speed",), "rpm"),
     Quantity(
         "", lambda signature: _first(signature.spectra).frequencies, "run_frequency", ("run_frequency",), *_HERTZ_LONG
     ),
@@ -693,7 +667,7 @@ RUN_SIGNATURE = (
         "order_speed",
         ("order_speed",),
         "rpm",
-        "speed of the leading shaft in the middle of each window",
+        long_name="speed of the leading shaft in the middle of each window",
     ),
     Quantity(
         "",
@@ -701,15 +675,14 @@ RUN_SIGNATURE = (
         "order",
         ("order",),
         "1",
-        "cycles each turn of the leading shaft",
+        long_name="cycles each turn of the leading shaft",
     ),
     Quantity(
         "",
         lambda signature: list(signature.units.values()),
         "run_unit",
         ("run_signal",),
-        "",
-        "unit of the signal's amplitudes",
+        long_name="unit of the signal's amplitudes",
     ),
     _run_table("run_spectrum", "spectra", ("run_speed", "run_frequency"), "of stretches along the run"),
     Quantity(
@@ -718,7 +691,7 @@ RUN_SIGNATURE = (
         "run_overall",
         ("run_signal", "run_speed"),
         _EACH_UNIT,
-        "root mean square over the lines of each stretch, without the mean",
+        long_name="root mean square over the lines of each stretch, without the mean",
         attributes=_run_attributes,
     ),
     _run_table("run_orders", "orders", ("order_speed", "order"), "by order along the run"),
@@ -729,7 +702,7 @@ RUN_SIGNATURE = (
         "run_order_number",
         ("named_order",),
         "1",
-        "cycles each turn of the leading shaft",
+        long_name="cycles each turn of the leading shaft",
     ),
     Quantity(
         "",
@@ -737,7 +710,7 @@ RUN_SIGNATURE = (
         "run_order_amplitude",
         ("run_signal", "named_order", "order_speed"),
         _EACH_UNIT,
-        "peak amplitude of a shaft's or a mesh's order along the run",
+        long_name="peak amplitude of a shaft's or a mesh's order along the run",
         attributes=_run_attributes,
     ),
 )

@@ -51,8 +51,8 @@ def _rms_error(error: "SourceError | None") -> float | None:
 SURFACE = (
     Quantity("triangles", lambda radiation: sum(len(part.surface.triangles) for part in radiation.elements)),
     Quantity("area_m2", lambda radiation: sum(part.surface.area for part in radiation.elements)),
-    Quantity("caps_m2", lambda radiation: radiation.cap_area),
-    Quantity("velocity_error", lambda radiation: radiation.transfer_error),
+    Quantity("caps_m2", "cap_area"),
+    Quantity("velocity_error", "transfer_error"),
     Quantity(
         "resolved_below_hz",
         lambda radiation: radiation.highest_frequency if np.isfinite(radiation.highest_frequency) else None,
@@ -61,32 +61,31 @@ SURFACE = (
 """Quantities of the radiating surface."""
 
 MODE = (
-    Quantity("number", lambda mode: mode.number, name="sound_mode", unit="1", long_name="number of the housing mode"),
+    Quantity("number", "number", "sound_mode", unit="1", long_name="number of the housing mode"),
     Quantity(
         "frequency_hz",
-        lambda mode: mode.frequency_hz,
-        name="sound_mode_frequency",
-        unit="Hz",
+        "frequency_hz",
+        "sound_mode_frequency",
         long_name="natural frequency",
         heading="natural frequency [Hz]",
         shown=".1f",
     ),
     Quantity(
         "radiation_efficiency",
-        lambda mode: mode.radiation_efficiency,
-        name="radiation_efficiency",
+        "radiation_efficiency",
+        "radiation_efficiency",
         unit="1",
         long_name="radiation efficiency of the mode at its natural frequency",
         heading="radiation efficiency",
         shown=".3g",
     ),
     Quantity("faces", lambda mode: {face: part for face, part in mode.face_shares.items() if abs(part) > _LEAST_SHARE}),
-    Quantity("power_balance_db", lambda mode: mode.power_balance_db),
-    Quantity("interior_pressure", lambda mode: mode.interior_pressure),
+    Quantity("power_balance_db", "power_balance_db"),
+    Quantity("interior_pressure"),
     Quantity(
         "known_source_error",
         lambda mode: _largest_error(mode.known_source),
-        name="sound_mode_known_source_error",
+        "sound_mode_known_source_error",
         unit="1",
         long_name="largest error of a known source's pressure on the surface at the natural frequency",
     ),
@@ -152,24 +151,24 @@ def _of_lines(name: str, of: Any, unit: str, long_name: str) -> Quantity:
     def values(solved: "SolvedSound") -> Any:
         return np.array([of(line) for line in solved.lines])
 
-    return Quantity("", values, name=name, dimensions=("sound_line",), unit=unit, long_name=long_name)
+    return Quantity("", values, name, ("sound_line",), unit, long_name=long_name)
 
 
 ENTRY = (
-    Quantity("frequency_hz", lambda row: row.line.frequency_hz),
-    Quantity("order", lambda row: row.line.order),
-    Quantity("name", lambda row: row.line.name),
-    Quantity("sound_power_db", lambda row: row.line.level_db),
-    Quantity("sound_power_db_a", lambda row: row.line.level_db_a),
-    Quantity("equivalent_power_db", lambda row: row.line.equivalent_db),
+    Quantity("frequency_hz", "line.frequency_hz"),
+    Quantity("order", "line.order"),
+    Quantity("name", "line.name"),
+    Quantity("sound_power_db", "line.level_db"),
+    Quantity("sound_power_db_a", "line.level_db_a"),
+    Quantity("equivalent_power_db", "line.equivalent_db"),
     Quantity(
         "parts_equivalent_power_db",
         lambda row: {name: float(power_level(power)) for name, power in row.line.mechanism_powers.items()},
     ),
-    Quantity("radiation_efficiency", lambda row: row.line.sound.radiation_efficiency),
+    Quantity("radiation_efficiency", "line.sound.radiation_efficiency"),
     Quantity("surface_power_db", lambda row: float(power_level(row.line.sound.surface_power))),
-    Quantity("power_balance_db", lambda row: row.line.power_balance_db),
-    Quantity("interior_pressure", lambda row: row.line.interior_pressure),
+    Quantity("power_balance_db", "line.power_balance_db"),
+    Quantity("interior_pressure", "line.interior_pressure"),
     Quantity("known_source_error", lambda row: _largest_error(row.line.known_source)),
     Quantity("known_source_rms", lambda row: _rms_error(row.line.known_source)),
     Quantity("contributions", _contributions),
@@ -276,7 +275,7 @@ SWEPT_LINE = (
     Quantity(
         "name",
         lambda row: row.line["name"],
-        name="sound_line_name",
+        "sound_line_name",
         long_name="name of the loudest lines",
         heading="loudest line",
         shown=lambda row: arrowed(str(row["name"])),
@@ -284,8 +283,7 @@ SWEPT_LINE = (
     Quantity(
         "frequency_hz",
         lambda row: row.line["frequency_hz"],
-        name="sound_line_frequency",
-        unit="Hz",
+        "sound_line_frequency",
         long_name="frequency of the loudest lines",
         heading="at [Hz]",
         shown=".1f",
@@ -293,15 +291,14 @@ SWEPT_LINE = (
     Quantity(
         "order",
         lambda row: row.line["order"],
-        name="sound_line_order",
+        "sound_line_order",
         unit="1",
         long_name="order of the loudest lines over the speed of the first driver",
     ),
     Quantity(
         "sound_power_db",
         lambda row: row.line["sound_power_db"],
-        name="sound_line_level",
-        unit="dB",
+        "sound_line_level",
         long_name="sound power level of the loudest lines re 1 pW",
         heading="its L_W [dB]",
         shown=".1f",
@@ -309,7 +306,7 @@ SWEPT_LINE = (
     Quantity(
         "mode",
         lambda row: _mode_number(row.line),
-        name="sound_line_mode",
+        "sound_line_mode",
         unit="1",
         long_name="number of the housing mode with the largest part of the line's power",
         heading="most by mode",
@@ -319,14 +316,13 @@ SWEPT_LINE = (
     Quantity(
         "mode_frequency_hz",
         lambda row: None if (number := _mode_number(row.line)) is None else row.housing_frequencies_hz[number - 1],
-        name="sound_line_mode_frequency",
-        unit="Hz",
+        "sound_line_mode_frequency",
         long_name="natural frequency of that mode",
     ),
     Quantity(
         "mode_share",
         lambda row: None if (mode := _leading_mode(row.line)) is None else mode["share"],
-        name="sound_line_mode_share",
+        "sound_line_mode_share",
         unit="1",
         long_name="part of that mode in the line's power",
     ),
@@ -340,9 +336,9 @@ PARTS = (
 """Meaning of the parts of a line."""
 
 LEFT_OUT = (
-    Quantity("name", lambda line: line.name),
-    Quantity("frequency_hz", lambda line: line.frequency_hz),
-    Quantity("share", lambda line: line.share),
+    Quantity("name"),
+    Quantity("frequency_hz", "frequency_hz"),
+    Quantity("share"),
 )
 """Quantities of a line whose sound is not solved; the share is None where the modes are not complete."""
 
@@ -358,14 +354,14 @@ class _Microphone(NamedTuple):
 
 
 MICROPHONE = (
-    Quantity("name", lambda row: row.name, heading="microphone"),
-    Quantity("position_m", lambda row: row.position),
-    Quantity("level_db", lambda row: row.level, heading="sound pressure [dB re 20 µPa]", shown=".1f"),
-    Quantity("level_db_a", lambda row: row.level_a, heading="A-weighted [dB]", shown=".1f"),
+    Quantity("name", heading="microphone"),
+    Quantity("position_m"),
+    Quantity("level_db", heading="sound pressure [dB re 20 µPa]", shown=".1f"),
+    Quantity("level_db_a", "level_a", heading="A-weighted [dB]", shown=".1f"),
     Quantity(
         "known_source_error",
-        lambda row: row.known_source_error,
-        name="microphone_known_source_error",
+        "known_source_error",
+        "microphone_known_source_error",
         unit="1",
         long_name="largest error of a known source's pressure at the microphone",
     ),
@@ -416,39 +412,31 @@ def _bands(solved: "SolvedSound") -> list[dict[str, float]]:
 
 
 SOUND = (
-    Quantity("method", lambda solved: solved.radiation.method),
-    Quantity("highest_frequency_hz", lambda solved: solved.limit_hz),
-    Part("surface", lambda solved: solved.radiation, SURFACE),
+    Quantity("method", "radiation.method"),
+    Quantity("highest_frequency_hz", "limit_hz"),
+    Part("surface", "radiation", SURFACE),
     Rows("lines", lambda solved: [_Entry(solved, line) for line in solved.lines], ENTRY),
     Quantity("covered", lambda solved: solved.covered if solved.lines else None),
-    Rows("left_out", lambda solved: solved.left_out, LEFT_OUT),
+    Rows("left_out", "left_out", LEFT_OUT),
     Quantity("total_db", lambda solved: solved.total_db if solved.lines else None),
     Quantity("total_db_a", lambda solved: solved.total_db_a if solved.lines else None),
-    Quantity("power_balance_db", lambda solved: solved.power_balance_db),
-    Quantity("interior_pressure", lambda solved: solved.interior_pressure),
+    Quantity("power_balance_db", "power_balance_db"),
+    Quantity("interior_pressure"),
     Quantity("known_source_error", lambda solved: _largest_error(solved.known_source)),
     Quantity("known_source_rms", lambda solved: _rms_error(solved.known_source)),
     Quantity("third_octaves", _bands),
-    Quantity("faces_w", lambda solved: solved.by_face),
-    Rows("modes", lambda solved: solved.modes, MODE, "sound_mode"),
+    Quantity("faces_w", "by_face"),
+    Rows("modes", "modes", MODE, "sound_mode"),
     Rows("microphones", _microphones, MICROPHONE, "microphone"),
-    Quantity("box_power_db", lambda solved: solved.box_level_db),
-    Quantity("microphone_error", lambda solved: None if solved.histories is None else solved.histories.error),
+    Quantity("box_power_db", "box_level_db"),
+    Quantity("microphone_error", "histories.error"),
+    Quantity("", "histories.times", "microphone_time", ("microphone_time",), "s", long_name="time", common=True),
     Quantity(
         "",
-        lambda solved: None if solved.histories is None else solved.histories.times,
-        name="microphone_time",
-        dimensions=("microphone_time",),
-        unit="s",
-        long_name="time",
-        common=True,
-    ),
-    Quantity(
-        "",
-        lambda solved: None if solved.histories is None else solved.histories.pressure,
-        name="microphone_pressure",
-        dimensions=("microphone", "microphone_time"),
-        unit="Pa",
+        "histories.pressure",
+        "microphone_pressure",
+        ("microphone", "microphone_time"),
+        "Pa",
         long_name="sound pressure at the microphone",
     ),
     _of_lines("sound_frequency", lambda line: line.frequency_hz, "Hz", "frequency of the line"),
@@ -459,9 +447,9 @@ SOUND = (
             if any(line.known_source is not None for line in solved.lines)
             else None
         ),
-        name="sound_known_source_error",
-        dimensions=("sound_line",),
-        unit="1",
+        "sound_known_source_error",
+        ("sound_line",),
+        "1",
         long_name="largest error of a known source's pressure on the surface at the frequency of the line",
     ),
     _of_lines("sound_name", lambda line: line.name, "", "name of the line"),
@@ -473,19 +461,13 @@ SOUND = (
         "W",
         "equivalent radiated power of the line",
     ),
-    Quantity(
-        "",
-        lambda solved: list(solved.microphones) or None,
-        name="microphone",
-        dimensions=("microphone",),
-        common=True,
-    ),
+    Quantity("", lambda solved: list(solved.microphones) or None, "microphone", ("microphone",), common=True),
     Quantity(
         "",
         lambda solved: np.array(list(solved.microphones.values())) if solved.microphones else None,
-        name="microphone_position",
-        dimensions=("microphone", "coordinate"),
-        unit="m",
+        "microphone_position",
+        ("microphone", "coordinate"),
+        "m",
         long_name="position of the microphone",
         common=True,
     ),
@@ -496,9 +478,9 @@ SOUND = (
             if solved.microphones and solved.lines
             else None
         ),
-        name="sound_pressure",
-        dimensions=("sound_line", "microphone", "part"),
-        unit="Pa",
+        "sound_pressure",
+        ("sound_line", "microphone", "part"),
+        "Pa",
         long_name="complex amplitude of the sound pressure",
     ),
 )

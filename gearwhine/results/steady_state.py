@@ -37,15 +37,15 @@ _EXACT_LINE_DISTANCE = 0.02  # distance of a line from the frequency of its caus
 _LINES_SHOWN = 3  # highest lines of each sensor on the terminal, with what excites them
 
 PROOF = (
-    Quantity("period_s", lambda response: response.period),
-    Quantity("stable", lambda response: response.stable),
-    Quantity("largest_multiplier", lambda response: response.floquet.largest),
-    Quantity("instability", lambda response: response.floquet.leaving),
-    Quantity("residual", lambda response: response.residual),
-    Quantity("error", lambda response: response.error),
-    Quantity("elements", lambda response: response.elements),
-    Quantity("switches", lambda response: response.switches),
-    Quantity("newton_steps", lambda response: response.newton_steps),
+    Quantity("period_s"),
+    Quantity("stable"),
+    Quantity("largest_multiplier", "floquet.largest"),
+    Quantity("instability", "floquet.leaving"),
+    Quantity("residual"),
+    Quantity("error"),
+    Quantity("elements"),
+    Quantity("switches"),
+    Quantity("newton_steps"),
 )
 """Quantities of a periodic response: its period, stability and accuracy."""
 
@@ -68,11 +68,10 @@ PAIR = (
         lambda row: row.figures.rms_compression[row.contact],
         heading="a.c. compression [µm rms]",
         shown=".3g",
-        scale=1e6,
     ),
     Quantity("neglected_force_n", lambda row: row.figures.neglected_force[row.contact] if row.superposed else ABSENT),
     Quantity("neglected_part", lambda row: row.figures.neglected_part[row.contact] if row.superposed else ABSENT),
-    Quantity("force_lines", lambda row: row.lines),
+    Quantity("force_lines", "lines"),
 )
 """Quantities of a gear mesh."""
 
@@ -149,14 +148,16 @@ def _multipliers(row: _Motion) -> Any:
 
 def _signals(of: Any, name: str, dimension: str, unit: str, long_name: str) -> Quantity:
     """One period of the signals of a motion."""
-    return Quantity("", lambda row: of(row.motion.histories) or None, name, (dimension, "period_time"), unit, long_name)
+    return Quantity(
+        "", lambda row: of(row.motion.histories) or None, name, (dimension, "period_time"), unit, long_name=long_name
+    )
 
 
 def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], unit: str, long_name: str) -> Part:
     """Declare one period of the loads on all bearings: forces along x, y, z or moments about x, y, with labels."""
     return Part(
         "",
-        lambda row: row,
+        ".",
         (
             Quantity("", lambda row: list(labels), along, (along,), common=True),
             Quantity(
@@ -165,24 +166,18 @@ def _bearing_load(kind: str, rows: slice, along: str, labels: Sequence[str], uni
                 f"steady_bearing_{kind}",
                 ("bearing", along, "period_time"),
                 unit,
-                long_name,
+                long_name=long_name,
             ),
         ),
     )
 
 
 MOTION = (
-    Quantity("", lambda row: row.number, "steady_motion", (), "1", "motion at operation"),
+    Quantity("", "number", "steady_motion", unit="1", long_name="motion at operation"),
     Quantity(
-        "",
-        lambda row: row.motion.histories.times,
-        "period_time",
-        ("period_time",),
-        "s",
-        "time in the period",
-        common=True,
+        "", "motion.histories.times", "period_time", ("period_time",), "s", long_name="time in the period", common=True
     ),
-    Quantity("", lambda row: row.motion.response.stable, "steady_stable"),
+    Quantity("", "motion.response.stable", "steady_stable"),
     Quantity("", lambda row: ["real", "imaginary"], "part", ("part",), common=True),
     Quantity(
         "",
@@ -190,7 +185,7 @@ MOTION = (
         "floquet_multiplier",
         ("multiplier", "part"),
         "1",
-        "Floquet multiplier: growth of a disturbance in a period",
+        long_name="Floquet multiplier: growth of a disturbance in a period",
     ),
     _signals(
         lambda histories: histories.mesh_force,
@@ -208,7 +203,7 @@ MOTION = (
     ),
     _bearing_load("force", slice(0, 3), "direction", "xyz", "N", "force of the shaft on its bearing"),
     _bearing_load("moment", slice(3, 5), "rotation", _TILTS, "N m", "moment of the shaft on its bearing"),
-    Part("", lambda row: row.motion.response, PROOF),
+    Part("", "motion.response", PROOF),
     Rows("gear_pairs", lambda row: _pairs(row.steady, row.motion), PAIR),
     Rows("bearings", lambda row: [NamedParts(*each) for each in row.steady.bearing_parts(row.motion)], BEARING),
     Quantity("sensors", lambda row: _sensors(row.steady, row.motion)),
@@ -231,20 +226,20 @@ def _resampled(of: Any, name: str, dimension: str, unit: str, quantity: str) -> 
         return {label: motion.resampled(signal, samples) for label, signal in of(motion.histories).items()} or None
 
     whole = f"{quantity} in the motion of each group of excitations"
-    return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, whole)
+    return Quantity("", values, f"excitation_{name}", (dimension, "period_part"), unit, long_name=whole)
 
 
 EXCITATION = (
-    Quantity("name", lambda row: row.motion.excitation, "excitation"),
-    Quantity("", lambda row: row.motion.response.period, "excitation_period", (), "s", "period of the motion"),
-    Quantity("", lambda row: row.motion.response.stable, "excitation_stable"),
+    Quantity("name", "motion.excitation", "excitation"),
+    Quantity("", "motion.response.period", "excitation_period", unit="s", long_name="period of the motion"),
+    Quantity("", "motion.response.stable", "excitation_stable"),
     Quantity(
         "",
         lambda row: np.arange(row.samples) / row.samples,
         "period_part",
         ("period_part",),
         "1",
-        "time as a part of the motion's period",
+        long_name="time as a part of the motion's period",
         common=True,
     ),
     _resampled(
@@ -257,7 +252,7 @@ EXCITATION = (
         "m/s2",
         "acceleration along the sensor",
     ),
-    Part("", lambda row: row.motion.response, PROOF),
+    Part("", "motion.response", PROOF),
 )
 """Quantities of the motion of one group of excitations.
 
@@ -271,7 +266,7 @@ def _excitations(solved: "SolvedSteady") -> list[_Excitation]:
 
 
 SUPERPOSED = (
-    Quantity("stable", lambda solved: solved.superposed.stable),
+    Quantity("stable", "superposed.stable"),
     Rows("excitations", _excitations, EXCITATION, "excitation"),
     Rows("gear_pairs", lambda solved: _pairs(solved, None), PAIR),
     Rows("bearings", lambda solved: [NamedParts(*each) for each in solved.bearing_parts()], BEARING),
@@ -289,7 +284,7 @@ def _of_contacts(name: str, of: Any, unit: str, long_name: str) -> Quantity:
         f"branch_{name}",
         (*_POINT, "contact"),
         unit,
-        long_name,
+        long_name=long_name,
     )
 
 
@@ -299,25 +294,25 @@ def _sensor_rms(solved: "SolvedSteady") -> Any:
 
 
 EVENT = (
-    Quantity("speed_rpm", lambda event: event.speed * RPM, heading="speed [rpm]", shown=".1f"),
-    Quantity("kind", lambda event: event.kind, heading="what happens"),
+    Quantity("speed_rpm", heading="speed [rpm]", shown=".1f"),
+    Quantity("kind", heading="what happens"),
 )
 LOUDEST = (
-    Quantity("sensor", lambda point: point.sensor, heading="sensor"),
-    Quantity("speed_rpm", lambda point: point.speed * RPM, heading="loudest at [rpm]", shown=".0f"),
-    Quantity("rms_m_per_s2", lambda point: point.rms, heading="rms [m/s²]", shown=".3g"),
+    Quantity("sensor", heading="sensor"),
+    Quantity("speed_rpm", heading="loudest at [rpm]", shown=".0f"),
+    Quantity("rms_m_per_s2", heading="rms [m/s²]", shown=".3g"),
     Quantity("frequency_hz", lambda point: point.frequency, heading="highest line [Hz]", shown=".1f"),
-    Quantity("amplitude_m_per_s2", lambda point: point.amplitude, heading="[m/s², peak]", shown=".3g"),
-    Quantity("excitation", lambda point: point.excitation, heading="excitation"),
+    Quantity("amplitude_m_per_s2", heading="[m/s², peak]", shown=".3g"),
+    Quantity("excitation", heading="excitation"),
     Quantity(
         "housing_mode",
-        lambda point: point.mode,
+        "mode",
         heading="most of it by",
         shown=lambda row: f"mode {row['housing_mode']}, {row['mode_hz']:.1f} Hz ({percent(row['share'])})",
         numbers=("mode_hz", "share"),
     ),
-    Quantity("mode_hz", lambda point: point.mode_hz),
-    Quantity("share", lambda point: point.share),
+    Quantity("mode_hz", "mode_hz"),
+    Quantity("share"),
 )
 """Quantities of the point of a branch at which a sensor is loudest."""
 
@@ -333,45 +328,35 @@ class _Branch(NamedTuple):
 CURVE = (
     Quantity(
         "speed_rpm",
-        lambda solved: solved.curve.speeds * RPM,
+        "curve.speeds",
         "branch_speed",
         _POINT,
-        "rpm",
-        "speed of the first driver",
+        long_name="speed of the first driver",
         attributes=lambda solved: {
             "ending": solved.curve.ending,
             "account": solved.curve.description(1.0 / RPM, "rpm"),
         },
     ),
-    Quantity(
-        "stable",
-        lambda solved: solved.curve.stable,
-        "branch_stable",
-        _POINT,
-        "",
-        "whether no small disturbance grows",
-    ),
-    Quantity("ending", lambda solved: solved.curve.ending),
+    Quantity("stable", "curve.stable", "branch_stable", _POINT, long_name="whether no small disturbance grows"),
+    Quantity("ending", "curve.ending"),
     Quantity(
         "piece",
-        lambda solved: solved.curve.piece_numbers,
+        "curve.piece_numbers",
         "branch_piece",
         _POINT,
-        "",
-        "number of the piece, from 1: between two pieces nothing is followed",
+        long_name="number of the piece, from 1: between two pieces nothing is followed",
     ),
     Quantity("gaps_rpm", lambda solved: [[end * RPM for end in gap] for gap in solved.curve.gaps]),
     Quantity("account", lambda solved: solved.curve.description(1.0 / RPM, "rpm")),
     Quantity(
-        "",
-        lambda solved: [contact.name for contact in solved.machine.system.contacts] or None,
-        "contact",
-        ("contact",),
+        "", lambda solved: [contact.name for contact in solved.machine.system.contacts] or None, "contact", ("contact",)
     ),
     _of_contacts("compression", lambda curve: curve.rms_compression, "m", "a.c. rms of the compression of the mesh"),
     _of_contacts("peak_force", lambda curve: curve.peak_force, "N", "largest gear-mesh force"),
     _of_contacts("contact_loss", lambda curve: curve.contact_loss, "1", "part of the period that the flanks are apart"),
-    Quantity("", _sensor_rms, "branch_sensor_rms", (*_POINT, "sensor"), "m/s2", "rms of the sensor's acceleration"),
+    Quantity(
+        "", _sensor_rms, "branch_sensor_rms", (*_POINT, "sensor"), "m/s2", long_name="rms of the sensor's acceleration"
+    ),
     Rows(
         "gear_pairs",
         lambda solved: [
@@ -379,20 +364,19 @@ CURVE = (
             for number, mesh in zip(solved.machine.loaded_contacts, solved.machine.meshes, strict=True)
         ],
         (
-            Quantity("driver", lambda row: row.mesh.driver.name),
-            Quantity("driven", lambda row: row.mesh.driven.name),
+            Quantity("driver", "mesh.driver.name"),
+            Quantity("driven", "mesh.driven.name"),
             Quantity("rms_compression_m", lambda row: row.curve.rms_compression[:, row.contact]),
             Quantity("peak_force_n", lambda row: row.curve.peak_force[:, row.contact]),
             Quantity("contact_loss_fraction", lambda row: row.curve.contact_loss[:, row.contact]),
         ),
     ),
     Quantity(
-        "sensors",
-        lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()],
+        "sensors", lambda solved: [{"name": name, "rms_m_per_s2": values} for name, values in solved.branch_rms.items()]
     ),
     Quantity("assumed_mesh_damping", lambda solved: list(solved.assumed_damping)),
-    Rows("loudest", lambda solved: solved.loudest, LOUDEST),
-    Rows("bifurcations", lambda solved: solved.curve.bifurcations, EVENT),
+    Rows("loudest", "loudest", LOUDEST),
+    Rows("bifurcations", "curve.bifurcations", EVENT),
     Quantity("", lambda solved: [event.kind for event in solved.curve.bifurcations], "branch_event", ("branch_event",)),
     Quantity(
         "",
@@ -400,14 +384,14 @@ CURVE = (
         "branch_event_speed",
         ("branch_event",),
         "rpm",
-        "where the branch turns or its stability changes",
+        long_name="where the branch turns or its stability changes",
     ),
 )
 """Quantities of the branch over speed."""
 
 STEADY = (
-    Quantity("speed_rpm", lambda solved: solved.motions[0].speed * RPM),
-    Quantity("coordinates", lambda solved: solved.machine.system.size),
+    Quantity("speed_rpm", "motions.0.speed"),
+    Quantity("coordinates", "machine.system.size"),
     Quantity("trusted_below_hz", lambda solved: solved.motions[0].trusted_limit),
     Quantity("method", lambda solved: "periodic" if solved.superposed is None else "superposed"),
     Rows(

@@ -33,17 +33,17 @@ class _Hammer(NamedTuple):
 
 
 SENSOR = (
-    Quantity("point", lambda row: row.point, heading="point"),
-    Quantity("position_m", lambda row: row.position),
-    Quantity("direction", lambda row: row.direction, heading="direction", shown=lambda row: _axis(row["direction"])),
-    Quantity("independence", lambda row: row.independence, heading="independence", shown=".3f"),
+    Quantity("point", heading="point"),
+    Quantity("position_m"),
+    Quantity("direction", heading="direction", shown=lambda row: _axis(row["direction"])),
+    Quantity("independence", heading="independence", shown=".3f"),
 )
 """Quantities of a sensor."""
 
 HAMMER = (
-    Quantity("position_m", lambda row: row.position),
-    Quantity("direction", lambda row: row.direction),
-    Quantity("least_residue", lambda row: row.least_residue),
+    Quantity("position_m"),
+    Quantity("direction"),
+    Quantity("least_residue"),
 )
 """Quantities of a place for the hammer."""
 
@@ -61,17 +61,17 @@ def _hammer(planned: "PlannedSurvey") -> list[_Hammer]:
 
 
 PLAN = (
-    Quantity("modes", lambda planned: planned.modes),
-    Quantity("modes_hz", lambda planned: planned.frequencies_hz),
+    Quantity("modes"),
+    Quantity("modes_hz", "frequencies_hz"),
     Quantity("candidates", lambda planned: len(planned.candidates.labels)),
     Rows("sensors", _sensors, SENSOR),
     Rows("hammer", _hammer, HAMMER),
     Part(
         "",
-        lambda planned: planned.plan,
+        "plan",
         (
-            Quantity("auto_mac_largest", lambda plan: plan.worst_likeness),
-            Quantity("condition", lambda plan: plan.condition),
+            Quantity("auto_mac_largest", "worst_likeness"),
+            Quantity("condition"),
         ),
     ),
 )

@@ -46,42 +46,36 @@ def _rms(level_db: float) -> float:
 
 
 PEAK = (
-    Quantity("settings", lambda peak: peak.settings),
-    Quantity("below_rpm", lambda peak: peak.below_rpm),
-    Quantity("above_rpm", lambda peak: peak.above_rpm),
+    Quantity("settings"),
+    Quantity("below_rpm", "below_rpm"),
+    Quantity("above_rpm", "above_rpm"),
     Quantity(
         "line",
-        lambda peak: peak.line,
+        "line",
         "missed_peak_line",
         long_name="line of a peak between two points",
         heading="line",
         shown=lambda row: arrowed(str(row["line"])),
     ),
     Quantity(
-        "mode",
-        lambda peak: peak.mode,
-        "missed_peak_mode",
-        long_name="coupled mode that the line meets there",
-        heading="meets the mode",
+        "mode", "mode", "missed_peak_mode", long_name="coupled mode that the line meets there", heading="meets the mode"
     ),
-    Quantity("frequency_hz", lambda peak: peak.frequency_hz, heading="at [Hz]", shown=".1f"),
-    Quantity("damping_ratio", lambda peak: peak.damping_ratio),
+    Quantity("frequency_hz", "frequency_hz", heading="at [Hz]", shown=".1f"),
+    Quantity("damping_ratio"),
     Quantity(
         "speed_rpm",
-        lambda peak: peak.speed_rpm,
+        "speed_rpm",
         "missed_peak_speed",
-        unit="rpm",
         long_name="speed of the peak, of the first driver",
         heading="speed [rpm]",
         shown=".1f",
     ),
-    Quantity("half_width_rpm", lambda peak: peak.half_width_rpm, heading="half-power\nwidth ± [rpm]", shown=".2g"),
-    Quantity("output", lambda peak: peak.output, "missed_peak_output", long_name="sound, or the sensor that peaks"),
+    Quantity("half_width_rpm", "half_width_rpm", heading="half-power\nwidth ± [rpm]", shown=".2g"),
+    Quantity("output", "output", "missed_peak_output", long_name="sound, or the sensor that peaks"),
     Quantity(
         "level_db",
-        lambda peak: peak.level_db,
+        "level_db",
         "missed_peak_level",
-        unit="dB",
         long_name="estimated level of the line there: of sound power re 1 pW, of an rms acceleration re 1e-6 m/s2",
     ),
     Quantity(
@@ -91,8 +85,8 @@ PEAK = (
         long_name="reference of that level",
     ),
     Quantity("rms_m_per_s2", lambda peak: ABSENT if peak.output == _SOUND else _rms(peak.level_db)),
-    Quantity("found_over_linear_db", lambda peak: peak.found_over_linear_db),
-    Quantity("rise_db", lambda peak: peak.rise_db, heading="above the louder\npoint [dB]", shown=".1f"),
+    Quantity("found_over_linear_db", "found_over_linear_db"),
+    Quantity("rise_db", "rise_db", heading="above the louder\npoint [dB]", shown=".1f"),
 )
 """Quantities of a peak between two points of a sweep over speed, see :class:`gearwhine.sweep.resolution.MissedPeak`."""
 

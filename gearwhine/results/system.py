@@ -41,7 +41,7 @@ def _of_components(name: str, long_name: str, of: Any) -> Quantity:
         names = [component.name for component in system.machine.system.components]
         return dict(zip(names, of(system.modes)[mode].tolist(), strict=True))
 
-    return Quantity("", values, f"system_{name}", ("machine_component",), "1", long_name)
+    return Quantity("", values, f"system_{name}", ("machine_component",), "1", long_name=long_name)
 
 
 def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
@@ -52,7 +52,7 @@ def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
         names = [f"{part.kind}: {part.name}" for part in system.modes.shares.parts]
         return dict(zip(names, of(system.modes.shares)[mode].tolist(), strict=True))
 
-    return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name)
+    return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name=long_name)
 
 
 def _strained_most(row: _Mode) -> Any:
@@ -81,9 +81,7 @@ MODE = (
         "frequency_hz",
         lambda row: row.system.modes.frequencies_hz[row.mode],
         "system_frequency",
-        (),
-        "Hz",
-        "coupled natural frequency",
+        long_name="coupled natural frequency",
         heading="frequency [Hz]",
         shown="z.2f",
     ),
@@ -91,9 +89,8 @@ MODE = (
         "damping_ratio",
         lambda row: row.system.modes.damping_ratios[row.mode],
         "system_damping_ratio",
-        (),
-        "1",
-        "coupled damping ratio",
+        unit="1",
+        long_name="coupled damping ratio",
         heading="damping ratio",
         shown="z.4f",
     ),
@@ -102,13 +99,11 @@ MODE = (
         "kind",
         lambda row: row.system.modes.kinds[row.mode],
         "system_kind",
-        (),
-        "",
-        "what moves most",
+        long_name="what moves most",
         heading="kind",
         shown=lambda row: _named(row),
     ),
-    Quantity("where", lambda row: row.system.modes.where[row.mode], "system_where", (), "", "where it moves most"),
+    Quantity("where", lambda row: row.system.modes.where[row.mode], "system_where", long_name="where it moves most"),
     Quantity("energy", lambda row: row.system.modes.energy[row.mode]),
     Quantity("strained_most", _strained_most),
     Quantity("whirl", _sense),
@@ -152,25 +147,25 @@ def _mesh_stiffness(solved: "SolvedSystem") -> list[dict[str, Any]]:
 
 
 CERTIFICATE = (
-    Quantity("expected", lambda certificate: certificate.expected),
-    Quantity("found", lambda certificate: certificate.found),
-    Quantity("zeros", lambda certificate: certificate.zeros),
-    Quantity("max_residual", lambda certificate: certificate.max_residual),
-    Quantity("sum_rule", lambda certificate: certificate.sum_rule),
+    Quantity("expected"),
+    Quantity("found"),
+    Quantity("zeros"),
+    Quantity("max_residual"),
+    Quantity("sum_rule"),
     Quantity("complete", lambda certificate: certificate.found == certificate.expected),
 )
 
 STABILITY = (
-    Quantity("stable", lambda solved: solved.stability.stable),
+    Quantity("stable", "stability.stable"),
     Rows(
         "growing",
-        lambda solved: solved.stability.growing,
+        "stability.growing",
         (
             Quantity("frequency_hz", lambda mode: abs(mode.eigenvalue) / HERTZ),
-            Quantity("damping_ratio", lambda mode: mode.damping_ratio),
-            Quantity("doubling_time_s", lambda mode: mode.doubling_time),
-            Quantity("kind", lambda mode: mode.kind),
-            Quantity("where", lambda mode: mode.where),
+            Quantity("damping_ratio"),
+            Quantity("doubling_time_s"),
+            Quantity("kind"),
+            Quantity("where"),
             Quantity(
                 "fed_by",
                 lambda mode: [{"kind": part.kind, "name": part.name, "share": share} for part, share in mode.feeders],
@@ -214,7 +209,7 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
             def values(row: _Response, part: Any = part) -> dict[str, Any] | None:
                 return {label: part(curve) for label, curve in of(row.response).items()} or None
 
-            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, long_name)
+            yield Quantity("", values, f"{name}_{signal}_{kind}{suffix}", dimensions, units, long_name=long_name)
 
     def loads(columns: Any) -> Any:
         return lambda response: {label: load[:, columns] for label, load in response.bearing_load.items()}
@@ -231,8 +226,8 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
 
     force = "force of the shaft on its bearing"
     return (
-        Quantity("excitation", lambda row: row.response.excitation),
-        Quantity("per", lambda row: row.response.unit),
+        Quantity("excitation", "response.excitation"),
+        Quantity("per", "response.unit"),
         Quantity(
             "mesh_force_n", lambda row: {label: peaks(row, force) for label, force in row.response.mesh_force.items()}
         ),
@@ -268,8 +263,16 @@ def _response(name: str, abscissa: str, key: str, per: str) -> Fields:
 
 
 TRANSMISSIBILITY = (
-    Quantity("", lambda row: row.response.excitation, "mesh_error"),
-    Quantity("", lambda row: row.along, "response_frequency", ("response_frequency",), "Hz", "frequency", common=True),
+    Quantity("", "response.excitation", "mesh_error"),
+    Quantity(
+        "",
+        lambda row: row.along,
+        "response_frequency",
+        ("response_frequency",),
+        "Hz",
+        long_name="frequency",
+        common=True,
+    ),
     *_response("transmissibility", "response_frequency", "frequency_hz", "m-1"),
 )
 """Quantities of the response to the error of one mesh."""
@@ -296,7 +299,7 @@ def _line_part(name: str, attribute: str, part: str) -> Quantity:
         return {sensor: abs(sensor_row @ motion) for sensor, sensor_row in row.system.machine.sensor_rows.items()}
 
     long_name = f"amplitude of the sensor's acceleration at a mesh harmonic, {part}"
-    return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", long_name)
+    return Quantity(name, of, f"system_line_{name}", ("system_line_sensor",), "m s-2", long_name=long_name)
 
 
 def _line_cause(row: _Line) -> str:
@@ -307,20 +310,15 @@ def _line_cause(row: _Line) -> str:
 
 LINE = (
     Quantity(
-        "frequency_hz",
-        lambda row: row.line.frequency / HERTZ,
-        "system_line_frequency",
-        (),
-        "Hz",
-        "frequency of a mesh harmonic at operation",
+        "frequency_hz", "line.frequency", "system_line_frequency", long_name="frequency of a mesh harmonic at operation"
     ),
-    Quantity("cause", _line_cause, "system_line_cause", (), "", "mesh harmonics that drive the line"),
-    Part("sensor_acceleration_m_per_s2", lambda row: row, tuple(_line_part(*part) for part in _PARTS)),
+    Quantity("cause", _line_cause, "system_line_cause", long_name="mesh harmonics that drive the line"),
+    Part("sensor_acceleration_m_per_s2", ".", tuple(_line_part(*part) for part in _PARTS)),
 )
 """Quantities of a mesh harmonic at operation."""
 
 UNBALANCE = (
-    Quantity("", lambda row: row.response.excitation, "unbalance_of"),
+    Quantity("", "response.excitation", "unbalance_of"),
     *_response("unbalance_response", "unbalance_speed", "speed_rpm", ""),
 )
 """Quantities of the response to one rotor's unbalances over absolute speeds of the first driver."""
@@ -334,50 +332,27 @@ class _Crossing(NamedTuple):
 
 
 CROSSING = (
-    Quantity(
-        "speed_rpm",
-        lambda row: row.crossing.speed * RPM,
-        "system_crossing_speed",
-        (),
-        "rpm",
-        "speed of the first driver at the crossing",
-    ),
-    Quantity("line", lambda row: row.crossing.line.name, "system_crossing_line", (), "", "order"),
-    Quantity(
-        "order",
-        lambda row: row.crossing.line.order,
-        "system_crossing_order",
-        (),
-        "1",
-        "over the speed of the first driver",
-    ),
+    Quantity("speed_rpm", "crossing.speed", "system_crossing_speed"),
+    Quantity("line", "crossing.line.name", "system_crossing_line"),
+    Quantity("order", "crossing.line.order", "system_crossing_order", unit="1"),
     Quantity(
         "frequency_hz",
-        lambda row: row.crossing.eigenvalue.imag / HERTZ,
+        "crossing.eigenvalue.imag",
         "system_crossing_frequency",
-        (),
-        "Hz",
-        "damped frequency at the crossing",
+        long_name="damped frequency at the crossing",
     ),
-    Quantity(
-        "damping_ratio",
-        lambda row: row.crossing.damping_ratio,
-        "system_crossing_damping_ratio",
-        (),
-        "1",
-        "damping ratio at the crossing",
-    ),
-    Quantity("branch", lambda row: row.crossing.branch),
-    Quantity("kind", lambda row: row.crossing.kind),
-    Quantity("where", lambda row: row.crossing.where),
-    Quantity("teeth", lambda row: row.crossing.teeth),
+    Quantity("damping_ratio", "crossing.damping_ratio", "system_crossing_damping_ratio", unit="1"),
+    Quantity("branch", "crossing.branch"),
+    Quantity("kind", "crossing.kind"),
+    Quantity("where", "crossing.where"),
+    Quantity("teeth", "crossing.teeth"),
     Quantity("margin", lambda row: row.crossing.speed / row.operation - 1.0),
 )
 """Quantities of a crossing of the Campbell diagram."""
 
 
 def _diagram(name: str, of: Any, unit: str, long_name: str) -> Quantity:
-    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name)
+    return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name=long_name)
 
 
 class _Campbell(NamedTuple):
@@ -395,14 +370,7 @@ class _Branch(NamedTuple):
 
 
 CAMPBELL = (
-    Quantity(
-        "speeds_rpm",
-        lambda row: row.diagram.speeds * RPM,
-        "system_campbell_speed",
-        ("system_speed",),
-        "rpm",
-        "speed of the first driver",
-    ),
+    Quantity("speeds_rpm", "diagram.speeds", "system_campbell_speed", ("system_speed",)),
     _diagram(
         "frequency", lambda row: row.diagram.frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"
     ),
@@ -432,7 +400,7 @@ CAMPBELL = (
         CROSSING,
         "system_crossing",
     ),
-    Quantity("unsettled", lambda row: row.diagram.unsettled),
+    Quantity("unsettled", "diagram.unsettled"),
 )
 """Quantities of the Campbell diagram."""
 
@@ -450,29 +418,27 @@ def _trusted_below(solved: "SolvedSystem") -> float | None:
 
 
 SYSTEM = (
-    Quantity("speed_rpm", lambda solved: solved.speed * RPM),
-    Quantity("mesh_phase", lambda solved: solved.mesh_phase),
+    Quantity("speed_rpm"),
+    Quantity("mesh_phase"),
     Quantity("mesh_stiffness", _mesh_stiffness),
     Quantity(
         "",
         lambda solved: [component.name for component in solved.machine.system.components],
         "machine_component",
         ("machine_component",),
-        "",
-        "component of the machine",
+        long_name="component of the machine",
     ),
     Quantity(
         "",
         lambda solved: [f"{part.kind}: {part.name}" for part in solved.modes.shares.parts],
         "machine_part",
         ("machine_part",),
-        "",
-        "component, connector or contact",
+        long_name="component, connector or contact",
     ),
     Rows("modes", lambda solved: [_Mode(solved, mode) for mode in range(len(solved.modes.kinds))], MODE, "system_mode"),
-    Quantity("coordinates", lambda solved: solved.machine.system.size),
-    Part("certificate", lambda solved: solved.modes.certificate, CERTIFICATE),
-    Part("stability", lambda solved: solved, STABILITY),
+    Quantity("coordinates", "machine.system.size"),
+    Part("certificate", "modes.certificate", CERTIFICATE),
+    Part("stability", ".", STABILITY),
     Rows(
         "transmissibility",
         lambda solved: [_Response(response, response.frequencies / HERTZ) for response in solved.responses],
@@ -485,7 +451,7 @@ SYSTEM = (
         LINE,
         "system_line",
     ),
-    Quantity("superposition_error", lambda solved: solved.superposition_error),
+    Quantity("superposition_error"),
     Quantity("trusted_below_hz", _trusted_below),
     Part(
         "campbell",
@@ -498,7 +464,7 @@ SYSTEM = (
         "unbalance_speed",
         ("unbalance_speed",),
         "rpm",
-        "speed of the first driver",
+        long_name="speed of the first driver",
     ),
     Rows("unbalance_response", _unbalance, UNBALANCE, "unbalance_of"),
 )

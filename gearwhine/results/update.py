@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gearwhine.case.errors import key_of
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labels_of
-from gearwhine.output.quantity import ABSENT, HERTZ, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
 
 if TYPE_CHECKING:
@@ -21,15 +21,15 @@ def _known(value: float) -> float | None:
 
 
 PARAMETER = (
-    Quantity("name", lambda row: row.parameter.name, "parameter", (), "", "name of the parameter", heading="parameter"),
+    Quantity("name", "parameter.name", "parameter", long_name="name of the parameter", heading="parameter"),
     Quantity("keys", lambda row: [key_of(location) for location in row.number.places]),
-    Quantity("factor", lambda row: row.number.given.factor),
-    Quantity("unit", lambda row: row.unit, "unit", long_name="unit of the values before and after"),
-    Quantity("written_unit", lambda row: row.number.given.unit),
-    Quantity("written_unit_in_si", lambda row: row.unit_in_si),
+    Quantity("factor", "number.given.factor"),
+    Quantity("unit", "unit", "unit", long_name="unit of the values before and after"),
+    Quantity("written_unit", "number.given.unit"),
+    Quantity("written_unit_in_si", "unit_in_si"),
     Quantity(
         "before",
-        lambda row: row.number.start,
+        "number.start",
         "value_before",
         long_name="value before the fit, in its SI unit",
         heading="before (SI)",
@@ -37,7 +37,7 @@ PARAMETER = (
     ),
     Quantity(
         "after",
-        lambda row: row.value,
+        "value",
         "value_after",
         long_name="value after the fit, in its SI unit",
         heading="after (SI)",
@@ -45,7 +45,7 @@ PARAMETER = (
     ),
     Quantity(
         "standard_deviation",
-        lambda row: row.deviation,
+        "deviation",
         "value_deviation",
         long_name="standard deviation of the value, in its SI unit",
         heading="± (SI)",
@@ -53,53 +53,35 @@ PARAMETER = (
     ),
     Quantity("prior", lambda row: {"nominal": row.parameter.nominal, "spread": row.parameter.spread}),
     Quantity("range", lambda row: [row.parameter.low, row.parameter.high]),
-    Quantity("at_end_of_range", lambda row: row.is_at_end),
-    Quantity("left_of_prior_spread", lambda row: row.left),
+    Quantity("at_end_of_range", "is_at_end"),
+    Quantity("left_of_prior_spread", "left"),
 )
 """Quantities of a fitted number."""
 
 PAIR = (
-    Quantity("measured_hz", lambda pair: pair.measured / HERTZ, "measured_frequency", (), "Hz", "measured frequency"),
+    Quantity("measured_hz", "measured", "measured_frequency", long_name="measured frequency"),
     Quantity(
-        "before_hz",
-        lambda pair: pair.before / HERTZ,
-        "frequency_before",
-        (),
-        "Hz",
-        "frequency of the model before the fit",
-        document=_known,
+        "before_hz", "before", "frequency_before", long_name="frequency of the model before the fit", document=_known
     ),
-    Quantity(
-        "model_hz",
-        lambda pair: pair.after / HERTZ,
-        "frequency_after",
-        (),
-        "Hz",
-        "frequency of the model after the fit",
-        document=_known,
-    ),
+    Quantity("model_hz", "after", "frequency_after", long_name="frequency of the model after the fit", document=_known),
     Quantity(
         "before_error_percent",
-        lambda pair: pair.before_error_percent,
+        "before_error_percent",
         "error_before",
-        (),
-        "percent",
-        "error of the frequency before the fit",
+        long_name="error of the frequency before the fit",
         document=_known,
     ),
     Quantity(
         "error_percent",
-        lambda pair: pair.error_percent,
+        "error_percent",
         "error_after",
-        (),
-        "percent",
-        "error of the frequency after the fit",
+        long_name="error of the frequency after the fit",
         document=_known,
     ),
-    Quantity("mode", lambda pair: pair.mode),
-    Quantity("mac", lambda pair: pair.mac),
-    Quantity("before_mac", lambda pair: pair.before_mac),
-    Quantity("strength", lambda pair: pair.strength),
+    Quantity("mode"),
+    Quantity("mac"),
+    Quantity("before_mac"),
+    Quantity("strength"),
     Quantity("left_uncertain_percent", lambda pair: None if pair.uncertainty is None else 100.0 * pair.uncertainty),
 )
 """Quantities of a measured mode and its partner before and after the fit."""
@@ -109,20 +91,20 @@ CHOICE = (  # of the dominant modes, where these are paired
     Quantity("measures_agree", lambda misfit: misfit.measures_agree if misfit.by_dominance else ABSENT),
 )
 MISFIT = (
-    Quantity("misfit", lambda misfit: misfit.value),
-    Quantity("rms_error_percent", lambda misfit: misfit.rms_percent),
-    Quantity("max_error_percent", lambda misfit: misfit.max_percent),
+    Quantity("misfit", "value"),
+    Quantity("rms_error_percent", "rms_percent"),
+    Quantity("max_error_percent", "max_percent"),
     *CHOICE,
-    Quantity("model_modes", lambda misfit: misfit.count),
+    Quantity("model_modes", "count"),
 )
 """Misfit of a design to the measured modes."""
 
 STEP = (
-    Quantity("promised", lambda step: step.promised),
-    Quantity("found", lambda step: step.found),
-    Quantity("accepted", lambda step: step.accepted),
-    Quantity("trust", lambda step: step.trust),
-    Quantity("rms_error_percent", lambda step: step.rms_percent),
+    Quantity("promised"),
+    Quantity("found"),
+    Quantity("accepted"),
+    Quantity("trust"),
+    Quantity("rms_error_percent", "rms_percent"),
 )
 """Quantities of a step of the search."""
 
@@ -143,11 +125,11 @@ class _Confounded(NamedTuple):
 
 IDENTIFIABILITY = (
     Quantity("parameters", lambda solved: len(solved.fitted.numbers)),
-    Quantity("learned_combinations", lambda solved: solved.posterior.n_learned),
+    Quantity("learned_combinations", "posterior.n_learned"),
     Rows(
         "combinations",
         lambda solved: [_Combination(*each) for each in solved.combinations],
-        (Quantity("information", lambda row: row.information), Quantity("parts", lambda row: row.parts)),
+        (Quantity("information"), Quantity("parts")),
     ),
     Rows(
         "confounded",
@@ -155,15 +137,15 @@ IDENTIFIABILITY = (
             _Confounded([solved.found[first].parameter.name, solved.found[second].parameter.name], correlation)
             for first, second, correlation in solved.posterior.confounded
         ],
-        (Quantity("parameters", lambda row: row.parameters), Quantity("correlation", lambda row: row.correlation)),
+        (Quantity("parameters"), Quantity("correlation")),
     ),
 )
 """Combinations of parameters that the data determine, and pairs that they cannot tell apart."""
 
 HELD_BACK = (
-    Quantity("measured_hz", lambda row: row.measured / HERTZ, heading="held back [Hz]", shown=".1f"),
-    Quantity("predicted_hz", lambda row: row.predicted / HERTZ, document=_known, heading="predicted [Hz]", shown=".1f"),
-    Quantity("error_percent", lambda row: row.error_percent, document=_known, heading="error [%]", shown="+.2f"),
+    Quantity("measured_hz", heading="held back [Hz]", shown=".1f"),
+    Quantity("predicted_hz", document=_known, heading="predicted [Hz]", shown=".1f"),
+    Quantity("error_percent", "error_percent", document=_known, heading="error [%]", shown="+.2f"),
     Quantity(
         "standard_deviation_percent",
         lambda row: 100.0 * row.deviation,
@@ -171,49 +153,43 @@ HELD_BACK = (
         heading="expected ± [%]",
         shown=".2f",
     ),
-    Quantity(
-        "before_error_percent",
-        lambda row: row.start_error_percent,
-        document=_known,
-        heading="error before [%]",
-        shown="+.2f",
-    ),
+    Quantity("before_error_percent", "start_error_percent", document=_known, heading="error before [%]", shown="+.2f"),
     Quantity("before_standard_deviation_percent", lambda row: 100.0 * row.prior_deviation, document=_known),
     Quantity(
         "rms_error_percent_of_the_others",
-        lambda row: row.rms_percent,
+        "rms_percent",
         document=_known,
         heading="rms of the others [%]",
         shown=".2f",
+        scale=1.0,
     ),
 )
 """Quantities of a mode that the fit leaves out and predicts."""
 
 NULL_FIT = (
-    Quantity("frequencies_hz", lambda fit: fit.frequencies / HERTZ),
-    Quantity("rms_error_percent", lambda fit: fit.rms_percent),
-    Quantity("max_error_percent", lambda fit: fit.max_percent),
-    Quantity("gap", lambda fit: ABSENT if fit.gap is None else fit.gap),
-    Quantity("measures_agree", lambda fit: ABSENT if fit.measures_agree is None else fit.measures_agree),
-    Quantity("model_modes", lambda fit: fit.count),
-    Quantity("all_met", lambda fit: fit.is_met),
+    Quantity("frequencies_hz"),
+    Quantity("rms_error_percent", "rms_percent"),
+    Quantity("max_error_percent", "max_percent"),
+    Quantity("gap", optional=True),
+    Quantity("measures_agree", optional=True),
+    Quantity("model_modes", "count"),
+    Quantity("all_met", "is_met"),
 )
 """Quantities of the fit of one set of frequencies."""
 
 NULL = (
     Quantity("sets", lambda test: len(test.fits)),
-    Quantity("as_good_in_rms", lambda test: test.as_good_in_rms),
-    Quantity("all_met", lambda test: test.all_met),
+    Quantity("as_good_in_rms"),
+    Quantity("all_met"),
     Quantity("within_5_percent", lambda test: test.within(5.0)),
     Quantity("within_2_percent", lambda test: test.within(2.0)),
     Quantity("within_1_percent", lambda test: test.within(1.0)),
     Quantity(
-        "within_2_percent_and_clear",
-        lambda test: ABSENT if test.measured.gap is None else test.within(2.0, clear=True),
+        "within_2_percent_and_clear", lambda test: ABSENT if test.measured.gap is None else test.within(2.0, clear=True)
     ),
-    Quantity("median_rms_error_percent", lambda test: test.median_rms_percent),
-    Part("measured_likewise", lambda test: test.measured, NULL_FIT),
-    Rows("fits", lambda test: test.fits, NULL_FIT),
+    Quantity("median_rms_error_percent", "median_rms_percent"),
+    Part("measured_likewise", "measured", NULL_FIT),
+    Rows("fits", "fits", NULL_FIT),
 )
 """Quantities of random sets of frequencies: the parts of them that the search fits well."""
 
@@ -224,39 +200,39 @@ _RULES = {
 }
 
 UPDATE = (
-    Rows("parameters", lambda solved: solved.found, PARAMETER, "parameter"),
-    Rows("pairs", lambda solved: solved.pairs, PAIR, "pair"),
-    Quantity("rms_error_percent", lambda solved: solved.misfit_after.rms_percent),
-    Quantity("max_error_percent", lambda solved: solved.misfit_after.max_percent),
+    Rows("parameters", "found", PARAMETER, "parameter"),
+    Rows("pairs", "pairs", PAIR, "pair"),
+    Quantity("rms_error_percent", "misfit_after.rms_percent"),
+    Quantity("max_error_percent", "misfit_after.max_percent"),
     Quantity("pairing", lambda solved: "shapes" if solved.target.shapes is not None else solved.target.pairing),
     Quantity(
         "pairing_rule",
         lambda solved: "MAC, best assignment" if solved.target.shapes is not None else _RULES[solved.target.pairing],
     ),
-    Part("", lambda solved: solved.misfit_after, CHOICE),
+    Part("", "misfit_after", CHOICE),
     Quantity("wrong_pairs", lambda solved: sum(pair.mode is None for pair in solved.pairs)),
-    Part("before", lambda solved: solved.misfit_before, MISFIT),
+    Part("before", "misfit_before", MISFIT),
     Part(
         "search",
-        lambda solved: solved,
+        ".",
         (
             Quantity("mesh_dofs", lambda solved: 3 * len(solved.start.mesh.points)),
-            Rows("steps", lambda solved: solved.steps, STEP),
+            Rows("steps", "steps", STEP),
         ),
     ),
     Part(
         "mesh",
-        lambda solved: solved.after.mesh.points,
+        "after.mesh.points",
         (Quantity("nodes", len), Quantity("dofs", lambda points: 3 * len(points))),
     ),
-    Part("identifiability", lambda solved: solved, IDENTIFIABILITY),
+    Part("identifiability", ".", IDENTIFIABILITY),
     Quantity("seconds", lambda solved: {**solved.seconds, "total": sum(solved.seconds.values())}),
     Part(
         "model_modes",
         lambda solved: ABSENT if solved.target.count is None else solved,
         (
-            Quantity("below_hz", lambda solved: solved.target.count.limit / HERTZ),
-            Quantity("count", lambda solved: solved.misfit_after.count),
+            Quantity("below_hz", "target.count.limit"),
+            Quantity("count", "misfit_after.count"),
         ),
     ),
     Rows("held_back", lambda solved: solved.held_back or ABSENT, HELD_BACK),

@@ -9,12 +9,15 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import OrderTracking
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
+from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine.components import HousingComponent, component_of_housing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.gear_pairs import aligned_by_default, solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 
 
 def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
@@ -27,6 +30,20 @@ def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
 def described_machine(case: Case, housing: HousingModes | HousingComponent | None) -> Machine:
     """Describe the machine of a case in its solved housing, or on rigid seats."""
     return describe_machine(case, housing, grounded=housing is None)
+
+
+def load_of_case(
+    case: Case, machine: Machine, progress: Progress = silent
+) -> tuple[SolvedLoad | None, list[ResultWarning]]:
+    """Find the operating point of a case's machine beside another analysis, and its warnings.
+
+    See :func:`gearwhine.coupling.load_analysis.load_warnings.find_load`; the point is None where nothing loads it, too.
+    """
+    if not case.is_loaded:
+        return None, []
+    return find_load(
+        machine, progress, is_needed=case.needs_operating_point, aligned_by_default=aligned_by_default(case)
+    )
 
 
 def solve_pairs(

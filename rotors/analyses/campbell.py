@@ -313,13 +313,13 @@ class Campbell(ComplexFrequencies):
     Attributes
     ----------
     speeds : ndarray, shape (s,)
-        Speeds of rotation Ω [rad/s].
+        Speed of rotation Ω of the rotor [rad/s].
     eigenvalues : ndarray of complex, shape (s, m)
         Eigenvalues [rad/s].
     direction : ndarray, shape (s, m)
-        Directions as in `gearwhine.rotors.WhirlModes`.
+        Direction of the whirl, 1 counter-clockwise, -1 clockwise. It is that of `gearwhine.rotors.WhirlModes`.
     axial_share : ndarray, shape (s, m)
-        Axial shares as in `gearwhine.rotors.WhirlModes`.
+        Share of motion along the axis in the kinetic energy of whirl.
     proved : ndarray of bool, shape (s,)
         Speeds at which the number of roots was proved.
     """

@@ -32,7 +32,7 @@ class RestFrequencies:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        Natural frequencies, ascending [rad/s]; an isotropic root stands twice.
+        Lateral natural frequencies at rest of both planes, ascending [rad/s]; an isotropic root stands twice.
     axial_share : ndarray, shape (m,)
         Share of the kinetic energy along the axis, as in `gearwhine.rotors.WhirlModes`; 0 where the bearings do not
         couple axial and lateral motion.

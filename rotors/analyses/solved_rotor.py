@@ -226,9 +226,9 @@ class SolvedWeight:
     speed : float
         Speed at which tables over speed are read [rad/s].
     places : ndarray, shape (p,)
-        Places evenly along the shaft, and every station [m].
+        Places from the rotor's left end, evenly along the shaft, and every station [m].
     displacement : ndarray, shape (2, p)
-        Displacement along x and y [m].
+        Deflection of the shaft under its weight along x and y [m].
     """
 
     forces: tuple[StaticForce, ...]
@@ -270,7 +270,7 @@ class ProbeReading:
 
     @property
     def phase_lag(self) -> FloatArray:
-        """Phase lag of the reading behind the rotor's mark, from 0 to 2π, (b,) [rad]."""
+        """Phase lag of the reading behind the rotor's mark, from 0 to 2π [rad], shape (b,)."""
         return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
 
     @property
@@ -538,17 +538,17 @@ class SolvedRotor:
 
     @property
     def places(self) -> FloatArray:
-        """Evenly along the shaft from its left end, for shapes [m]."""
+        """Distances from the rotor's left end, evenly along the shaft, for shapes [m]."""
         return np.linspace(0.0, self.rotor.length, _PLACES)
 
     @property
     def whirl_deflection(self) -> FloatArray | None:
-        """Largest deflection over a cycle of each whirl mode at operation along :attr:`places` [m/√kg]."""
+        """Largest deflection over a cycle of the whirl modes at operation, of unit norm in mass [m/√kg]."""
         return None if self.operation is None else _largest_over_cycle(*self.whirl[0].evaluate(self.places))
 
     @property
     def whirl_moment(self) -> FloatArray | None:
-        """Largest bending moment over a cycle of each whirl mode at operation along :attr:`places` [N/√kg]."""
+        """Largest bending moment over a cycle of the whirl modes at operation, of unit norm in mass [N/√kg]."""
         return None if self.operation is None else _largest_over_cycle(*self.whirl[0].section_loads(self.places)[1])
 
     @property

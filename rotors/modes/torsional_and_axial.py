@@ -28,7 +28,7 @@ class RodModes:
     Attributes
     ----------
     frequencies : ndarray, shape (m,)
-        Natural frequencies, ascending [rad/s]; the rigid motion of a free shaft is a zero.
+        Free torsional natural frequencies, ascending [rad/s]; the rigid motion of a free shaft is a zero.
     stations : ndarray, shape (s,)
         Segment ends, discs and springs from the left end [m]; for a chain of inertias 0, 1, 2, ...
     amplitude : ndarray, shape (m, s)

@@ -50,7 +50,7 @@ class BearingLife:
 
     @property
     def reference_life(self) -> float | None:
-        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads [h]; None without a speed."""
+        """Basic reference rating life L10r by ISO/TS 16281 of the elements' loads, at the speed of operation [h]."""
         return self._hours(reference_revolutions)
 
     def _hours(self, life: Callable[[RollingState, float], float | None]) -> float | None:

@@ -57,7 +57,7 @@ class ComplexFrequencies:
 
     @property
     def frequencies(self) -> FloatArray:
-        """Natural frequency |λ| [rad/s]."""
+        """Natural frequency of whirl, |λ| [rad/s]."""
         return np.asarray(np.abs(self.eigenvalues))
 
     @property
@@ -72,7 +72,7 @@ class ComplexFrequencies:
 
     @property
     def log_decrements(self) -> FloatArray:
-        """Logarithmic decrement −2π Re λ / Im λ."""
+        """Logarithmic decrement of whirl, −2π Re λ / Im λ."""
         return np.asarray(-2.0 * np.pi * self.eigenvalues.real / self.eigenvalues.imag)
 
 
@@ -83,7 +83,7 @@ class WhirlModes(ComplexFrequencies):
     Attributes
     ----------
     speed : float
-        Ω [rad/s].
+        Speed of rotation Ω of the rotor [rad/s].
     eigenvalues : ndarray of complex, shape (w,)
         Eigenvalues [rad/s], with positive imaginary part: exact to about 1e-13 of each.
     certificate : ModeCertificate

@@ -49,7 +49,7 @@ class PathOfContact:
     Attributes
     ----------
     position : ndarray, shape (5,)
-        Position along the path [base pitches].
+        Place on the path of contact in base pitches [1].
     driver_roll_angle, driven_roll_angle : ndarray, shape (5,)
         [rad]
     driver_radius, driven_radius : ndarray, shape (5,)

@@ -68,7 +68,7 @@ class FaceLoad:
     force : float
         Mesh force F along the line of action, transverse [N].
     phases : ndarray, shape (n,)
-        Mesh periods.
+        Part of the mesh period.
     deflection : ndarray, shape (n,)
         Mean approach over the face, delta [m]: the static transmission error of the teeth under load.
     loads : ndarray, shape (n, m)
@@ -94,12 +94,12 @@ class FaceLoad:
 
     @property
     def line_load(self) -> FloatArray:
-        """Load per width over the face, all pairs together [N/m], shape (n, s)."""
+        """Transverse load per face width, all tooth pairs together [N/m], shape (n, s)."""
         return np.asarray(self.pair_line_loads.sum(axis=1))
 
     @property
     def peak_line_load(self) -> float:
-        """Largest load per width on any one pair [N/m]."""
+        """Largest load per width of one tooth pair over its face and the mesh period [N/m]."""
         return float(self.pair_line_loads.max(initial=0.0))
 
 

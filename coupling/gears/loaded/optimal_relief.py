@@ -44,9 +44,9 @@ class HarrisMap:
     forces : ndarray, shape (f,)
         Loads along the line of action [N].
     phases : ndarray, shape (n,)
-        Mesh periods.
+        Part of the mesh period.
     transmission_error : ndarray, shape (f, n)
-        Transmission error [m].
+        Static transmission error under each force [m].
     """
 
     forces: FloatArray

@@ -46,17 +46,17 @@ class LoadedMesh:
     phases : ndarray, shape (n,)
         Mesh periods.
     transmission_error : ndarray, shape (n,)
-        Compression of the mesh under the load [m]: lag of the driven gear along the line of action.
+        Static transmission error under the load, along the line of action [m]: the lag of the driven gear.
     positions : ndarray, shape (n, m)
         Positions of the pairs along the path of contact [base pitches].
     pair_forces : ndarray, shape (n, m)
         Force of each pair [N].
     tangent_stiffness : ndarray, shape (n,)
-        Stiffness of the pairs in contact, dF/d delta [N/m].
+        Stiffness of the tooth pairs that touch under the load, dF/d delta [N/m].
     secant_stiffness : ndarray, shape (n,)
         Load over the compression beyond first touch [N/m]; the tangent at no load.
     line_loads : ndarray, shape (n, m, s), or None
-        Load per width on every slice of each pair's face [N/m]; None for a uniform load.
+        Transverse load per face width on every slice of each tooth pair [N/m]; None for a uniform load.
     """
 
     force: float

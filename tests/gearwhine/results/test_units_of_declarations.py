@@ -1,7 +1,8 @@
 """Units of declared quantities and columns: the key's unit, that of the file and that of the heading are one.
 
-A key says its unit, ``force_n``; the file's unit is said beside it, and a heading has a unit with the factor to it. The
-table of units here is this test's own. What is declared in functions is read too: the calls are taken from the source.
+A key says its unit, ``force_n``; the file's unit is that or said beside it, and a heading has a unit, with a factor to
+it that follows from both or is said. The table of units here is this test's own. What is declared in functions is read
+too: the calls are taken from the source.
 """
 
 import ast
@@ -15,6 +16,7 @@ import pytest
 
 import gearwhine.results as results
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
+from gearwhine.output.quantity import factor_of, unit_of
 from gearwhine.results.line_columns import MECHANISMS as WORDS
 
 _PI = 3.141592653589793
@@ -74,8 +76,8 @@ ENDS = {
     "_db_a": "dB",
     "_percent": "percent",
 }
-_WITHIN = {"harmonics"}
-"""Keys within another that says their unit: harmonics of ``transmission_error_m``."""
+_WITHIN = {"harmonics", "mean", "maximum", "peak", "peak_of_tooth_pair"}
+"""Keys within another that says their unit: of ``transmission_error_m`` and ``line_load_n_per_m``."""
 
 
 class Declared(NamedTuple):
@@ -116,12 +118,13 @@ def declared(module: ModuleType) -> Iterator[Declared]:
         given = dict(zip(places[node.func.id], node.args, strict=False))
         given |= {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
         key = text_of(given.get("of" if node.func.id == "Column" else "key"))
-        scale = number_of(given["scale"], module) if "scale" in given else 1.0
+        heading = text_of(given.get("heading")) or ""
+        scale = number_of(given["scale"], module) if "scale" in given else factor_of(key or "", heading)
         through = "shown" in given and text_of(given["shown"]) is None
         if key is not None and scale is not None:
-            heading = "" if through else text_of(given.get("heading")) or ""
             where, name = f"{Path(module.__file__).name}:{node.lineno}", text_of(given.get("name")) or ""
-            yield Declared(where, key, name, heading, text_of(given.get("unit")), scale, "document" in given)
+            unit = text_of(given.get("unit")) or (unit_of(key) or None if name else None)
+            yield Declared(where, key, name, "" if through else heading, unit, scale, "document" in given)
 
 
 def dimension_of(key: str) -> str | None:
