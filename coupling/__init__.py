@@ -30,6 +30,8 @@ Sub-packages and modules, each of which imports only those before it:
 - ``gearwhine.coupling.machine_description``: the description of a machine.
 - ``gearwhine.coupling.analyses``: what commands and studies ask of a machine, with all that belongs to the answer.
 - ``gearwhine.coupling.sound``: sound that the housing radiates: of its modes, and of the lines of the machine's motion.
+- ``gearwhine.coupling.sweep``: what a sweep keeps of each motion, peaks between its points, and the sound of its lines.
+- ``gearwhine.coupling.load_analysis``: the machine at rest under load, and influences of its parts on gears and lines.
 
 numba is imported when a motion or an equilibrium is computed, not before.
 """

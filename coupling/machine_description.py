@@ -240,7 +240,14 @@ class Machine:
     @cached_property
     def housing_component(self) -> HousingComponent | None:
         """The housing as a component of the coupled system."""
-        return component_of_housing(self.housing) if isinstance(self.housing, HousingModes) else self.housing
+        if not isinstance(self.housing, HousingModes):
+            return self.housing
+        return component_of_housing(self.housing, participates=self.moves_housing_as_a_body)
+
+    @property
+    def moves_housing_as_a_body(self) -> bool:
+        """Whether the base moves or there is weight, which act on the housing by its participation."""
+        return self.base is not None or self.gravity is not None
 
     @cached_property
     def train(self) -> GearTrain:

@@ -26,18 +26,20 @@ if TYPE_CHECKING:
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.modal_test import PlannedSurvey
     from gearwhine.meshes import Mesh
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
     from gearwhine.solve.case_summary import CheckedCase
-    from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.updating import SolvedUpdate
     from gearwhine.sweep.run import SweptPoint
 
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
 _NEEDS = {
     "rotors": ("rotor",),
     "gears": ("gear_pair",),
+    "load": ("rotor", "bearing", "operation"),
     "system": ("rotor", "operation"),
     "system --mesh-phase": ("rotor", "operation", "gear_pair"),
     "steady": ("rotor", "operation"),
@@ -128,7 +131,7 @@ def build(folder: str | os.PathLike[str] = ".", /, **tables: object) -> "CaseStu
 class _KeptHousing:
     """The solved housing that studies share; None until one of them needs it, whose thread holds the lock."""
 
-    solved: "SolvedHousing | None" = None
+    solved: "HousingModes | None" = None
     lock: threading.RLock = field(default_factory=threading.RLock)
 
 
@@ -198,14 +201,14 @@ class CaseStudy(Study):
         """
         study = CaseStudy(self._source.changed(_texts(changes)), self.progress, folder=self.folder, fresh=self.fresh)
         if self.case.housing is not None and study.case.housing is not None:
-            from gearwhine.solve.housing_modes import housing_key
+            from gearwhine.solve.housing_modes import given_housing, housing_key
 
-            if housing_key(self.case) == housing_key(study.case):
+            if housing_key(given_housing(self.case)) == housing_key(given_housing(study.case)):
                 study._kept = self._kept
         return study
 
     @property
-    def housing(self) -> "SolvedHousing | None":
+    def housing(self) -> "HousingModes | None":
         """The solved housing, which the first call meshes and solves; None in a case without one."""
         return self.solved_housing()
 
@@ -215,16 +218,11 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine, reduce_housing
+        from gearwhine.solve.machine import described_machine
 
         with self._lock:
             if self._described is None:
-                solved = self.housing
-                part = None
-                if solved is not None:
-                    part = reduce_housing(self.case, solved, self.progress)
-                    part = replace(part, displacement_field=solved.displacement_field)
-                self._described = described_machine(self.case, part)
+                self._described = described_machine(self.case, self.housing)
             return self._described
 
     @property
@@ -275,7 +273,7 @@ class CaseStudy(Study):
 
         return housing.mesh(self.case, suffix=suffix, progress=self.progress)
 
-    def modes(self, *, detail: bool = False) -> "Result[SolvedHousing]":
+    def modes(self, *, detail: bool = False) -> "Result[HousingModes]":
         """Natural modes of the housing, certified complete, with checks of the model.
 
         Parameters
@@ -290,9 +288,9 @@ class CaseStudy(Study):
         gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
             Where the modes fail their proofs.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import modes_result
 
-        return housing.modes(self.case, detail=detail, housing=self._required_housing("modes"), progress=self.progress)
+        return modes_result(self._required_housing("modes"), self.origin, detail=detail)
 
     def compare(self) -> "Result[Comparison]":
         """Compare the housing's modes with measured ones: frequencies, MAC, frequency responses.
@@ -302,13 +300,16 @@ class CaseStudy(Study):
         CaseError, gearwhine.housing.HousingError
             Where the case has nothing measured, or its modes are not known as high as the measured ones.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import compare_result
         from gearwhine.case import require
-        from gearwhine.solve.comparison import require_comparable
+        from gearwhine.solve.comparison import compare_measured, require_comparable
 
         require(self.case, "housing", "measured", command="compare")
+        assert self.case.measured is not None
         require_comparable(self.case)
-        return housing.compare(self.case, housing=self._required_housing("compare"), progress=self.progress)
+        housing = self._required_housing("compare")
+        compared = compare_measured(self.case.measured, housing, self.progress, with_responses=True)
+        return compare_result(housing, compared, self.origin)
 
     def survey(
         self, sensors: Annotated[int, _AtLeastOne], modes: Annotated[int | None, _AtLeastOne] = None
@@ -327,10 +328,18 @@ class CaseStudy(Study):
         CaseError
             Where the sensors cannot separate the modes.
         """
-        from gearwhine.analyses import housing
+        from gearwhine.analyses.housing import survey_result
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.housing import HousingError
+        from gearwhine.housing.modal_test import plan_modal_survey
 
-        solved = self._required_housing("survey")
-        return housing.survey(self.case, sensors=sensors, modes=modes, housing=solved, progress=self.progress)
+        housing = self._required_housing("survey")
+        self.progress(f"choosing {sensors} sensors")
+        try:
+            planned = plan_modal_survey(housing, sensors, modes)
+        except HousingError as error:
+            raise CaseError([Problem("--sensors", str(sensors), f"sensors that can be placed; {error}")]) from error
+        return survey_result(housing, planned, self.origin)
 
     def update(self, *, null: Annotated[int, _NotNegative] = 0, held_back: bool = False) -> "Result[SolvedUpdate]":
         """Fit the parameters of [update] to the measured modes, and write the case with them as updated.toml.
@@ -359,7 +368,7 @@ class CaseStudy(Study):
         measured: bool = False,
         view: View = "auto",
         mode_format: Literal["png", "glb", "gif", "mp4"] = "png",
-    ) -> "Result[SolvedHousing]":
+    ) -> "Result[HousingModes]":
         """Draw mode shapes, operating shapes or measured shapes.
 
         Parameters
@@ -384,21 +393,25 @@ class CaseStudy(Study):
             Where no renderer or encoder is available.
         """
         from gearwhine.analyses import housing
+        from gearwhine.case import CaseError, Problem
         from gearwhine.mode_pictures import check_request
         from gearwhine.solve.comparison import require_comparable
 
+        if line and self.folder is None:
+            expected = "the results folder of a run, such as `gearwhine.load(case, folder=...)`"
+            raise CaseError([Problem("render: line", list(line), expected)])
         modes = modes or (None if line or measured else "dominant")
         check_request(self.case, modes, mode_format, line, measured=measured)
         if measured:
             require_comparable(self.case)
         return housing.render(
             self.case,
+            self._required_housing("render"),
             modes,
             view=view,
             mode_format=mode_format,
             lines=line,
             measured=measured,
-            housing=self._required_housing("render"),
             folder=self.folder,
             progress=self.progress,
         )
@@ -484,7 +497,7 @@ class CaseStudy(Study):
         seats = None if point is None or case.housing is None else "rigid" if housing is None else "housing"
         return gears_result(pairs, self.origin, seats)
 
-    def _housing_of_gears(self) -> "SolvedHousing | None":
+    def _housing_of_gears(self) -> "HousingModes | None":
         """Return the housing where it takes part in the analysis of gear pairs."""
         from gearwhine.solve.gear_pairs import aims_at_sensor
         from gearwhine.solve.housing_modes import kept_housing
@@ -531,19 +544,52 @@ class CaseStudy(Study):
             Where no equilibrium is found.
         """
         from gearwhine.analyses.machine_results import load_result
+        from gearwhine.coupling.load_analysis.solved_load import solve_load
+        from gearwhine.from_case.gear_pairs import aligned_by_default
         from gearwhine.solve.machine import described_machine
-        from gearwhine.solve.operating_point import load_of_case, require_load
-        from gearwhine.solve.sensitivity.ranking import solve_load_sensitivity
 
-        require_load(self.case)
+        self.require("load")
         ranked = sensitivity or line is not None
         housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
         machine = described_machine(self.case, None) if rigid_seats else self.machine
-        solved = load_of_case(self.case, machine, self.progress, over_torque=over_torque, over_hunting_period=True)
+        solved = solve_load(
+            machine,
+            self.progress,
+            over_torque=over_torque,
+            over_hunting_period=True,
+            aligned_by_default=aligned_by_default(self.case),
+        )
         if ranked:
-            ranking = solve_load_sensitivity(self.case, machine, solved.point, housing, self.progress, line=line)
-            solved = replace(solved, sensitivity=ranking)
+            solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
         return load_result(solved, replace(self.origin, housing=housing), self.progress)
+
+    def _ranking(
+        self, machine: "Machine", point: "OperatingPoint", housing: "HousingModes | None", line: str | None
+    ) -> "LoadSensitivity":
+        """Rank the parts of the machine; a line that there is not is refused by its option."""
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+        from gearwhine.solve.machine import run_of
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes
+
+        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
+        acoustics = acoustics_of(self.case)
+        try:
+            with refused_by_key(acoustics):
+                return solve_load_sensitivity(
+                    machine,
+                    point,
+                    housing,
+                    changes,
+                    acoustics=None if self.case.acoustics is None else acoustics,
+                    run=run_of(self.case),
+                    line=line,
+                    note=note,
+                    progress=self.progress,
+                )
+        except UnknownLineError as error:
+            raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
@@ -690,6 +736,9 @@ class CaseStudy(Study):
             if self.case.transient is not None:
                 require(self.case, "rotor", "operation", command="run")
             require_comparable(self.case)
+        if command == "load" and not self.case.is_loaded:
+            expected = "a torque, a force or gravity, which load the shafts, or a preload of rolling bearings"
+            raise CaseError([Problem("operation.torque", 0.0, expected)])
         if command == "steady" and operation is not None and operation.speed == 0.0:
             raise CaseError([Problem("operation.speed", 0.0, "a speed: what stands still has no motion that repeats")])
         if command not in ("rotors", "gears"):
@@ -701,11 +750,13 @@ class CaseStudy(Study):
 
         return solve_rotors(self.case, self.progress, **settings) if self.case.rotor else ()
 
-    def solved_housing(self, *, with_sound: bool = False) -> "SolvedHousing | None":
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
         """Return the solved housing; where its sound is wanted, what is wrong with `[acoustics]` is refused before."""
-        return None if self.case.housing is None else self._required_housing("modes", with_sound=with_sound)
+        return None if self.case.housing is None else self._required_housing("modes", folder, with_sound=with_sound)
 
-    def _required_housing(self, command: str, *, with_sound: bool = False) -> "SolvedHousing":
+    def _required_housing(
+        self, command: str, folder: Path | None = None, *, with_sound: bool = False
+    ) -> "HousingModes":
         """Return the solved housing; a case without one is refused in the name of a command."""
         from gearwhine.solve.acoustics import check_before_modes
         from gearwhine.solve.housing_modes import solve_housing
@@ -713,25 +764,27 @@ class CaseStudy(Study):
         refuse = check_before_modes(self.case) if with_sound else None
         with self._kept.lock:
             if self._kept.solved is None:
+                place = folder or self.folder
                 self._kept.solved = solve_housing(
-                    self.case, self.progress, command=command, folder=self.folder, fresh=self.fresh, before=refuse
+                    self.case, self.progress, command=command, folder=place, fresh=self.fresh, before=refuse
                 )
             elif refuse is not None:
-                refuse(self.case, self._kept.solved.mesh)
+                refuse(self._kept.solved.mesh)
             return self._kept.solved
 
-    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with those of `[measured]`; None without."""
-        from gearwhine.solve.comparison import compare_housing
+        from gearwhine.solve.comparison import compare_measured
 
-        return None if self.case.measured is None else compare_housing(self.case, housing, self.progress)
+        measured = self.case.measured
+        return None if measured is None else compare_measured(measured, housing, self.progress).comparison
 
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
         from gearwhine.analyses.machine_results import MachineUnderLoad
         from gearwhine.coupling.analyses.loaded_machine import load_machine
-        from gearwhine.solve.operating_point import find_load
+        from gearwhine.solve.machine import load_of_case
 
-        load, warnings = find_load(self.case, self.machine, self.progress)
+        load, warnings = load_of_case(self.case, self.machine, self.progress)
         loaded = load_machine(self.machine, None if load is None else load.point, run, self.progress)
         return MachineUnderLoad(replace(self.origin, housing=self.housing), loaded, load, warnings)
 

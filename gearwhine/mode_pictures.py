@@ -10,22 +10,22 @@ import numpy.typing as npt
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import UNSAID
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
+from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import file_stems
 from gearwhine.output.files import MODE_CACHE_FILE
 from gearwhine.output.report import MovingShape
-from gearwhine.solve.housing_modes import SolvedHousing, strongest_modes
 from gearwhine.view_names import View as View
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.housing.correlation.comparison import Comparison
-    from gearwhine.housing.measured import MappedSurvey
+    from gearwhine.housing.modal_test import ComparedTest
     from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape
-    from gearwhine.solve.operating_point import SolvedLoad
     from gearwhine.solve.operating_shapes import RunLine
-    from gearwhine.solve.sensitivity.influences import LoadSensitivity
 
 ModeFormat = Literal["png", "glb", "gif", "mp4"]
 
@@ -86,7 +86,7 @@ def check_request(
 
 
 def draw_modes(
-    housing: SolvedHousing,
+    housing: HousingModes,
     comparison: "Comparison | None",
     which: str,
     view: str,
@@ -99,7 +99,7 @@ def draw_modes(
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     comparison : Comparison or None
         Comparison with measured modes; modes with a measured partner count as the dominant ones, as the picture notes.
     which : str
@@ -124,7 +124,7 @@ def draw_modes(
     if which == "all":
         numbers = list(range(1, count + 1))
     elif which == "dominant":
-        numbers = sorted(notes) if notes else strongest_modes(housing, _DOMINANT)
+        numbers = sorted(notes) if notes else housing.strongest_modes(_DOMINANT)
     else:
         numbers = parse_numbers(which, count)
     numbers = sorted({*numbers, *besides})
@@ -142,7 +142,7 @@ def draw_modes(
 
 
 def draw_lines(
-    housing: SolvedHousing,
+    housing: HousingModes,
     folder: Path,
     frequencies: Sequence[float],
     view: str,
@@ -166,7 +166,7 @@ def draw_lines(
 
 
 def draw_operating_shapes(
-    housing: SolvedHousing,
+    housing: HousingModes,
     lines: "Sequence[RunLine]",
     view: str,
     mode_format: ModeFormat,
@@ -212,7 +212,7 @@ def moving_shapes(folder: Path) -> list[MovingShape]:
 
 
 def draw_load_pictures(
-    housing: SolvedHousing | None, solved: "SolvedLoad", place: Path, progress: Progress
+    housing: HousingModes | None, solved: "SolvedLoad", place: Path, progress: Progress
 ) -> list[dict[str, Any]]:
     """Draw a housing at an operating point, and its sensitivity where that is known; return warnings.
 
@@ -234,13 +234,13 @@ def draw_load_pictures(
 
 
 def draw_deflection(
-    housing: SolvedHousing, coordinates: FloatArray, view: str, place: Path, progress: Progress
+    housing: HousingModes, coordinates: FloatArray, view: str, place: Path, progress: Progress
 ) -> list[str]:
     """Draw the housing under a static load as ``load-housing.png``, from two opposite sides.
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     coordinates : ndarray, shape (n_modes + n_residual,)
         Coordinates of its modes and its residual modes.
     view : str
@@ -269,7 +269,7 @@ def draw_deflection(
 
 
 def draw_sensitivity(
-    housing: SolvedHousing, solved: "SolvedLoad", view: str, place: Path, progress: Progress
+    housing: HousingModes, solved: "SolvedLoad", view: str, place: Path, progress: Progress
 ) -> list[str]:
     """Draw where material on the housing changes the misalignment of each pair, a sensor's line and the sound power.
 
@@ -278,7 +278,7 @@ def draw_sensitivity(
 
     Parameters
     ----------
-    housing : SolvedHousing
+    housing : HousingModes
     solved : SolvedLoad
         Operating point in this housing, with its sensitivity.
     view : str
@@ -460,12 +460,7 @@ def _intensity_shapes(solved: "SolvedSound") -> "list[DrawnShape]":
 
 
 def draw_measured(
-    case: Case,
-    housing: SolvedHousing,
-    comparison: "Comparison | None",
-    survey: "MappedSurvey | None",
-    view: str,
-    place: Path,
+    title: str, housing: HousingModes, compared: "ComparedTest | None", view: str, place: Path
 ) -> list[str]:
     """Draw measured shapes beside those of the model that they are paired with, as ``measured-and-model.png``.
 
@@ -477,16 +472,15 @@ def draw_measured(
     from gearwhine.figures import ShapePair, draw_measured_shapes, save
     from gearwhine.housing.pictures.drawn_shapes import laid_over, point_motions, wireframe
     from gearwhine.housing.pictures.views import viewing_direction
-    from gearwhine.solve.comparison import mapped_shapes, read_measured
 
-    measured = read_measured(case)
-    if comparison is None or survey is None or measured.shapes is None or not comparison.pairs:
+    shapes = None if compared is None else compared.test.modes.shapes
+    if compared is None or compared.survey is None or shapes is None or not compared.comparison.pairs:
         raise CaseError([Problem("measured.file", UNSAID, "measured shapes of which some are like the model's")])
-    geometry, of_model = survey.geometry, mapped_shapes(housing, survey)
+    geometry, of_model = compared.survey.geometry, compared.survey.shapes(housing.modes.shapes)
     shape_pairs = []
-    for pair in comparison.pairs:
+    for pair in compared.comparison.pairs:
         model = of_model[pair.mode - 1]
-        laid = laid_over(measured.shapes[pair.measured_mode - 1], model)
+        laid = laid_over(shapes[pair.measured_mode - 1], model)
         likeness = "" if pair.mac is None else f", MAC {pair.mac:.2f}"
         shape_pairs.append(
             ShapePair(
@@ -497,10 +491,14 @@ def draw_measured(
                 point_motions(geometry, np.where(np.isfinite(laid), model, np.nan)),
             )
         )
-    title = f"Measured and model shapes: {case.title}"
     up = np.array(housing.up)
     figure = draw_measured_shapes(
-        title, geometry.positions, wireframe(geometry), shape_pairs, viewing_direction(view, up), up
+        f"Measured and model shapes: {title}",
+        geometry.positions,
+        wireframe(geometry),
+        shape_pairs,
+        viewing_direction(view, up),
+        up,
     )
     return [save(figure, place / "measured-and-model.png")]
 

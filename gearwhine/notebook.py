@@ -91,11 +91,11 @@ def machine_html(machine: Machine) -> str:
 
 def modes_html(modes: HousingModes) -> str:
     """Return the lowest natural frequencies of a housing, and the certificate of all."""
-    certificate = modes.mode_set.certificate
+    certificate = modes.modes.certificate
     rows = [
         {"number": number, "frequency_hz": float(frequency), "damping_ratio": float(ratio)}
         for number, (frequency, ratio) in enumerate(
-            zip(modes.frequencies_hz, modes.damping_ratios, strict=True), start=1
+            zip(modes.frequencies_hz, modes.total_damping_ratios, strict=True), start=1
         )
     ]
     count = len(rows)

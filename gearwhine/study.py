@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.operating_point import SolvedLoad
 
 
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
@@ -208,25 +208,46 @@ class Study:
         seats = None if point is None or machine.housing is None else "housing"
         return gears_result(solve_over_torques(analysed, self.progress, chosen), self.origin, seats)
 
-    def operating_point(self, *, over_torque: bool = False) -> "Result[SolvedLoad]":
+    def operating_point(
+        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+    ) -> "Result[SolvedLoad]":
         """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
 
         Parameters
         ----------
         over_torque : bool
             Also solve from 10 to 150 % of the torque.
+        sensitivity : bool
+            Also rank bearings, and the flat faces of a housing of :meth:`gearwhine.Housing.modes`, by what they change
+            in gear pairs, in the lines of sensors and, with acoustics in the settings, in the sound power of the
+            loudest lines.
+        line : str, optional
+            Line that is ranked: a sensor, or with its frequency in Hz, 'roof@1377'; or of the sound, 'sound@1377'. By
+            default the highest, and the A-weighted sum of the loudest. It implies ``sensitivity``.
 
         Raises
         ------
         gearwhine.coupling.CouplingError
-            Where nothing loads the machine, or a load drives a motion that nothing holds.
+            Where nothing loads the machine, there is no such line, or a load drives a motion that nothing holds.
         gearwhine.coupling.EquilibriumNotFoundError
             Where no equilibrium is found.
         """
         from gearwhine.analyses.machine_results import load_result
-        from gearwhine.solve.operating_point import solve_load
+        from gearwhine.coupling.load_analysis.ranking import rank_parts
+        from gearwhine.coupling.load_analysis.solved_load import solve_load
 
         solved = solve_load(self.machine, self.progress, over_torque=over_torque, over_hunting_period=True)
+        if sensitivity or line is not None:
+            plan = self.settings.transient
+            ranking = rank_parts(
+                self.machine,
+                solved.point,
+                acoustics=self.settings.acoustics,
+                run=None if plan is None else plan.run,
+                line=line,
+                progress=self.progress,
+            )
+            solved = replace(solved, sensitivity=ranking)
         return load_result(solved, self.origin)
 
     def system(
@@ -445,11 +466,14 @@ class Study:
 
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
-    def solved_housing(self, *, with_sound: bool = False) -> "SolvedHousing | None":
-        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it."""
+    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
+        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
+
+        Modes that a ``folder`` keeps are read in place of solving.
+        """
         return None
 
-    def compared_modes(self, housing: "SolvedHousing") -> "Comparison | None":
+    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with measured ones; None without such."""
         return None
 

@@ -15,10 +15,11 @@
 
 Sub-packages and modules, each of which imports only those before it: ``gearwhine.housing.material``,
 ``gearwhine.housing.fem`` (assembly, factorisation), ``gearwhine.housing.model`` (supports, seats, fixtures),
-``housing.modes`` (eigensolver, certificate, residual modes), ``gearwhine.housing.housing`` (the whole description),
-``gearwhine.housing.storage`` (NetCDF), ``gearwhine.housing.acoustics`` (radiated sound), ``gearwhine.housing.measured``
-(surveys and their files), ``gearwhine.housing.correlation`` (modal assurance criterion and others),
-``gearwhine.housing.updating`` (model updating), ``gearwhine.housing.pictures`` (rendering).
+``gearwhine.housing.modes`` (eigensolver, certificate, residual modes), ``gearwhine.housing.storage`` (NetCDF),
+``gearwhine.housing.acoustics`` (radiated sound), ``gearwhine.housing.measured`` (surveys and their files),
+``gearwhine.housing.correlation`` (modal assurance criterion and others), ``gearwhine.housing.updating`` (model
+updating), ``gearwhine.housing.pictures`` (rendering), ``gearwhine.housing.model_warnings``, and
+``gearwhine.housing.housing``: the whole description, and what is known of it once its modes are solved.
 """
 
 from gearwhine.housing.correlation.comparison import compare_by_dominance as compare_by_dominance
@@ -29,13 +30,13 @@ from gearwhine.housing.errors import IncompleteModesError as IncompleteModesErro
 from gearwhine.housing.fem.assembly import assemble as assemble
 from gearwhine.housing.housing import Housing as Housing
 from gearwhine.housing.housing import HousingModes as HousingModes
-from gearwhine.housing.housing import cover_joints as cover_joints
 from gearwhine.housing.material import STEEL as STEEL
 from gearwhine.housing.material import Material as Material
 from gearwhine.housing.model.bolted_joints import bolted_joint as bolted_joint
 from gearwhine.housing.model.bushings import Bushing as Bushing
 from gearwhine.housing.model.bushings import Joint as Joint
 from gearwhine.housing.model.bushings import Mount as Mount
+from gearwhine.housing.model.cover_bolts import cover_joints as cover_joints
 from gearwhine.housing.model.fixtures import LumpedMass as LumpedMass
 from gearwhine.housing.model.fixtures import attach_fixtures as attach_fixtures
 from gearwhine.housing.model.patches import Patch as Patch

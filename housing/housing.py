@@ -1,37 +1,89 @@
 """Housing: mesh, materials, supports and other fixtures, bearing seats and sensors in one description; and its modes.
 
 The description is complete: natural modes are those of the mesh with every fixture on it, so that no support can be
-left out on the way to the eigensolver.
+left out on the way to the eigensolver. :class:`HousingModes` has of the solved housing what a machine takes (motions of
+seats and sensors, damping), what a measurement is compared with, and what sound and pictures need.
 """
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
+from scipy import linalg, sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.assembly import assemble
 from gearwhine.housing.fem.matrices import Matrices
-from gearwhine.housing.material import Material, element_constants, enclosed_volume, mass_properties
-from gearwhine.housing.model.bolted_joints import bolted_joint
-from gearwhine.housing.model.bushings import Bushing, Joint, Mount
+from gearwhine.housing.material import (
+    MassProperties,
+    Material,
+    element_constants,
+    enclosed_volume,
+    mass_properties,
+)
+from gearwhine.housing.measured.survey_planning import Survey, survey_grid
+from gearwhine.housing.model.bushings import Joint, Mount
+from gearwhine.housing.model.cover_bolts import cover_joints
 from gearwhine.housing.model.fixtures import Fixture, LumpedMass, attach_fixtures
-from gearwhine.housing.model.patches import Patch, rigid_motions
-from gearwhine.housing.model.seats import Seat, Sensor, SensorPort, seat_matrix, sensor_findings, sensor_port
+from gearwhine.housing.model.patches import rigid_motions
+from gearwhine.housing.model.seats import (
+    Seat,
+    Sensor,
+    SensorPort,
+    bearing_port,
+    seat_matrix,
+    sensor_findings,
+    sensor_port,
+)
 from gearwhine.housing.model.supports import Support
+from gearwhine.housing.model_warnings import (
+    defect_warnings,
+    discretisation_warnings,
+    health_warnings,
+    surface_point_warnings,
+)
 from gearwhine.housing.modes.discretisation_error import discretisation_errors, fixture_nodes
-from gearwhine.housing.modes.effective_mass import damping_ratios, modal_damping
+from gearwhine.housing.modes.dominance import Dominance, dominance
+from gearwhine.housing.modes.effective_mass import EffectiveMass, damping_ratios, effective_mass, modal_damping
 from gearwhine.housing.modes.eigensolver import DEFAULT_SOLVER, Solver
 from gearwhine.housing.modes.health import HealthReport, health_report
 from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.modes.natural_modes import ModeSet, solve_modes
-from gearwhine.meshes import Bolt, BoxGeometry, Mesh, diagnose, mesh_box, mesh_cad, read_mesh, with_bore
+from gearwhine.housing.modes.receptance import Selection, select_modes
+from gearwhine.housing.modes.residual_modes import leading_residual_modes
+from gearwhine.housing.storage.check_documents import check_document, effective_mass_of, health_of
+from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
+from gearwhine.housing.storage.netcdf import LabelledArray
+from gearwhine.meshes import (
+    BoxGeometry,
+    GeometryError,
+    Mesh,
+    MeshDefect,
+    diagnose,
+    mesh_box,
+    mesh_cad,
+    read_mesh,
+    with_bore,
+)
 from gearwhine.meshes.box.surface_points import point_off_box
-from gearwhine.numerics.findings import Finding, Instance, Number, Part, attribute_findings, kind_findings, refuse
+from gearwhine.numerics.findings import (
+    Finding,
+    Instance,
+    Number,
+    Numbers,
+    Part,
+    Rule,
+    attribute_findings,
+    kind_findings,
+    refuse,
+)
 from gearwhine.numerics.own_copies import keep_tuples
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,8 +94,16 @@ table F.2) and of metal structures as cast (Adams and Askenazi 1998)."""
 RESPONSE_ORDERS = 3
 """Responses of the discarded modes at each motion of a bearing: at rest, at the limit, and its derivative there."""
 
+DampingRatio = float | Sequence[float] | Mapping[float, float]
+"""One modal damping ratio of all modes, one of each mode from the lowest on, or ratios by frequency [Hz], linear
+between."""
+
 _TWO_PI = 2.0 * np.pi
 _PART: Part = ("housing", "")
+_UPWARDS = (0.0, 1.0, 0.0)
+_DAMPING = "modal_damping"  # name of the damping matrix in a mode-set file
+_COORDINATES = ("coordinate", "other_coordinate")
+_SELECTION_TOLERANCE = 0.05  # of the largest receptance between bearings and sensors, for the selection of modes
 
 
 @dataclass(frozen=True)
@@ -62,14 +122,22 @@ class Housing:
         Supports, mounts, joints between parts, and masses.
     seats : sequence of Seat
     sensors : sequence of Sensor
-    damping_ratio : float
-        Fraction of critical damping of every mode, in addition to the dashpots of the fixtures; 0.01 by default.
+    damping_ratio : float, sequence of float, or mapping of float to float
+        Fraction of critical damping in addition to the dashpots of the fixtures: of every mode, of each mode from the
+        lowest on (rigid motions included), or by frequency [Hz], linear between; 0.01 by default.
+    mesh_size : float, optional
+        Edge length of the elements, where the solid is meshed by one [m]; warnings of a coarse mesh give a better one.
+    outer_faces : pair of points, optional
+        Low and high corners of the box of its walls [m], without feet and bosses, over whose faces the points of a
+        survey are spread; by default those of the mesh.
+    up : tuple of float
+        Unit vector that points upwards in pictures.
 
     Raises
     ------
     HousingError
         Where a part is of another kind, a name is given twice, the mesh lacks a volume or a seat's surface, a sensor is
-        far from the surface, or the damping ratio is not from 0 to 1.
+        far from the surface, or a damping ratio is not from 0 to 1.
     """
 
     mesh: Mesh
@@ -78,22 +146,39 @@ class Housing:
     fixtures: Sequence[Fixture] = ()
     seats: Sequence[Seat] = ()
     sensors: Sequence[Sensor] = ()
-    damping_ratio: float = DAMPING_RATIO
+    damping_ratio: DampingRatio = DAMPING_RATIO
+    mesh_size: float | None = None
+    outer_faces: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    up: tuple[float, float, float] = _UPWARDS
 
     def __post_init__(self) -> None:
-        """Keep own copies; check unique names, volumes of the materials, and the damping ratio."""
-        keep_tuples(self, "fixtures", "seats", "sensors")
+        """Keep own copies; check unique names, volumes of the materials, and the damping ratios."""
+        keep_tuples(self, "fixtures", "seats", "sensors", "damping_ratio", "outer_faces", "up")
         object.__setattr__(self, "materials", dict(self.materials))
+        if isinstance(self.damping_ratio, Mapping):
+            object.__setattr__(self, "damping_ratio", dict(self.damping_ratio))
         refuse(self._kind_findings(), HousingError)
         refuse(self._fit_findings(), HousingError)
 
     def _kind_findings(self) -> Iterator[Finding]:
-        """Yield parts of another kind, and a damping ratio that none has."""
-        material = Instance(Material, "a material")
+        """Yield parts of another kind, and damping ratios that none has."""
         ratio = Number(at_least=0.0, below=1.0)
-        yield from attribute_findings(
-            _PART, self, mesh=Instance(Mesh, "a mesh"), material=material, damping_ratio=ratio
-        )
+        rules: dict[str, Rule] = {
+            "mesh": Instance(Mesh, "a mesh"),
+            "material": Instance(Material, "a material"),
+            "mesh_size": Number(above=0.0, optional=True, unit="m"),
+            "up": Numbers(3),
+        }
+        if isinstance(self.damping_ratio, Mapping):
+            for frequency, value in self.damping_ratio.items():
+                if not (Number(at_least=0.0).accepts(frequency) and ratio.accepts(value)):
+                    expected = f"frequencies of at least 0 Hz, and for each {ratio.expected}"
+                    yield Finding(_PART, "damping_ratio", {frequency: value}, expected)
+            if not self.damping_ratio:
+                yield Finding(_PART, "damping_ratio", {}, "a ratio at one frequency at least")
+        else:
+            rules["damping_ratio"] = Numbers(None, ratio) if isinstance(self.damping_ratio, tuple) else ratio
+        yield from attribute_findings(_PART, self, **rules)
         fixtures = (Support, Mount, Joint, LumpedMass)
         yield from kind_findings(_PART, self, fixtures=fixtures, seats=Seat, sensors=Sensor)
 
@@ -131,7 +216,7 @@ class Housing:
         seats: Sequence[Seat] = (),
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = DAMPING_RATIO,
+        damping_ratio: DampingRatio = DAMPING_RATIO,
         order: int = 2,
     ) -> "Housing":
         """Mesh a solid from a STEP, IGES or BREP file.
@@ -159,7 +244,7 @@ class Housing:
         refine = [(seat.center, seat.diameter) for seat in seats if seat.diameter is not None]
         meshed = mesh_cad(Path(path), mesh_size, unit=unit, order=order, refine=refine)
         mesh = _with_bores(meshed.mesh, seats)
-        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio, mesh_size)
 
     @classmethod
     def from_mesh_file(
@@ -171,7 +256,7 @@ class Housing:
         seats: Sequence[Seat] = (),
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = DAMPING_RATIO,
+        damping_ratio: DampingRatio = DAMPING_RATIO,
     ) -> "Housing":
         """Read a mesh of solid elements in any format that meshio, Abaqus, Nastran or gmsh writes.
 
@@ -203,7 +288,7 @@ class Housing:
         *,
         fixtures: Sequence[Fixture] = (),
         sensors: Sequence[Sensor] = (),
-        damping_ratio: float = DAMPING_RATIO,
+        damping_ratio: DampingRatio = DAMPING_RATIO,
         order: int = 2,
     ) -> "Housing":
         """Mesh a box-shaped housing, with a seat in each of its bores and a joint at each bolt of its cover.
@@ -228,7 +313,9 @@ class Housing:
         mesh = mesh_box(box, mesh_size, order=order)
         seats = [Seat(bore.name, bore.center, bore.diameter, box.bore_depth(bore)) for bore in box.bores]
         fixtures = [*fixtures, *cover_joints(box, material)]
-        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio)
+        x, y, z = box.size
+        faces = ((-0.5 * x, 0.0, -0.5 * z), (0.5 * x, y, 0.5 * z))
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio, mesh_size, faces)
 
     def free_matrices(self) -> Matrices:
         """Stiffness and mass of the solid alone, without its fixtures."""
@@ -244,8 +331,8 @@ class Housing:
 
         Raises
         ------
-        HousingError, gearwhine.meshes.GeometryError
-            Where a fixture finds no place on the mesh.
+        HousingError
+            Where fixtures find no place on the mesh, with all of them.
         """
         return attach_fixtures(self.free_matrices() if free is None else free, self.mesh, self.fixtures)
 
@@ -257,6 +344,40 @@ class Housing:
         """Each sensor on its mesh."""
         return {sensor.name: sensor_port(self.mesh, sensor) for sensor in self.sensors}
 
+    @property
+    def attached_mass(self) -> float:
+        """Sum of the lumped masses [kg]."""
+        return sum(fixture.mass for fixture in self.fixtures if isinstance(fixture, LumpedMass))
+
+    @property
+    def widest_bore(self) -> float | None:
+        """Diameter of its widest seat [m]; None where none is known."""
+        return max((seat.diameter for seat in self.seats if seat.diameter is not None), default=None)
+
+    def solid(self) -> MassProperties:
+        """Mass and centre of gravity of the solid alone, by its elements."""
+        return mass_properties(self.mesh, self.material, self.materials)
+
+    def modal_damping_ratios(self, frequencies_hz: FloatArray) -> FloatArray:
+        """Fraction of critical damping of modes at natural frequencies [Hz], without the dashpots of the fixtures.
+
+        Raises
+        ------
+        HousingError
+            Where there are more modes than the damping ratio lists.
+        """
+        given = self.damping_ratio
+        if isinstance(given, Mapping):
+            places, ratios = np.array(sorted(given.items())).T
+            return np.asarray(np.interp(frequencies_hz, places, ratios))
+        if isinstance(given, Sequence):
+            count = len(frequencies_hz)
+            if len(given) < count:
+                expected = f"a ratio for each of the {count} modes found"
+                refuse([Finding(_PART, "damping_ratio", given, expected)], HousingError)
+            return np.array(given[:count])
+        return np.full(len(frequencies_hz), float(given))
+
     def modes(
         self,
         *,
@@ -264,6 +385,7 @@ class Housing:
         count: int | None = None,
         bearings: Mapping[str, tuple[str, float]] | None = None,
         solver: Solver = DEFAULT_SOLVER,
+        defects: Sequence[MeshDefect] | None = None,
         progress: Callable[[str], None] = lambda message: None,
     ) -> "HousingModes":
         """Natural modes, certified complete, with residual modes for the bearings.
@@ -279,61 +401,89 @@ class Housing:
             centre of the seat [m]. By default each seat stands for one bearing at its centre.
         solver : {"lanczos", "eigsh"}
             Eigensolver, see :func:`gearwhine.housing.solve_modes`.
+        defects : sequence of MeshDefect, optional
+            Defects of the mesh where they are known and allowed; found here by default, and refused where the mesh
+            cannot be computed with or falls into bodies that no joint connects.
         progress : callable
             Called with a line of text before each step.
 
         Raises
         ------
         HousingError
-            Where the mesh is not sound, a bearing's seat does not exist, or a fixture finds no place.
+            Where the mesh is not sound, a bearing's seat does not exist, fixtures find no place, or the model does not
+            have the modes that are asked for.
         IncompleteModesError, ReductionError, HealthError
             Where the modes fail their certificate, their static compliance its proof, or the model its checks.
         """
-        self.require_sound_mesh()
+        defects = self._sound_mesh_defects() if defects is None else defects
         seat_ports = self.seat_ports()
-        places = {name: (name, 0.0) for name in seat_ports} if bearings is None else bearings
+        places = {name: (name, 0.0) for name in seat_ports} if bearings is None else dict(bearings)
         for name, (seat, _) in places.items():
             if seat not in seat_ports:
                 names = ", ".join(map(repr, seat_ports)) or "none"
                 raise HousingError(f"bearing {name!r}: no seat {seat!r} in the housing; expected one of {names}")
-        loaded = {name: bearing_port(seat_ports[seat], arm) for name, (seat, arm) in places.items()}
+        loaded = [bearing_port(seat_ports[seat], arm) for seat, arm in places.values()]
         progress(f"assembling {3 * len(self.mesh.points)} degrees of freedom")
+        begin = time.perf_counter()
         free = self.free_matrices()
         whole = self.matrices(free)
-        modes = certified_modes(whole, loaded, below_hz=below_hz, count=count, solver=solver, progress=progress)
+        assembled = time.perf_counter() - begin
+        try:
+            modes = solve_modes(
+                whole,
+                frequency_limit=None if below_hz is None else _TWO_PI * below_hz,
+                count=count,
+                ports=sparse.vstack(loaded, format="csr") if loaded else None,
+                port_orders=RESPONSE_ORDERS,
+                solver=solver,
+                progress=progress,
+            )
+        except HousingError as error:
+            attribute = "count" if below_hz is None else "below_hz"
+            finding = Finding(_PART, attribute, None, f"what this model has; {error}")
+            refuse([finding], HousingError)
+            raise
+        damping = modal_damping(modes, whole) if whole.damping.nnz else None
+        progress("estimating the error by the mesh")
+        begin = time.perf_counter()
         modes = self.with_discretisation_errors(free, whole, modes)
+        estimated = time.perf_counter() - begin
+        progress("checking the housing against its geometry")
+        begin = time.perf_counter()
         health = self.health(free, whole, modes)
         health.require()
-        sensor_ports = self.sensor_ports()
-        return HousingModes(
-            housing=self,
-            mode_set=modes,
-            health=health,
-            seats={name: modes.project_all(port) for name, port in seat_ports.items()},
-            sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in sensor_ports.items()},
-            sensor_ports=sensor_ports,
-            damping_matrix=modal_damping(modes, whole) if whole.damping.nnz else None,
-            participation=self.participation(whole, modes),
+        masses = effective_mass(whole, self.mesh.points, modes)
+        checked = time.perf_counter() - begin
+        warnings = defect_warnings(defects) + discretisation_warnings(
+            self.mesh, self.material, modes, mesh_size=self.mesh_size, below_limit=below_hz is not None
         )
+        seconds = {"assembly": assembled, **modes.seconds, "error_estimate": estimated, "checks": checked}
+        record = ModeRecord(
+            self.mesh,
+            modes,
+            whole.total_mass,
+            seats=tuple(self.seats),
+            seat_motions=np.stack([modes.project(port) for port in seat_ports.values()], axis=1)
+            if seat_ports
+            else np.empty((0, 0, 6)),
+            notes={
+                "seconds": seconds,
+                "checks": {"health": check_document(health), "effective_mass": check_document(masses)},
+                "warnings": warnings,
+            },
+            extras={} if damping is None else {_DAMPING: _damping_array(damping)},
+        )
+        return HousingModes(self, with_sensors(record, self.sensor_ports().values()), places, seconds)
 
-    def require_sound_mesh(self) -> None:
-        """Refuse a mesh that cannot be computed with, or that falls into bodies which no joint connects.
-
-        Raises
-        ------
-        HousingError
-            With everything that is wrong.
-        """
-        joined = [fixture.nodes(self.mesh) for fixture in self.fixtures if isinstance(fixture, Joint)]
-        wrong = [
-            defect
-            for defect in diagnose(self.mesh, joined=joined)
-            if defect.name == "disconnected" or defect.severity == "error"
-        ]
+    def _sound_mesh_defects(self) -> tuple[MeshDefect, ...]:
+        """Return the defects of a mesh that can be computed with, and is one body or joined; refuse any other."""
+        defects = diagnose(self.mesh, joined=[*joined_nodes(self.fixtures, self.mesh)])
+        wrong = [defect for defect in defects if defect.name == "disconnected" or defect.severity == "error"]
         if wrong:
             raise HousingError(
                 "expected a sound mesh; " + "; ".join(f"{defect.name}: {defect.message}" for defect in wrong)
             )
+        return defects
 
     def participation(self, whole: Matrices, modes: ModeSet) -> FloatArray:
         """Participation φᵀ M R of modes and residual modes in the motions of the ground, shape (n, 6) [√kg, √kg m].
@@ -373,13 +523,13 @@ class Housing:
         modes : ModeSet
             Modes of ``whole``.
         """
-        solid = mass_properties(self.mesh, self.material, self.materials)
+        solid = self.solid()
         mass, center = solid.mass, solid.center
         if not self.materials:
             # With one material the boundary's volume gives the mass, independent of the elements inside.
             volume, center = enclosed_volume(self.mesh)
             mass = self.material.density * volume
-        fastened = sum(fixture.mass for fixture in self.fixtures if isinstance(fixture, LumpedMass))
+        fastened = self.attached_mass
         return health_report(
             self.mesh,
             free,
@@ -392,120 +542,260 @@ class Housing:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HousingModes:
-    """Natural modes of a housing, with their motions at seats and sensors, damping and participation.
+    """Natural modes of a housing with their proof, and what machine, measurement, sound and pictures take of them.
 
     Attributes
     ----------
     housing : Housing
-    mode_set : ModeSet
-        Frequencies, shapes, certificate and residual modes.
-    health : HealthReport
-    seats : mapping of str to ndarray, shape (n, 6)
-        Motions of modes and residual modes at each seat.
-    sensors : mapping of str to ndarray, shape (n,)
-        Motions of modes and residual modes along each sensor.
-    sensor_ports : mapping of str to SensorPort
-        Sensors on the mesh.
-    damping_matrix : ndarray, shape (n, n), or None
-        Φᵀ C Φ of the fixtures' dashpots [1/s].
-    participation : ndarray, shape (n, 6)
-        φᵀ M R of the rigid motions along and about x, y, z through the origin [√kg, √kg m].
+    record : ModeRecord
+        Modes, mass, damping of the fixtures and checks of the model, as :func:`gearwhine.housing.write_modes` writes
+        them.
+    bearings : mapping of str to (str, float)
+        Places where the machine bears on the housing: for each bearing its seat, and its distance along z from the
+        centre of the seat [m]. The residual modes are for these.
+    seconds : mapping of str to float
+        Time of each step of the solution, or of reading [s].
+    source : Path or None
+        File that the modes were read from; None where they were solved.
+    source_holds : bool
+        Whether that file holds these sensors, too.
+    file_warnings : sequence of dict
+        Warnings about files of modes.
+
+    Raises
+    ------
+    HousingError
+        Where there are more modes than the housing lists damping ratios.
     """
 
     housing: Housing
-    mode_set: ModeSet
-    health: HealthReport
-    seats: Mapping[str, FloatArray]
-    sensors: Mapping[str, FloatArray]
-    sensor_ports: Mapping[str, SensorPort]
-    damping_matrix: FloatArray | None
-    participation: FloatArray
+    record: ModeRecord
+    bearings: Mapping[str, tuple[str, float]]
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    source: Path | None = None
+    source_holds: bool = False
+    file_warnings: Sequence[ResultWarning] = ()
+
+    def __post_init__(self) -> None:
+        """Check the number of damping ratios."""
+        _ = self.damping_ratios
+
+    @property
+    def mesh(self) -> Mesh:
+        """Mesh of the housing."""
+        return self.housing.mesh
+
+    @property
+    def modes(self) -> ModeSet:
+        """Frequencies, shapes, certificate and residual modes."""
+        return self.record.modes
 
     @property
     def frequencies_hz(self) -> FloatArray:
         """Natural frequencies [Hz], shape (n_modes,)."""
-        return self.mode_set.frequencies_hz
+        return self.modes.frequencies_hz
+
+    @property
+    def trusted_limit_hz(self) -> float:
+        """Frequency below which the modes are complete [Hz]."""
+        return self.modes.certificate.limit / _TWO_PI
+
+    @property
+    def mass(self) -> float:
+        """Mass with the attached masses [kg]."""
+        return self.record.mass
+
+    @cached_property
+    def health(self) -> HealthReport:
+        """Checks of the model, from its geometry to its modes."""
+        return health_of(self.record.notes["checks"]["health"])
+
+    @cached_property
+    def effective_mass(self) -> EffectiveMass:
+        """Effective masses of the modes."""
+        return effective_mass_of(self.record.notes["checks"]["effective_mass"])
+
+    @cached_property
+    def damping_ratios(self) -> FloatArray:
+        """Damping ratios that the housing gives its modes, shape (n_modes,); see :attr:`total_damping_ratios`."""
+        return self.housing.modal_damping_ratios(self.frequencies_hz)
+
+    @property
+    def damping_matrix(self) -> FloatArray | None:
+        """Φᵀ C Φ of the fixtures' dashpots by modes and residual modes [1/s], shape (n, n); None without dashpots."""
+        return self.record.extras[_DAMPING].values if _DAMPING in self.record.extras else None
+
+    @property
+    def total_damping_ratios(self) -> FloatArray:
+        """Damping ratio of each mode with the diagonal of the damping matrix; the coupling of modes is left out."""
+        return damping_ratios(self.modes.frequencies, self.damping_ratios, self.damping_matrix)
+
+    @cached_property
+    def seat_ports(self) -> dict[str, sparse.csr_array]:
+        """Motions of the seats from the nodes', shape (6, 3 n_nodes) each."""
+        return self.housing.seat_ports()
+
+    @cached_property
+    def loaded(self) -> dict[str, sparse.csr_array]:
+        """Motions where each bearing is from the nodes', shape (5, 3 n_nodes) each.
+
+        See :func:`gearwhine.housing.model.seats.bearing_port`.
+        """
+        return {name: bearing_port(self.seat_ports[seat], arm) for name, (seat, arm) in self.bearings.items()}
+
+    @cached_property
+    def sensors(self) -> dict[str, SensorPort]:
+        """Sensors on the mesh."""
+        return self.housing.sensor_ports()
+
+    @cached_property
+    def seat_motions(self) -> dict[str, FloatArray]:
+        """Motions of modes and residual modes at each seat, shape (n, 6)."""
+        return {name: self.modes.project_all(port) for name, port in self.seat_ports.items()}
+
+    @cached_property
+    def sensor_motions(self) -> dict[str, FloatArray]:
+        """Motions of modes and residual modes along each sensor, shape (n,)."""
+        return {name: self.modes.project_all(port.matrix)[:, 0] for name, port in self.sensors.items()}
+
+    @cached_property
+    def participation(self) -> FloatArray:
+        """Participation in the motions of the ground, see :meth:`Housing.participation`; assembles the mass matrix."""
+        return self.housing.participation(self.housing.matrices(), self.modes)
+
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """Unit vector that points upwards in pictures."""
+        return self.housing.up
+
+    @property
+    def widest_bore(self) -> float | None:
+        """Diameter of the housing's widest seat [m]; None where none is known."""
+        return self.housing.widest_bore
 
     @property
     def displacement_field(self) -> HousingField:
         """Its mesh, and the shapes of modes and residual modes on that."""
-        bores = [seat.diameter for seat in self.housing.seats if seat.diameter is not None]
-        return HousingField(self.housing.mesh, self.mode_set, max(bores, default=None))
+        return HousingField(self.mesh, self.modes, self.widest_bore)
+
+    @cached_property
+    def survey(self) -> Survey:
+        """Points of a survey over its outer faces."""
+        faces = self.housing.outer_faces
+        return survey_grid(self.mesh, None if faces is None else np.array(faces))
 
     @property
-    def damping_ratios(self) -> FloatArray:
-        """Fraction of critical damping of each mode with its own share of the dashpots, shape (n_modes,)."""
-        ratios = np.full(len(self.mode_set.frequencies), self.housing.damping_ratio)
-        return damping_ratios(self.mode_set.frequencies, ratios, self.damping_matrix)
+    def survey_shapes(self) -> FloatArray:
+        """Mode shapes at the survey points, mass-normalised, shape (n_modes, n_points, 3) [1/√kg]."""
+        count = len(self.modes.frequencies)
+        return (self.survey.matrix @ self.modes.shapes.reshape(count, -1).T).T.reshape(count, -1, 3)
+
+    @cached_property
+    def strengths(self) -> Dominance | None:
+        """Dominance of the modes between seats and skin; None without seats."""
+        if not self.seat_ports:
+            return None
+        count = len(self.modes.frequencies)
+        radial = np.stack([motion[:count, :2] for motion in self.seat_motions.values()], axis=1)
+        return dominance(self.modes.frequencies, radial, self.survey.normal_motion(self.modes.shapes))
+
+    @property
+    def missing_compliance(self) -> FloatArray:
+        """Part of the static compliance that the modes lack without residual modes, shape (n_loaded, 5).
+
+        Raises
+        ------
+        ValueError
+            Where there are no residual modes.
+        """
+        if self.modes.residual_modes is None:
+            raise ValueError("static compliance of a housing without residual modes")
+        return self.modes.residual_modes.proof.missing_parts.reshape(len(self.bearings), -1)
+
+    @cached_property
+    def selection(self) -> Selection | None:
+        """Modes that carry forces across the shafts from the bearings to the sensors; None where there are not both."""
+        ratios = self.total_damping_ratios
+        if not self.loaded or not self.sensors or not (ratios > 0.0).all():
+            return None
+        # Forces across the shafts alone: receptances by moments have another unit, and no common scale with these.
+        forces = sparse.csr_array(sparse.vstack([motions[:2] for motions in self.loaded.values()], format="csr"))
+        motions = sparse.csr_array(sparse.vstack([sensor.matrix for sensor in self.sensors.values()], format="csr"))
+        # From just above rest, where a free housing has no receptance.
+        limit = self.modes.certificate.limit
+        return select_modes(self.modes, ratios, forces, motions, (0.01 * limit, limit), _SELECTION_TOLERANCE)
+
+    @property
+    def refinement(self) -> list[dict[str, Any]]:
+        """Meshes that were solved until the modes had the accuracy asked for, the last one this; else empty."""
+        return list(self.record.notes.get("refinement", ()))
+
+    @cached_property
+    def warnings(self) -> list[ResultWarning]:
+        """Warnings of its mesh, of errors by the mesh, of missed checks, parts off the surface and unused ratios."""
+        return [
+            *self.record.notes["warnings"],
+            *health_warnings(self.health),
+            *surface_point_warnings(self.mesh, self.housing.sensors, self.housing.fixtures),
+            *self.file_warnings,
+            *self._surplus_damping(),
+        ]
+
+    def _surplus_damping(self) -> Iterator[ResultWarning]:
+        """Warn of a list of damping ratios that is longer than the modes."""
+        given, count = self.housing.damping_ratio, len(self.frequencies_hz)
+        if isinstance(given, Sequence) and len(given) > count:
+            message = (
+                f"damping_ratio lists {len(given)} ratios for {count} modes: the first {count} are taken in order, "
+                "the others are not used; the list needs one for each mode from the lowest on, rigid motions included"
+            )
+            yield warning("damping", message, count=len(given) - count)
+
+    def with_modes(self, modes: ModeSet, damping_matrix: FloatArray | None) -> "HousingModes":
+        """Return the housing with other residual modes, and the damping matrix by these coordinates."""
+        extras = {name: array for name, array in self.record.extras.items() if name != _DAMPING}
+        if damping_matrix is not None:
+            extras[_DAMPING] = _damping_array(damping_matrix)
+        return replace(self, record=replace(self.record, modes=modes, extras=extras))
+
+    @cached_property
+    def with_a_response_less(self) -> "tuple[HousingModes, FloatArray] | None":
+        """The housing with a response less of residual modes at each bearing, and its coordinates' transformation.
+
+        The transformation has shape (n, n_fewer). None where there are no residual modes.
+        """
+        residual = self.modes.residual_modes
+        if residual is None or not self.loaded:
+            return None
+        ports = sparse.csr_array(sparse.vstack(list(self.loaded.values()), format="csr"))
+        fewer, mixture = leading_residual_modes(residual, ports, self.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
+        transformation = np.asarray(linalg.block_diag(np.eye(len(self.frequencies_hz)), mixture))
+        damping = self.damping_matrix
+        damping = None if damping is None else transformation.T @ damping @ transformation
+        return self.with_modes(replace(self.modes, residual_modes=fewer), damping), transformation
+
+    def strongest_modes(self, count: int) -> list[int]:
+        """Numbers of the strongest modes, from 1; the lowest ones where there are no seats to be driven at."""
+        if self.strengths is None:
+            return list(range(1, min(count, len(self.modes.frequencies)) + 1))
+        return [int(mode) + 1 for mode in self.strengths.strongest(count, (0.0, np.inf))]
 
 
-def certified_modes(
-    whole: Matrices,
-    loaded: Mapping[str, sparse.csr_array],
-    *,
-    below_hz: float | None,
-    count: int | None,
-    solver: Solver,
-    progress: Callable[[str], None],
-) -> ModeSet:
-    """Certified modes of a housing with residual modes for the bearings' ports, see :meth:`Housing.modes`."""
-    return solve_modes(
-        whole,
-        frequency_limit=None if below_hz is None else _TWO_PI * below_hz,
-        count=count,
-        ports=sparse.vstack(list(loaded.values()), format="csr") if loaded else None,
-        port_orders=RESPONSE_ORDERS,
-        solver=solver,
-        progress=progress,
-    )
+def _damping_array(matrix: FloatArray) -> LabelledArray:
+    return LabelledArray(_COORDINATES, matrix, "s-1", "damping of what is fastened, by modes and attachments")
 
 
-def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
-    """Return the port of a bearing: motions x, y, z and rotations about x, y from the nodes', shape (5, 3 n_nodes).
-
-    They are those of its seat at a distance from its centre [m]. The transpose spreads a bearing force over the nodes.
-
-    Any bearing can load these; none loads the rotation about z, in which the shaft turns.
-    """
-    # A rotation about y moves a point above the centre towards +x, one about x towards -y.
-    turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
-    return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
-
-
-def cover_joints(
-    box: BoxGeometry,
-    material: Material,
-    bolt_material: Material | None = None,
-    cover_material: Material | None = None,
-) -> list[Joint]:
-    """Preloaded bolts of a box's cover, each a joint between its patches on rim and cover.
-
-    Parameters
-    ----------
-    box : gearwhine.meshes.BoxGeometry
-    material : Material
-        Material of the housing.
-    bolt_material, cover_material : Material, optional
-        Materials of the bolts and of the cover; that of the housing by default.
-    """
-    return [cover_joint(box, bolt, material, bolt_material, cover_material) for bolt in box.bolts]
-
-
-def cover_joint(
-    box: BoxGeometry,
-    bolt: Bolt,
-    material: Material,
-    bolt_material: Material | None = None,
-    cover_material: Material | None = None,
-) -> Joint:
-    """Preloaded bolt of a box's cover, as :func:`cover_joints` has all of them."""
-    outer = max(box.rim_width, bolt.patch_diameter)  # a narrow rim leaves the cone of pressure no more than its width
-    cover = None if cover_material is None else (cover_material, bolt.cover_grip)
-    springs = bolted_joint(bolt.diameter, bolt.grip, material, bolt_material, cover=cover, outer=outer).stiffness
-    first, second = Patch(bolt.body_surface), Patch(bolt.cover_surface)
-    return Joint(bolt.name, first, second, Bushing.along(bolt.axis, springs), bolt.position)
+def joined_nodes(fixtures: Sequence[Fixture], mesh: Mesh) -> Iterator[npt.NDArray[np.int64]]:
+    """Yield the nodes of each joint among fixtures."""
+    for joint in fixtures:
+        if isinstance(joint, Joint):
+            try:
+                yield joint.nodes(mesh)
+            except (HousingError, GeometryError):
+                # What it was to connect is not known; that it has no place is said where fixtures are placed.
+                yield np.arange(len(mesh.points))
 
 
 def _with_bores(mesh: Mesh, seats: Sequence[Seat]) -> Mesh:

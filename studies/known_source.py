@@ -100,7 +100,7 @@ def bodies(only: str) -> Iterator[tuple[str, BoundaryElements]]:
         if only not in name:
             continue
         case = load_case(name.split(" ")[0]).case
-        mesh = build_mesh(case, order=1)
+        mesh = build_mesh(case.housing, case.material, case.input_files, order=1)
         assert case.housing is not None
         holes = 1.1 * max(seat.diameter or 0.0 for seat in case.housing.seat)
         shapes = np.ones((1, len(mesh.points), 3))

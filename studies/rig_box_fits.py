@@ -22,6 +22,7 @@ from gearwhine.housing.updating import Misfit, Target, measure
 from gearwhine.housing.updating.mesh_bias import Debiased, MeshBias, debiased
 from gearwhine.housing.updating.parameters import values_at
 from gearwhine.housing.updating.trust_region import Effort, search
+from gearwhine.from_case.mesh import build_mesh
 from gearwhine.solve.updating import measurement_of
 
 FloatArray = npt.NDArray[np.float64]
@@ -105,7 +106,7 @@ def fit_box(
     """
     begin = time.process_time()
     coarse, fine = meshes_of(case)
-    target = measurement_of(case).target
+    target = measurement_of(case.measured, case.update, lambda: build_mesh(case.housing, case.material, case.input_files)).target
     solves = fine_solves = 0
     start_rms = largest = float("inf")
 

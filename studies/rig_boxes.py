@@ -48,8 +48,9 @@ from gearwhine.from_case.parametric_housing import fitted_case, with_entry
 from gearwhine.housing.acoustics.boundary_elements import surface_product
 from gearwhine.housing.acoustics.surface_velocity import face_surface
 from gearwhine.housing.updating.mesh_bias import MeshBias
-from gearwhine.solve.comparison import compare_housing
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.comparison import compare_measured
+from gearwhine.housing import HousingModes
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.updating import update_housing, updated_case
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "validation"))
@@ -119,7 +120,7 @@ def start_of_stiff_walls() -> dict[str, Any]:
     return document
 
 
-def top_bending(solved: SolvedHousing, mode: int) -> float:
+def top_bending(solved: HousingModes, mode: int) -> float:
     """Part of the top in the mean-square normal motion of the six outer faces, of a mode from 0."""
     moving = {}
     for name in ("top", *_WALLS):
@@ -154,7 +155,7 @@ def judged(path: str | Path) -> dict[str, Any]:
     """Return the errors of a box's frequencies [%], the count of modes, and whether each statement holds."""
     case = load_case(path).case
     solved = solve_housing(case)
-    comparison = compare_housing(case, solved)
+    comparison = compare_measured(case.measured, solved).comparison
     runs = settled_runs(path, solved, [pair.mode - 1 for pair in comparison.pairs])
     first = comparison.pairs[0].mode - 1
     return {

@@ -160,8 +160,8 @@ def face() -> None:
     study = gw.load("two-stage-reducer", REDUCER)
     before, lines = line_levels(study)
     (row,) = [one for one in before["sensitivity"] if one["parameter"] == FACE]
-    mesh = build_mesh(study.case)
-    (velocity,) = [one.rate.velocity for one in face_changes(study.case, mesh) if one.parameter == FACE]
+    mesh = build_mesh(study.case.housing, study.case.material, study.case.input_files)
+    (velocity,) = [one.rate.velocity for one in face_changes(mesh, [seat.name for seat in study.case.housing.seat]) if one.parameter == FACE]
     assert velocity is not None
     moved = replace(mesh, points=mesh.points + 1e-3 * velocity)
     _, after = line_levels(gw.load("two-stage-reducer", REDUCER), moved)

@@ -7,7 +7,7 @@ from base64 import b64decode
 from collections import OrderedDict, defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from copy import deepcopy
+from dataclasses import replace
 from functools import cache
 from itertools import combinations_with_replacement
 from math import floor, log10
@@ -260,9 +260,9 @@ def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) ->
 
     solve = housing_modes._solve_modes
 
-    def solved(case: Any, described: Any, loaded: Any, progress: Any) -> Any:
-        inputs = housing_modes.mode_cache_inputs(case, described.mesh)
-        key = content_key({"inputs": inputs, "nodes": described.mesh.points.tobytes().hex()})
+    def solved(given: Any, described: Any, defects: Any, progress: Any) -> Any:
+        mesh = described.mesh
+        key = content_key({"inputs": given.cache_inputs(mesh), "nodes": mesh.points.tobytes().hex()})
         if key not in _solved_modes:
             said: list[str] = []
 
@@ -270,15 +270,15 @@ def modes_solved_once(_solved_modes: OrderedDict[str, tuple[Any, list[str]]]) ->
                 said.append(text)
                 progress(text)
 
-            _solved_modes[key] = solve(case, described, loaded, kept), said
+            _solved_modes[key] = solve(given, described, defects, kept), said
             if len(_solved_modes) > _KEPT_HOUSINGS:
                 _solved_modes.popitem(last=False)
         else:
             _solved_modes.move_to_end(key)
             for text in _solved_modes[key][1]:
                 progress(text)
-        modes, mass, damping, checks, seconds = _solved_modes[key][0]
-        return modes, mass, damping, deepcopy(checks), dict(seconds)
+        known = _solved_modes[key][0]
+        return replace(housing_modes._of_record(given, described, known.record), seconds=known.seconds)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "_solve_modes", solved)

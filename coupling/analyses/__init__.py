@@ -7,4 +7,6 @@
   :mod:`~gearwhine.coupling.analyses.recording`.
 - :mod:`~gearwhine.coupling.analyses.signature`: lines of that motion by their origin.
 - :mod:`~gearwhine.coupling.analyses.run_up`: spectra and orders along a run.
+- :mod:`~gearwhine.coupling.analyses.operation_warnings`, :mod:`~gearwhine.coupling.analyses.motion_warnings`: doubtful
+  loads and motions.
 """

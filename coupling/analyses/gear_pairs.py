@@ -4,7 +4,7 @@ Analyses over a range of torques give Harris maps and the optimal tip relief, wh
 harmonics, or the level at a sensor.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -70,14 +70,19 @@ class TakenMisalignment:
     found: float | None
 
 
-def taken_misalignments(machine: Machine, point: OperatingPoint | None) -> tuple[TakenMisalignment, ...]:
-    """Misalignment of every gear pair of a machine, beside that of its operating point where it is solved."""
+def taken_misalignments(
+    machine: Machine, point: OperatingPoint | None, aligned_by_default: Collection[str] = ()
+) -> tuple[TakenMisalignment, ...]:
+    """Misalignment of every gear pair of a machine, beside that of its operating point where it is solved.
+
+    ``aligned_by_default`` are the labels of pairs that are aligned because nothing is said of their misalignment.
+    """
     misalignments = []
     for number, pair in enumerate(machine.gear_pairs):
         found = None if point is None or not point.pairs else point.pairs[number].misalignment
-        if pair.misalignment is not None:
+        if pair.misalignment is not None and pair.label not in aligned_by_default:
             misalignments.append(TakenMisalignment(pair.misalignment, "case", found))
-        elif found is not None:
+        elif pair.misalignment is None and found is not None:
             misalignments.append(TakenMisalignment(found, "operating point", found))
         else:
             misalignments.append(TakenMisalignment(0.0, "default", found))

@@ -22,6 +22,7 @@ from gearwhine.coupling.linear.frequency_response import (
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, ResponseParts
 from gearwhine.coupling.statics.mean_mesh import ContactState, contact_at, mean_contact, time_of_phase, unloaded_contact
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning, warning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -35,6 +36,7 @@ _HARMONICS = 4.0  # mesh harmonics that a response covers where no housing limit
 _MODES = 6  # least number of modes in a diagram
 _UNBALANCE_STEPS = 200  # speeds of the response to unbalance
 _DIRECT = 24  # frequencies at which superposition is compared with the solved system
+_NAMED_MODES = 5  # growing modes named one by one
 
 
 @dataclass(frozen=True)
@@ -218,3 +220,42 @@ def _over_speed(
         # A clockwise rotor's phases are those of its signals, not of e^{iwt} at its negative speed.
         unbalance.append(response.at_positive_frequencies())
     return replace(solved, campbell=campbell, unbalance=tuple(unbalance), unbalance_speeds=turning)
+
+
+def unstable_modes_warnings(stability: Stability) -> list[ResultWarning]:
+    """One warning for each growing mode, the fastest first; beyond a few they are counted."""
+    warnings = []
+    for mode in stability.growing[:_NAMED_MODES]:
+        frequency = abs(mode.eigenvalue) / _TWO_PI
+        where = f" ({mode.where})" if mode.where else ""
+        fed = ", ".join(part.name for part, _ in mode.feeders[:3])
+        warnings.append(
+            warning(
+                "unstable mode",
+                f"the coupled {mode.kind} mode{where} at {frequency:.5g} Hz has the damping ratio "
+                f"{mode.damping_ratio:.3g}: it grows by itself"
+                + (f", fed by {fed}" if fed else "")
+                + "; motions of this machine mean nothing beyond its onset",
+                frequency_hz=frequency,
+                damping_ratio=mode.damping_ratio,
+                kind=mode.kind,
+                where=mode.where,
+            )
+        )
+    if len(stability.growing) > _NAMED_MODES:
+        warnings.append(
+            warning("unstable mode", f"{len(stability.growing) - _NAMED_MODES} further coupled modes grow as well")
+        )
+    return warnings
+
+
+def machine_warnings(machine: CoupledMachine) -> list[ResultWarning]:
+    """Warnings of the growing modes of a machine about its mean contact.
+
+    Raises
+    ------
+    gearwhine.coupling.ModesError
+        Where modes fail their proof.
+    """
+    system = machine.system
+    return unstable_modes_warnings(coupled_stability(coupled_modes(system, mean_contact(system))))

@@ -409,23 +409,50 @@ def housing_component(
     )
 
 
-def component_of_housing(modes: HousingModes, name: str = "housing") -> HousingComponent:
-    """Make the housing's component from its natural modes, see :meth:`gearwhine.housing.Housing.modes`."""
+def component_of_housing(
+    modes: HousingModes, *, participates: bool, with_coarser: bool = True, name: str = "housing"
+) -> HousingComponent:
+    """Make the housing's component from its natural modes.
+
+    Parameters
+    ----------
+    modes : HousingModes
+        See :meth:`gearwhine.housing.Housing.modes`.
+    participates : bool
+        Whether the base moves or there is weight, for which the housing's mass matrix is assembled.
+    with_coarser : bool
+        Whether it has the coarser one, with a response less of residual modes.
+    name : str
+    """
+    participation = modes.participation if participates else None
+    coarser = None
+    if with_coarser and modes.with_a_response_less is not None:
+        fewer, transformation = modes.with_a_response_less
+        moved = None if participation is None else transformation.T @ participation
+        coarser = _component_of_modes(fewer, moved, name)
+    return replace(
+        _component_of_modes(modes, participation, name),
+        coarser=coarser,
+        warnings=tuple(modes.warnings),
+        displacement_field=modes.displacement_field,
+    )
+
+
+def _component_of_modes(modes: HousingModes, participation: FloatArray | None, name: str) -> HousingComponent:
     seats = {seat.name: seat.center for seat in modes.housing.seats}
-    component = housing_component(
-        modes.mode_set,
-        np.full(len(modes.mode_set.frequencies), modes.housing.damping_ratio),
-        seats=modes.seats,
+    return housing_component(
+        modes.modes,
+        modes.damping_ratios,
+        seats=modes.seat_motions,
         seat_z={seat: center[2] for seat, center in seats.items()},
         seat_axes={seat: center[:2] for seat, center in seats.items()},
         seat_reach={seat.name: seat.reach for seat in modes.housing.seats if seat.reach is not None},
-        sensors=modes.sensors,
-        sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensor_ports.items()},
+        sensors=modes.sensor_motions,
+        sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensors.items()},
         damping_matrix=modes.damping_matrix,
-        participation=modes.participation,
+        participation=participation,
         name=name,
     )
-    return replace(component, displacement_field=modes.displacement_field)
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ class MountedBearing:
     bearing : gearwhine.rotors.Bearing
     rotor : str
     seat : str or None
-        None for the ground.
+        None or "ground", the word of a case, for the ground; kept as None.
     law : BearingLaw or None
     rolling : RollingBearing or None
     offset : ndarray, shape (5,), or None
@@ -59,6 +59,8 @@ class MountedBearing:
 
     def __post_init__(self) -> None:
         """Keep own copies, and check that parts and places are such."""
+        if self.seat == "ground":
+            object.__setattr__(self, "seat", None)
         keep_arrays(self, "offset")
         keep_tuples(self, "design_load")
         refuse(attribute_findings(("bearing", ""), self, bearing=Instance(Bearing, "a bearing")), CouplingError)

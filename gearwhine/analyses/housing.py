@@ -4,17 +4,22 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
-from gearwhine.case import Case, CaseError, require
-from gearwhine.from_case import mesh_health
-from gearwhine.from_case.mesh import build_mesh
-from gearwhine.housing import HousingError
+from gearwhine.case import Case, CaseError
+from gearwhine.case.model import housing_table
+from gearwhine.from_case.fixtures import build_fixtures
+from gearwhine.from_case.mesh import build_mesh, material_of
+from gearwhine.from_case.mesh_health import allowed_defects
+from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
+from gearwhine.housing.modal_test import ComparedTest, PlannedSurvey, ResponseCorrelation, comparison_warnings
+from gearwhine.housing.model_warnings import defect_warnings, resolution_warnings
 from gearwhine.meshes import Mesh
-from gearwhine.mode_pictures import ModeFormat, check_request, draw_lines, draw_measured, draw_modes
+from gearwhine.mode_pictures import ModeFormat, draw_lines, draw_measured, draw_modes
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled, labels_of
+from gearwhine.output.dataset import LabelledArrays, arrays_of, file_attributes, labelled
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.comparison import (
     COMPARISON,
@@ -25,21 +30,11 @@ from gearwhine.results.comparison import (
     write_response_correlation,
 )
 from gearwhine.results.housing import HOUSING, modes_document, origin_document, write_shapes
-from gearwhine.solve.comparison import (
-    ResponseCorrelation,
-    compare_responses_document,
-    compare_with_survey,
-    comparison_warnings,
-    plan_housing,
-    require_comparable,
-    write_plan,
-)
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.comparison import compare_measured, write_plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearwhine.solve.comparison import PlannedSurvey
     from gearwhine.solve.updating import SolvedUpdate
 
 
@@ -61,11 +56,13 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     from gearwhine.meshes import write_mesh
     from gearwhine.results.mesh import mesh_document
 
+    table = housing_table(case, "mesh")
     progress("meshing the housing")
     remarks: list[str] = []
-    meshed = build_mesh(case, remarks.append)
-    warnings = [warning("geometry", remark) for remark in remarks] + mesh_health.require_meshable(case, meshed)
-    warnings += mesh_health.resolution_warnings(case, meshed, case.housing.frequency_limit if case.housing else None)
+    meshed = build_mesh(table, case.material, case.input_files, remarks.append)
+    defects = allowed_defects(table, build_fixtures(table, case.material), meshed)
+    warnings = [warning("geometry", remark) for remark in remarks] + defect_warnings(defects)
+    warnings += resolution_warnings(meshed, material_of(case.material, table.material), table.frequency_limit)
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_mesh(meshed, place / f"mesh.{suffix}")
@@ -74,88 +71,41 @@ def mesh(case: Case, *, suffix: str = "msh", progress: Progress = silent) -> Res
     return Result("mesh", case, meshed, mesh_document(meshed, warnings), _files=files)
 
 
-def modes(
-    case: Case,
-    *,
-    detail: bool = False,
-    housing: SolvedHousing | None = None,
-    folder: Path | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
-) -> Result[SolvedHousing]:
-    """Find the natural modes of the housing, certified complete.
+def modes_result(housing: HousingModes, origin: Origin, *, detail: bool = False) -> Result[HousingModes]:
+    """Return the result of the natural modes of a housing, certified complete.
 
     Parameters
     ----------
-    case : Case
+    housing : HousingModes
+    origin : Origin
     detail : bool
         Whether to report effective masses, supports, and the modes that carry the bearings' forces as well.
-    housing : SolvedHousing, optional
-        Solved housing, where it exists already.
-    folder : path, optional
-        Results folder, whose modes of the same housing are read in place of solving.
-    fresh : bool
-        Whether to solve the modes even where they are cached.
-    progress : callable
-
-    Raises
-    ------
-    CaseError, gearwhine.housing.HousingError
-        Where the case cannot be solved as it stands.
-    gearwhine.housing.IncompleteModesError, gearwhine.housing.ReductionError, gearwhine.housing.HealthError
-        Where the modes fail their proofs.
     """
-    solved = _solved(case, "modes", housing, folder, progress, fresh=fresh)
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
-        write_shapes(place / "modes.vtu", solved)
+        write_shapes(place / "modes.vtu", housing)
         return {}
 
     return Result(
         "modes",
-        case,
-        solved,
-        modes_document(solved, detail=detail),
-        _arrays=lambda: labelled(labels_of(case), (HOUSING, solved)),
+        origin.case,
+        housing,
+        modes_document(housing, detail=detail),
+        _arrays=lambda: labelled(origin.labels, (HOUSING, housing)),
         _files=files,
-        _housing=solved,
+        _housing=housing,
+        _title=origin.title,
     )
 
 
-def compare(
-    case: Case,
-    *,
-    housing: SolvedHousing | None = None,
-    folder: Path | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
-) -> Result[Comparison]:
-    """Compare the housing's natural modes with measured ones.
-
-    Parameters
-    ----------
-    case : Case
-        Case with `[measured]`.
-    housing, folder, fresh, progress
-        As :func:`modes`.
-
-    Raises
-    ------
-    CaseError, gearwhine.housing.HousingError
-        Where the case has nothing measured, or its modes are not known as high as the measured ones.
-    """
-    require(case, "housing", "measured", command="compare")
-    require_comparable(case)
-    solved = _solved(case, "compare", housing, folder, progress, fresh=fresh)
-    comparison, survey = compare_with_survey(case, solved, progress)
-    document = comparison_document(comparison, solved)
-    likeness = None
+def compare_result(housing: HousingModes, compared: ComparedTest, origin: Origin) -> Result[Comparison]:
+    """Return the result of measured modes and responses beside those of a housing."""
+    comparison, survey, likeness = compared.comparison, compared.survey, compared.responses
+    document = comparison_document(comparison, housing)
     if survey is not None:
         document["survey"] = survey_document(survey)
-        progress("comparing responses")
-        likeness = compare_responses_document(case, solved, survey)
-        document |= {} if likeness is None else {"responses": responses_document(likeness)}
-    add_warnings(document, comparison_warnings(comparison, solved.modes))
+    document |= {} if likeness is None else {"responses": responses_document(likeness)}
+    add_warnings(document, comparison_warnings(comparison, housing.modes))
     geometry = None if survey is None else survey.geometry
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
@@ -167,59 +117,39 @@ def compare(
     def figures(progress: Progress) -> "Iterator[tuple[str, Figure]]":
         from gearwhine.figures import draw_comparison_figures
 
-        return draw_comparison_figures(case.title, comparison, solved.modes.frequencies, geometry)
+        return draw_comparison_figures(origin.title, comparison, housing.modes.frequencies, geometry)
 
     return Result(
         "compare",
-        case,
+        origin.case,
         comparison,
-        joined(document, origin_document(solved)),
-        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(labels_of(case))),
+        joined(document, origin_document(housing)),
+        _arrays=lambda: LabelledArrays(arrays_of(COMPARISON, comparison), {}, file_attributes(origin.labels)),
         _figures=figures,
         _files=files,
-        _housing=solved,
+        _housing=housing,
         _data_file="comparison.nc",
+        _title=origin.title,
     )
 
 
-def survey(
-    case: Case,
-    *,
-    sensors: int,
-    modes: int | None = None,
-    housing: SolvedHousing | None = None,
-    folder: Path | None = None,
-    fresh: bool = False,
-    progress: Progress = silent,
-) -> "Result[PlannedSurvey]":
-    """Choose where to measure the housing's modes.
-
-    Parameters
-    ----------
-    case : Case
-    sensors : int
-        Number of sensors, each along the normal of the surface.
-    modes : int, optional
-        Number of the lowest modes to separate; by default all that are known.
-    housing, folder, fresh, progress
-        As :func:`modes`.
-
-    Raises
-    ------
-    CaseError
-        Where the sensors cannot separate the modes.
-    """
+def survey_result(housing: HousingModes, planned: PlannedSurvey, origin: Origin) -> Result[PlannedSurvey]:
+    """Return the result of a survey that is planned for a housing."""
     from gearwhine.results.survey import plan_document
-
-    solved = _solved(case, "survey", housing, folder, progress, fresh=fresh)
-    progress(f"choosing {sensors} sensors")
-    planned = plan_housing(case, solved, sensors, modes)
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         write_plan(place, planned)
         return {}
 
-    return Result("survey", case, planned, plan_document(planned, solved), _files=files, _housing=solved)
+    return Result(
+        "survey",
+        origin.case,
+        planned,
+        plan_document(planned, housing),
+        _files=files,
+        _housing=housing,
+        _title=origin.title,
+    )
 
 
 def update(
@@ -266,24 +196,24 @@ def update(
 
 def render(
     case: Case,
-    modes: str | None = None,
+    housing: HousingModes,
+    modes: str | None,
     *,
-    view: str = "auto",
-    mode_format: ModeFormat = "png",
+    view: str,
+    mode_format: ModeFormat,
     lines: Sequence[float] = (),
     measured: bool = False,
-    housing: SolvedHousing | None = None,
     folder: Path | None = None,
-    fresh: bool = False,
     progress: Progress = silent,
-) -> Result[SolvedHousing]:
+) -> Result[HousingModes]:
     """Draw mode shapes, the housing's motion at lines of a run, or measured shapes beside the model's.
 
     Parameters
     ----------
     case : Case
-    modes : str, optional
-        ``dominant`` (by default, unless something else is asked for), ``all``, or numbers such as ``1,4,9``.
+    housing : HousingModes
+    modes : str or None
+        ``dominant``, ``all``, or numbers such as ``1,4,9``; None for none.
     view : str
         One of :data:`gearwhine.housing.pictures.views.VIEWS`; "auto" is for each shape the corner that shows most of
         its motion.
@@ -293,8 +223,9 @@ def render(
         Frequencies of the run in ``folder`` [Hz].
     measured : bool
         Whether to draw measured shapes.
-    housing, folder, fresh, progress
-        As :func:`modes`.
+    folder : path, optional
+        Results folder of the run.
+    progress : callable
 
     Raises
     ------
@@ -303,36 +234,23 @@ def render(
     gearwhine.housing.errors.RendererUnavailableError, gearwhine.housing.errors.EncoderUnavailableError
         Where no renderer or encoder is available.
     """
-    modes = modes or (None if lines or measured else "dominant")
-    check_request(case, modes, mode_format, lines, measured=measured)
-    if measured:
-        require_comparable(case)
-    solved = _solved(case, "render", housing, folder, progress, fresh=fresh)
-    comparison, survey = None, None
+    compared = None
     if case.measured is not None:
         try:
-            comparison, survey = compare_with_survey(case, solved, progress)
+            compared = compare_measured(case.measured, housing, progress)
         except (CaseError, HousingError):
             if measured:
                 raise  # else the modes are drawn without their measured partners
-    document = origin_document(solved)
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         drawn: dict[str, Any] = {}
         if modes is not None:
-            draw_modes(solved, comparison, modes, view, mode_format, place, progress)
+            comparison = None if compared is None else compared.comparison
+            draw_modes(housing, comparison, modes, view, mode_format, place, progress)
         if lines and folder is not None:
-            drawn["lines"] = draw_lines(solved, folder, lines, view, mode_format, place, progress)
+            drawn["lines"] = draw_lines(housing, folder, lines, view, mode_format, place, progress)
         if measured:
-            draw_measured(case, solved, comparison, survey, view, place)
+            draw_measured(case.title, housing, compared, view, place)
         return drawn
 
-    return Result("render", case, solved, document, _files=files, _housing=solved)
-
-
-def _solved(
-    case: Case, command: str, housing: SolvedHousing | None, folder: Path | None, progress: Progress, *, fresh: bool
-) -> SolvedHousing:
-    if housing is not None:
-        return housing
-    return solve_housing(case, progress, command=command, folder=folder, fresh=fresh)
+    return Result("render", case, housing, origin_document(housing), _files=files, _housing=housing)

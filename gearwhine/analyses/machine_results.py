@@ -16,8 +16,19 @@ from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
-from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem, solve_system
+from gearwhine.coupling.analyses.modes_and_responses import (
+    SolvedSystem,
+    machine_warnings,
+    solve_system,
+    unstable_modes_warnings,
+)
 from gearwhine.coupling.analyses.motion import MachineMotion
+from gearwhine.coupling.analyses.motion_warnings import beyond_limit_warnings, parted_flank_warnings, settling_warnings
+from gearwhine.coupling.analyses.operation_warnings import (
+    bearing_load_warnings,
+    constant_speed_warnings,
+    unbalanced_torque_warnings,
+)
 from gearwhine.coupling.analyses.run_up import run_signature_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import mean_bearing_forces
@@ -25,6 +36,8 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
+from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -33,26 +46,14 @@ from gearwhine.results.gears import GEARS, gears_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import run_signature_document, transient_document
+from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.results.sound import SOUND, sound_document
 from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, steady_document
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.damping import damping_document, damping_warnings
 from gearwhine.solve.gear_bodies import gear_body_document
-from gearwhine.solve.operating_point import SolvedLoad, load_warnings, sensitivity_warnings, solve_load
-from gearwhine.solve.plausibility import (
-    add_mechanisms,
-    add_uncertainty,
-    bearing_load_warnings,
-    beyond_limit_warnings,
-    centrifugal_warnings,
-    constant_speed_warnings,
-    machine_warnings,
-    parted_flank_warnings,
-    settling_warnings,
-    unbalanced_torque_warnings,
-    unstable_modes_warnings,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -124,9 +125,9 @@ def machine_under_load(
     gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
         Where the loads drive a motion that nothing holds, or no equilibrium is found.
     """
-    load = solve_load(machine, progress) if machine.is_loaded else None
+    load, warnings = find_load(machine, progress) if machine.is_loaded else (None, [])
     loaded = load_machine(machine, None if load is None else load.point, run, progress)
-    return MachineUnderLoad(origin, loaded, load, [] if load is None else load_warnings(load))
+    return MachineUnderLoad(origin, loaded, load, warnings)
 
 
 def rotors_result(

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearwhine.case import Case
+    from gearwhine.housing import HousingModes
     from gearwhine.output.store import Option
-    from gearwhine.solve.housing_modes import SolvedHousing
 
 Solved = TypeVar("Solved")
 
@@ -33,14 +33,14 @@ class Origin:
         Speed of the first driver [rad/s]; None where there is none.
     case : Case or None
         None where Python describes the machine.
-    housing : SolvedHousing or None
+    housing : HousingModes or None
         The solved housing of the case, which takes part in the result.
     """
 
     title: str
     speed: float | None = None
     case: Case | None = None
-    housing: SolvedHousing | None = None
+    housing: HousingModes | None = None
 
     @property
     def labels(self) -> Labels:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from gearwhine.housing import HousingModes
     from gearwhine.output.dataset import LabelledArrays
-    from gearwhine.solve.housing_modes import SolvedHousing
 
 # Lists of parts that are proved one by one; modes and lines of a spectrum have one proof together.
 _LISTED = ("rotors", "pairs", "motions")
@@ -90,7 +90,7 @@ class Result(Generic[Solved]):
     _arrays: Callable[[], LabelledArrays | xr.Dataset] | None = None
     _figures: Callable[[Progress], Iterable[tuple[str, Figure]]] = no_figures
     _files: Callable[..., Mapping[str, Any]] = no_files
-    _housing: SolvedHousing | None = None
+    _housing: HousingModes | None = None
     _data_file: str = "results.nc"
     _started: float | None = None
     _options: tuple[Sequence[Option], Sequence[str]] = ((), ())

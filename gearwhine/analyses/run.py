@@ -14,6 +14,7 @@ from gearwhine.analyses.machine_results import MachineUnderLoad, modes_of_run, m
 from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.mode_pictures import draw_load_pictures, draw_modes, draw_operating_shapes, draw_sound_pictures
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
@@ -27,7 +28,6 @@ from gearwhine.results.motion import leading_lines
 from gearwhine.results.rotors import rotors_document
 from gearwhine.results.run import SOUND_LEFT_OUT
 from gearwhine.results.sound import sound_document
-from gearwhine.solve.comparison import comparison_warnings
 from gearwhine.solve.housing_modes import write_mode_cache
 from gearwhine.solve.operating_shapes import highest_lines
 
@@ -108,7 +108,9 @@ class WholeRun:
         return rotors_document(self.solution.rotors) if self.solution.rotors else {}
 
     def _solve_housing(self) -> Document:
-        self.solution = replace(self.solution, housing=self.study.solved_housing(with_sound=self._has_sound))
+        self.solution = replace(
+            self.solution, housing=self.study.solved_housing(self.folder, with_sound=self._has_sound)
+        )
         return {}
 
     def _load(self) -> Document:

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.run_up import RunSignature
     from gearwhine.coupling.analyses.signature import SolvedSignature
     from gearwhine.coupling.analyses.transient import SolvedTransient
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.solution import SolvedSound
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation import Comparison
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
-    from gearwhine.solve.housing_modes import SolvedHousing
-    from gearwhine.solve.operating_point import SolvedLoad
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class RunSolution:
 
     rotors: tuple[SolvedRotor, ...] = ()
     pairs: tuple[PairAnalysis, ...] = ()
-    housing: SolvedHousing | None = None
+    housing: HousingModes | None = None
     comparison: Comparison | None = None
     system: SolvedSystem | None = None
     transient: SolvedTransient | None = None

@@ -38,7 +38,6 @@ from gearwhine.case.units import QuantityError, parse_quantity
 from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 
 if TYPE_CHECKING:
-    from gearwhine.housing import Seat as BuiltSeat
     from gearwhine.housing import Sensor as BuiltSensor
     from gearwhine.housing import Support as BuiltSupport
 
@@ -225,12 +224,6 @@ class Seat(Table):
         if self.boss is not None and self.boss.diameter <= self.diameter:
             raise wrong(f"a boss wider than its bore of {self.diameter:g} m", "boss", "diameter")
         return self
-
-    def build(self) -> BuiltSeat:
-        """Build the bearing seat, by its surface in the mesh."""
-        from gearwhine.housing import Seat as BuiltSeat
-
-        return BuiltSeat(self.name, self.center)
 
 
 class Face(Table):

@@ -357,6 +357,19 @@ def require(case: Case, *tables: str, command: str) -> None:
         raise CaseError(_lacking(table, command) for table in missing)
 
 
+def housing_table(case: Case, command: str) -> Housing:
+    """Return the table of a case's housing, for a command that needs it.
+
+    Raises
+    ------
+    CaseError
+        Where the case has no housing.
+    """
+    require(case, "housing", command=command)
+    assert case.housing is not None
+    return case.housing
+
+
 def _lacking(table: str, command: str) -> Problem:
     table_name = f"[[{table}]]" if table in _LISTS else f"[{table}]"
     purpose = _PURPOSES.get(table, "its table")

@@ -1,16 +1,14 @@
 """Fixtures of a case's housing on its mesh: supports, mounts, joints, masses, sensors; and their places."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, LumpedMass, Mount, Problem, Support
+from gearwhine.case import CaseError, Housing, Joint, LumpedMass, Material, Mount, Problem, Support
 from gearwhine.case.errors import UNSAID
 from gearwhine.from_case.mesh import cover_joints
 from gearwhine.housing import HousingError
-from gearwhine.housing import Support as HousingSupport
-from gearwhine.housing.fem.matrices import Additions, Matrices
 from gearwhine.housing.model.fixtures import Fixture
 from gearwhine.housing.model.seats import sensor_port
 from gearwhine.meshes import GeometryError, Mesh
@@ -21,65 +19,51 @@ FloatArray = npt.NDArray[np.float64]
 _REACH = 0.05  # largest distance of a fixture or sensor from the surface, as a part of the housing's diagonal
 
 
-def build_supports(case: Case) -> list[HousingSupport]:
-    """Build the supports of a case, in the order of the file."""
-    assert case.housing is not None
-    return [entry.build() for entry in case.housing.support]
+def build_fixtures(table: Housing, materials: Mapping[str, Material]) -> list[Fixture]:
+    """Build the supports, mounts, joints, bolts of the cover and masses of a housing."""
+    return [
+        *(support.build() for support in table.support),
+        *(mount.build() for mount in table.mount),
+        *(joint.build() for joint in table.joint),
+        *cover_joints(table, materials),
+        *(mass.build() for mass in table.mass),
+    ]
 
 
-def build_attachments(case: Case) -> Iterator[tuple[str, str, Fixture]]:
-    """Build all fixtures of the housing, each with its key and label."""
-    table = case.housing
-    assert table is not None
-    for index, support in enumerate(table.support):
-        yield f"housing.support[{index}]", f'support "{support.name}"', support.build()
-    for index, mount in enumerate(table.mount):
-        yield f"housing.mount[{index}]", f'mount "{mount.name}"', mount.build()
-    for index, joint in enumerate(table.joint):
-        yield f"housing.joint[{index}]", f'joint "{joint.name}"', joint.build()
-    for tied in cover_joints(case):
-        yield "housing.box.cover.bolts", tied.name, tied
-    for index, mass in enumerate(table.mass):
-        yield f"housing.mass[{index}]", f'mass "{mass.name}"', mass.build()
+def fixture_problems(table: Housing, error: HousingError) -> list[Problem]:
+    """Return the findings of fixtures that do not fit the mesh as problems of their keys."""
+    entries: dict[str, Sequence[Support | Mount | Joint | LumpedMass]] = {
+        "support": table.support,
+        "mount": table.mount,
+        "joint": table.joint,
+        "mass": table.mass,
+    }
+    problems = []
+    for finding in error.findings:
+        kind, name = finding.part
+        index = next((place for place, entry in enumerate(entries.get(kind, ())) if entry.name == name), None)
+        key, label = (
+            ("housing.box.cover.bolts", name) if index is None else (f"housing.{kind}[{index}]", f'{kind} "{name}"')
+        )
+        problems.append(Problem(key, UNSAID, finding.expected, label=label))
+    return problems
 
 
-def check_places(case: Case, mesh: Mesh) -> None:
-    """Require a place on the mesh for every fixture and sensor of a case's housing.
+def check_places(table: Housing, mesh: Mesh) -> None:
+    """Require a place on the mesh for every fixture and sensor of a housing.
 
     Raises
     ------
     CaseError
         With every one that has no place.
     """
-    table = case.housing
-    assert table is not None
-    problems = list(_misplaced(case, mesh))
+    problems = list(_misplaced(table, mesh))
     for index, sensor in enumerate(table.sensor):
         nearest = sensor_port(mesh, sensor.build()).position
         key, label = f"housing.sensor[{index}].position", f'sensor "{sensor.name}"'
         problems += _check_reach(mesh, key, label, sensor.position, nearest)
     if problems:
         raise CaseError(problems)
-
-
-def attach_all(case: Case, mesh: Mesh, free: Matrices) -> Matrices:
-    """Add the supports, mounts, joints and masses of a case to the free housing's matrices.
-
-    Raises
-    ------
-    CaseError
-        With every one of them that does not fit the mesh.
-    """
-    problems: list[Problem] = []
-    additions = Additions()
-    for key, label, attachment in build_attachments(case):
-        try:
-            additions += attachment.additions(mesh)
-        except (HousingError, GeometryError) as error:
-            problems.append(Problem(key, UNSAID, f"what fits the mesh; {error}", label=label))
-    if problems:
-        raise CaseError(problems)
-    return free.plus(additions)
 
 
 def _check_reach(
@@ -98,10 +82,8 @@ def _check_reach(
         yield Problem(key, UNSAID, expected, label=label)
 
 
-def _misplaced(case: Case, mesh: Mesh) -> Iterator[Problem]:
+def _misplaced(table: Housing, mesh: Mesh) -> Iterator[Problem]:
     """Yield problems of surfaces that the mesh does not have, boxes without surface, and points off the surface."""
-    table = case.housing
-    assert table is not None
     named: list[tuple[str, str, str]] = []
     fastened: list[tuple[str, int, Support | Mount | LumpedMass]] = []
     fastened += [("support", index, entry) for index, entry in enumerate(table.support)]

@@ -15,6 +15,7 @@ from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.description.gear_train import LARGEST_OFFSET
 from gearwhine.coupling.description.parts import inertia_with_discs
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.rotors import build_gear, shaft_gears
@@ -70,6 +71,15 @@ def misalignments_of_case(
         else:
             misalignments.append(TakenMisalignment(0.0, "default", at_operating_point))
     return tuple(misalignments)
+
+
+def aligned_by_default(case: Case) -> tuple[str, ...]:
+    """Return the labels of the pairs whose misalignment the case leaves out, and no operating point has."""
+    return tuple(
+        pair_label(pair.driver, pair.driven)
+        for pair in case.gear_pair
+        if pair.misalignment is None and not case.finds_misalignment(pair)
+    )
 
 
 def build_pair(case: Case, entry: GivenPair, number: int = 0) -> GearPair:

@@ -17,6 +17,7 @@ from gearwhine.from_case.rotors import (
     rolling_states,
     shaft_gears,
 )
+from gearwhine.housing import HousingModes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,7 +40,9 @@ def require_machine(case: Case) -> None:
         describe_machine(case, None, grounded=True)
 
 
-def describe_machine(case: Case, housing: HousingComponent | None = None, *, grounded: bool = False) -> Machine:
+def describe_machine(
+    case: Case, housing: HousingModes | HousingComponent | None = None, *, grounded: bool = False
+) -> Machine:
     """Build the library's description of a machine: the shafts, gears, bearings and gear pairs of a case.
 
     ``grounded`` puts every bearing on the ground: the machine is looked at before its housing is solved.

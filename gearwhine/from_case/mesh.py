@@ -1,22 +1,24 @@
 """Housing mesh of a case, from a box, a CAD file or a mesh file, with bearing seats and each element's material."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem, require
-from gearwhine.case.box import FACES
+from gearwhine.case import CaseError, Problem
+from gearwhine.case import Housing as HousingTable
+from gearwhine.case import Material as MaterialTable
+from gearwhine.case.box import FACES, Box
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import UNSAID
 from gearwhine.case.housing import Region
-from gearwhine.case.input_files import ChangedFileError
+from gearwhine.case.input_files import ChangedFileError, InputFiles
 from gearwhine.housing import Joint, Material
 from gearwhine.housing.fem.nearest_point import NearestOnSurface
 from gearwhine.housing.fem.surface import flat_faces
-from gearwhine.housing.housing import cover_joint
+from gearwhine.housing.model.cover_bolts import cover_joint
 from gearwhine.meshes import GeometryError, Mesh, find_bores, mesh_box, mesh_cad, read_mesh, with_bore
 from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.meshes.errors import MeshSizeError
@@ -29,12 +31,22 @@ def ignore_warning(warning: str) -> None:
     """Ignore a warning."""
 
 
-def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, order: int = 2) -> Mesh:
+def build_mesh(
+    table: HousingTable,
+    materials: Mapping[str, MaterialTable],
+    files: InputFiles,
+    warn: Callable[[str], None] = ignore_warning,
+    *,
+    order: int = 2,
+) -> Mesh:
     """Mesh the housing of a case with finite elements.
 
     Parameters
     ----------
-    case : Case
+    table : gearwhine.case.Housing
+    materials : mapping of str to gearwhine.case.Material
+    files : InputFiles
+        Files that the case names.
     warn : callable
         Receives warnings, a sentence each.
     order : {1, 2}
@@ -43,26 +55,24 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
     Raises
     ------
     CaseError
-        Where the case has no housing, its shape cannot be meshed or its file not read or not the one any more that the
-        case was read with, or a seat is not found in it.
+        Where its shape cannot be meshed or its file not read or not the one any more that the case was read with, or a
+        seat is not found in it.
     """
-    require(case, "housing", command="mesh")
-    table = case.housing
-    assert table is not None
     if table.box is not None:
         with _at_fault("housing.box", "a box that can be meshed"):
-            return mesh_box(box_geometry(table.box, table.seat), box_mesh_size(case), order=order)
+            size = box_mesh_size(table.box, materials[table.material], table.frequency_limit)
+            return mesh_box(box_geometry(table.box, table.seat), size, order=order)
     if table.mesh is not None:
         with _at_fault("housing.mesh", "a mesh of solid elements", file=True):
-            with case.input_files.unchanged(table.mesh.file):
+            with files.unchanged(table.mesh.file):
                 mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
             mesh = mesh.rotated(np.array(table.mesh.rotation))
-        return _with_faces(case, _with_seats(case, mesh))
+        return _with_faces(table, _with_seats(table, mesh))
     assert table.cad is not None
     turn = np.array(table.cad.rotation)
     with (
         _at_fault("housing.cad", "a solid that can be meshed", file=True),
-        case.input_files.unchanged(table.cad.file),
+        files.unchanged(table.cad.file),
     ):
         meshed = mesh_cad(
             table.cad.file,
@@ -75,7 +85,7 @@ def build_mesh(case: Case, warn: Callable[[str], None] = ignore_warning, *, orde
         )
     for remark in meshed.remarks:
         warn(f"{table.cad.file.name}: {remark}")
-    return _with_faces(case, _with_seats(case, meshed.mesh.rotated(turn)))
+    return _with_faces(table, _with_seats(table, meshed.mesh.rotated(turn)))
 
 
 _ON_FACE = 0.01  # distance of a named face's point from the surface, as a part of the housing's diagonal
@@ -83,22 +93,26 @@ _WAVES = 5.0  # elements to a bending wave in a first mesh, whose estimated erro
 _WALLS = 2.0  # and their least size over the wall's thickness
 
 
-def box_mesh_size(case: Case) -> float:
-    """Return the size of a box's elements [m]; with an accuracy in its place, that of a first, coarse mesh."""
-    table = case.housing
-    assert table is not None
-    assert table.box is not None
-    if table.box.mesh_size is not None:
-        return table.box.mesh_size
-    walls = table.box.walls
-    thinnest: float = min(getattr(walls, face) for face in FACES)
+def box_mesh_size(box: Box, material: MaterialTable, limit_hz: float | None) -> float:
+    """Return the size of a box's elements [m]; with an accuracy in its place, that of a first, coarse mesh.
+
+    Parameters
+    ----------
+    box : gearwhine.case.box.Box
+    material : gearwhine.case.Material
+        Material of its walls.
+    limit_hz : float or None
+        Frequency below which modes are wanted [Hz].
+    """
+    if box.mesh_size is not None:
+        return box.mesh_size
+    thinnest: float = min(getattr(box.walls, face) for face in FACES)
     size: float = _WALLS * thinnest
-    if table.frequency_limit is not None:
-        steel = case.material[table.material]
-        omega = 2.0 * np.pi * table.frequency_limit
-        wave = WaveCarrier(steel.youngs_modulus, steel.poisson_ratio, steel.density, omega).shortest_wave(thinnest)
-        size = max(size, wave / _WAVES)
-    return min(size, min(table.box.size) / 2.0)
+    if limit_hz is not None:
+        omega = 2.0 * np.pi * limit_hz
+        carrier = WaveCarrier(material.youngs_modulus, material.poisson_ratio, material.density, omega)
+        size = max(size, carrier.shortest_wave(thinnest) / _WAVES)
+    return min(size, min(box.size) / 2.0)
 
 
 def _in_the_file(place: tuple[float, float, float], turn: npt.NDArray[np.float64]) -> tuple[float, float, float]:
@@ -120,7 +134,7 @@ def _at_fault(key: str, expected: str, *, file: bool = False) -> Iterator[None]:
         raise CaseError([Problem(f"{key}.file" if file else key, UNSAID, f"{expected}; {error}")]) from error
 
 
-def _with_seats(case: Case, mesh: Mesh) -> Mesh:
+def _with_seats(table: HousingTable, mesh: Mesh) -> Mesh:
     """Return the mesh with a surface for each seat: its own of that name, or the bore by centre and diameter.
 
     Raises
@@ -128,9 +142,8 @@ def _with_seats(case: Case, mesh: Mesh) -> Mesh:
     CaseError
         With every seat that is not found.
     """
-    assert case.housing is not None
     problems = []
-    for index, seat in enumerate(case.housing.seat):
+    for index, seat in enumerate(table.seat):
         try:
             mesh = with_bore(mesh, seat.name, seat.center, seat.diameter)
         except GeometryError as error:
@@ -143,7 +156,7 @@ def _with_seats(case: Case, mesh: Mesh) -> Mesh:
     return mesh
 
 
-def _with_faces(case: Case, mesh: Mesh) -> Mesh:
+def _with_faces(table: HousingTable, mesh: Mesh) -> Mesh:
     """Return the mesh with a surface for each named face: the flat face that its point is on.
 
     Raises
@@ -151,13 +164,12 @@ def _with_faces(case: Case, mesh: Mesh) -> Mesh:
     CaseError
         With every face whose name a surface of the file has, or whose point is beside the surface.
     """
-    assert case.housing is not None
-    if not case.housing.face:
+    if not table.face:
         return mesh
     faces, boundary = flat_faces(mesh), NearestOnSurface(mesh, mesh.boundary)
     near = _ON_FACE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     surfaces, problems = dict(mesh.surfaces), []
-    for index, named in enumerate(case.housing.face):
+    for index, named in enumerate(table.face):
         key, label = f"housing.face[{index}]", f'face "{named.name}"'
         point = boundary.point(np.array(named.at))
         if named.name in surfaces:
@@ -178,34 +190,34 @@ def _with_faces(case: Case, mesh: Mesh) -> Mesh:
     return replace(mesh, surfaces=surfaces)
 
 
-def cover_joints(case: Case) -> list[Joint]:
+def cover_joints(table: HousingTable, materials: Mapping[str, MaterialTable]) -> list[Joint]:
     """Return the bolts of a box's cover, each a joint of its two patches."""
-    table = case.housing
-    if table is None or table.box is None or table.box.cover is None or table.box.cover.bolts is None:
+    if table.box is None or table.box.cover is None or table.box.cover.bolts is None:
         return []
     box = box_geometry(table.box, table.seat)
-    bolt_material = material_of(case, table.box.cover.bolts.material or table.material)
+    bolt_material = material_of(materials, table.box.cover.bolts.material or table.material)
     joints = []
     for bolt in box.bolts:
         # The middles of what the bolt clamps say in which region each part is.
         middle, axis, of_body = np.array(bolt.position), np.array(bolt.axis), bolt.grip - bolt.cover_grip
-        body = _material_at(case, "body", middle - axis * of_body / 2.0)
-        cover = _material_at(case, "cover", middle + axis * bolt.cover_grip / 2.0)
+        body = _material_at(table, materials, "body", middle - axis * of_body / 2.0)
+        cover = _material_at(table, materials, "cover", middle + axis * bolt.cover_grip / 2.0)
         joints.append(cover_joint(box, bolt, body, bolt_material, cover))
     return joints
 
 
-def _material_at(case: Case, volume: str, place: npt.NDArray[np.float64]) -> Material:
+def _material_at(
+    table: HousingTable, materials: Mapping[str, MaterialTable], volume: str, place: npt.NDArray[np.float64]
+) -> Material:
     """Return the material at a place within a volume of a box: that of its region, else that of the housing."""
-    assert case.housing is not None
-    for region in case.housing.region:
+    for region in table.region:
         low, high = np.sort(np.array(region.box or np.full((2, 3), np.nan)), axis=0)
         if region.volume == volume or ((place >= low) & (place <= high)).all():
-            return material_of(case, region.material)
-    return material_of(case, case.housing.material)
+            return material_of(materials, region.material)
+    return material_of(materials, table.material)
 
 
-def material_of(case: Case, name: str) -> Material:
+def material_of(materials: Mapping[str, MaterialTable], name: str) -> Material:
     """Return a material of the case, for a solid.
 
     Raises
@@ -213,7 +225,7 @@ def material_of(case: Case, name: str) -> Material:
     CaseError
         Where its shear modulus is not that of an isotropic one.
     """
-    steel = case.material[name]
+    steel = materials[name]
     if not steel.is_isotropic:
         expected = f"E / (2 (1 + ν)) = {steel.youngs_modulus / (2.0 * (1.0 + steel.poisson_ratio)):.5g} Pa in a housing"
         value = f"{steel.shear_modulus:.5g} Pa"
@@ -230,7 +242,9 @@ def bores_along_axes(mesh: Mesh) -> list[tuple[str, CylindricalBore]]:
     ]
 
 
-def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Material]]:
+def materials_of(
+    table: HousingTable, materials: Mapping[str, MaterialTable], mesh: Mesh
+) -> tuple[Mesh, Material, dict[str, Material]]:
     """Return the mesh with the case's regions as volumes, the material of the rest, and that of each region.
 
     Raises
@@ -238,9 +252,7 @@ def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Mate
     CaseError
         Where regions name volumes that the mesh does not have, hold no element, or overlap; with all of them.
     """
-    table = case.housing
-    assert table is not None
-    rest = material_of(case, table.material)
+    rest = material_of(materials, table.material)
     if not table.region:
         return mesh, rest, {}
     problems: list[Problem] = []
@@ -259,8 +271,8 @@ def materials_of(case: Case, mesh: Mesh) -> tuple[Mesh, Material, dict[str, Mate
         members[region.name] = elements
     if problems:
         raise CaseError(problems)
-    materials = {region.name: material_of(case, region.material) for region in table.region}
-    return replace(mesh, volumes=members), rest, materials
+    of_regions = {region.name: material_of(materials, region.material) for region in table.region}
+    return replace(mesh, volumes=members), rest, of_regions
 
 
 def _elements(mesh: Mesh, index: int, region: Region, problems: list[Problem]) -> npt.NDArray[np.int64]:

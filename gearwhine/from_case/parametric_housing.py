@@ -17,11 +17,13 @@ from gearwhine.case.box import wall_by_face
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.errors import Location, key_of, look_up
 from gearwhine.case.input_files import InputFiles
+from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import matching_places, parse_key_path
 from gearwhine.case.units import amount, si_amount
-from gearwhine.from_case.fixtures import attach_all, build_attachments
+from gearwhine.from_case.fixtures import build_fixtures
+from gearwhine.from_case.housing import build_seats, refused_by_key
 from gearwhine.from_case.mesh import build_mesh, materials_of
-from gearwhine.housing import HousingError, assemble, solve_modes
+from gearwhine.housing import HousingError, assemble, attach_fixtures, solve_modes
 from gearwhine.housing.fem.matrices import Additions
 from gearwhine.housing.material import element_constants
 from gearwhine.housing.measured.survey_planning import survey_grid
@@ -45,6 +47,7 @@ FloatArray = npt.NDArray[np.float64]
 RATE_STEP = 1e-4
 """Step in z of the central differences by a parameter."""
 
+_COMMAND = "update"
 _WORST_SHAPE = 0.12  # shape number below which a moved mesh is given up for a new one
 
 
@@ -290,7 +293,7 @@ class MeshedParameters:
             return None
         constants = []
         for case in (above, below):
-            parted, material, materials = materials_of(case, self.mesh)
+            parted, material, materials = materials_of(housing_table(case, _COMMAND), case.material, self.mesh)
             constants.append(element_constants(parted, material, materials))
         return np.asarray((constants[0] - constants[1]) / (2.0 * RATE_STEP))
 
@@ -298,7 +301,7 @@ class MeshedParameters:
         self, above: Case, below: Case, velocity: FloatArray | None
     ) -> tuple[sparse.csr_array | None, sparse.csr_array | None]:
         # What is built is compared, not its tables: bolts of a cover depend on materials and on the box, too.
-        fixtures = [[fixture for *_, fixture in build_attachments(case)] for case in (above, below)]
+        fixtures = [build_fixtures(housing_table(case, _COMMAND), case.material) for case in (above, below)]
         if velocity is None and fixtures[0] == fixtures[1]:
             return None, None
         matrices = []
@@ -315,8 +318,7 @@ class MeshedParameters:
 
 def geometry_of(case: Case) -> BoxGeometry | None:
     """Return the dimensions of a case's box; None for another housing."""
-    table = case.housing
-    assert table is not None
+    table = housing_table(case, _COMMAND)
     return None if table.box is None else box_geometry(table.box, table.seat)
 
 
@@ -381,23 +383,25 @@ class ParametricHousing:
                     return self._solved(coordinates, case, followed)
                 except HousingError:
                     pass  # the move may have folded an element, which a new mesh avoids
-            return self._solved(coordinates, case, build_mesh(case))
+            mesh = build_mesh(housing_table(case, _COMMAND), case.material, case.input_files)
+            return self._solved(coordinates, case, mesh)
         except (CaseError, GeometryError) as error:
             raise HousingError(str(error)) from error
 
     def _solved(self, coordinates: FloatArray, case: Case, mesh: Mesh) -> "HousingAtParameters":
         """Solve the modes of the case on a mesh of its housing."""
-        parted, material, materials = materials_of(case, mesh)
-        matrices = attach_all(case, mesh, assemble(parted, material, materials, threads=self.threads))
+        table = housing_table(case, _COMMAND)
+        parted, material, materials = materials_of(table, case.material, mesh)
+        free = assemble(parted, material, materials, threads=self.threads)
+        with refused_by_key(table):
+            matrices = attach_fixtures(free, mesh, build_fixtures(table, case.material))
         every = solve_modes(matrices, count=self.modes, draft=self.draft, threads=self.threads)
         n_rigid = int(np.count_nonzero(every.frequencies == 0.0))
         if n_rigid == len(every.frequencies):
             raise HousingError(f"all {n_rigid} modes are rigid: expected elastic ones too; ask for more (update.modes)")
         # Rigid modes are left out once, here: state, shapes and rates number the same modes.
         solved = replace(every, frequencies=every.frequencies[n_rigid:], shapes=every.shapes[n_rigid:])
-        table = case.housing
-        assert table is not None
-        ports = [seat_matrix(mesh, seat.build()) for seat in table.seat]
+        ports = [seat_matrix(mesh, seat) for seat in build_seats(table)]
         seats = (
             np.stack([solved.project(port)[:, :2] for port in ports], axis=1)
             if ports
@@ -447,7 +451,8 @@ class HousingAtParameters:
     @cached_property
     def _surrogate(self) -> Surrogate:
         assert self.shapes is not None
-        parted, material, materials = materials_of(self.case, self.mesh)
+        table = housing_table(self.case, _COMMAND)
+        parted, material, materials = materials_of(table, self.case.material, self.mesh)
         constants = element_constants(parted, material, materials)
         rates = modal_sensitivities(self.mesh, constants, self.shapes, self.rates())
         return Surrogate.about(self.coordinates, self.state, rates)

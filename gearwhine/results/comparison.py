@@ -17,10 +17,10 @@ from gearwhine.results.housing import shape_places
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison, ShapeCorrelation
     from gearwhine.housing.measured import MappedSurvey, MeasuredGeometry
-    from gearwhine.solve.comparison import ResponseCorrelation
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing.modal_test import ResponseCorrelation
 
 PAIR = (
     Quantity(
@@ -223,7 +223,7 @@ _BY_MESH = "discretisation_error"
 _MESH_ERROR = Column("mesh error [%]", _BY_MESH, ".2g", 100.0)
 
 
-def comparison_document(comparison: "Comparison", solved: "SolvedHousing") -> dict[str, Any]:
+def comparison_document(comparison: "Comparison", solved: "HousingModes") -> dict[str, Any]:
     """Return the comparison as the command's JSON."""
     shapes = comparison.shapes
     last = comparison.pairs[-1].measured if shapes is None else float(shapes.measured_frequencies[-1])

@@ -9,12 +9,13 @@ import numpy as np
 
 from gearwhine.output.quantity import ABSENT, HERTZ, Fields, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Document, Picture, Section, Table, columns_of, counted, table_of
+from gearwhine.results.housing_checks import effective_mass_document, health_document
 from gearwhine.results.line_columns import LINE_NAME, line_frequency
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
 
 
 class _Mode(NamedTuple):
@@ -29,12 +30,12 @@ class _Mode(NamedTuple):
     survey_shape: "npt.NDArray[np.float64]"
 
 
-def _modes(solved: "SolvedHousing") -> list[_Mode]:
+def _modes(solved: "HousingModes") -> list[_Mode]:
     frequencies, ratios = solved.modes.frequencies_hz, solved.total_damping_ratios
     numbers = range(1, len(frequencies) + 1)
     strengths = [None] * len(numbers) if solved.strengths is None else solved.strengths.acceleration
     errors = solved.modes.discretisation_errors
-    masses = solved.checks["effective_mass"]["fractions"]
+    masses = solved.effective_mass.fractions
     return [
         _Mode(*row)
         for row in zip(
@@ -163,10 +164,16 @@ ORIGIN = (
 """Origin of the modes, for every command that uses them."""
 
 
-def static_error(solved: "SolvedHousing | None") -> "SolvedHousing | None":
+def static_error(solved: "HousingModes | None") -> "HousingModes | None":
     """Return the housing where it has residual attachments of known static error, else None."""
     return None if solved is None or solved.modes.residual_modes is None else solved
 
+
+SOLID = (
+    Quantity("mass_kg", lambda solid: solid.mass),
+    Quantity("center_of_mass_m", lambda solid: solid.center),
+)
+"""Mass and centre of mass of the solid alone."""
 
 HOUSING: Fields = (
     Quantity("", lambda solved: ["x", "y", "z"], "component", ("component",)),
@@ -176,15 +183,15 @@ HOUSING: Fields = (
     Quantity("refinement", lambda solved: solved.refinement or ABSENT),
     Quantity("size_m", lambda solved: np.ptp(solved.mesh.points, axis=0)),
     Quantity("mass_kg"),
-    Quantity("center_of_mass_m", lambda solved: solved.checks["health"]["center_of_gravity_m"]),
-    Quantity("attached_mass_kg"),
+    Quantity("center_of_mass_m", "health.body.center"),
+    Quantity("attached_mass_kg", "housing.attached_mass"),
     Quantity(
         "effective_mass",
-        lambda solved: {key: part for key, part in solved.checks["effective_mass"].items() if key != "fractions"},
+        lambda solved: effective_mass_document(solved.effective_mass),
     ),
     Part("static_error", static_error, STATIC_ERROR),
-    Quantity("health", lambda solved: solved.checks["health"]),
-    Quantity("solid", lambda solved: solved.checks["solid"]),
+    Quantity("health", lambda solved: health_document(solved.health)),
+    Part("solid", lambda solved: solved.housing.solid(), SOLID),
     Quantity("seconds"),
     Quantity(
         "",
@@ -218,17 +225,17 @@ HOUSING: Fields = (
 _SELECTED: Fields = (Part("selection", lambda solved: None if solved.selection is None else solved, SELECTION),)
 
 
-def modes_document(solved: "SolvedHousing", *, detail: bool = False) -> dict[str, Any]:
+def modes_document(solved: "HousingModes", *, detail: bool = False) -> dict[str, Any]:
     """Return the modes as the command's JSON; in detail also the modes that carry motion from bearings to sensors."""
     return document_of((*HOUSING, *_SELECTED) if detail else HOUSING, solved)
 
 
-def origin_document(solved: "SolvedHousing | None") -> dict[str, Any]:
+def origin_document(solved: "HousingModes | None") -> dict[str, Any]:
     """Return the origin of a housing's modes, as every command's JSON has it; nothing without a housing."""
     return {} if solved is None else document_of(ORIGIN, solved)
 
 
-def write_shapes(path: Path, housing: "SolvedHousing") -> None:
+def write_shapes(path: Path, housing: "HousingModes") -> None:
     """Write the mesh with every mode shape as a point array, for ParaView and its like."""
     from gearwhine.meshes.formats.meshio_formats import load_meshio
 

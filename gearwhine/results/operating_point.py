@@ -27,10 +27,10 @@ from gearwhine.results.bearing_lives import life_quantities
 
 if TYPE_CHECKING:
     from gearwhine.coupling.linear.line_sensitivity import Line
+    from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
-    from gearwhine.solve.operating_point import SolvedLoad
-    from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity
 
 _AXES, _TILTS = ("x", "y", "z"), ("about x", "about y")
 _MICRO, _MEGA = 1e6, 1e-6

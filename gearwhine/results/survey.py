@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from gearwhine.solve.comparison import PlannedSurvey
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
+    from gearwhine.housing.modal_test import PlannedSurvey
 
 
 class _Sensor(NamedTuple):
@@ -78,7 +78,7 @@ PLAN = (
 """Quantities of a survey plan and of its quality."""
 
 
-def plan_document(planned: "PlannedSurvey", solved: "SolvedHousing") -> dict[str, Any]:
+def plan_document(planned: "PlannedSurvey", solved: "HousingModes") -> dict[str, Any]:
     """Return the survey plan as the command's JSON."""
     return document_of(PLAN, planned) | document_of(ORIGIN, solved)
 

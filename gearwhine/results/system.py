@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.linear.campbell import SystemCampbell, SystemCrossing
     from gearwhine.coupling.linear.frequency_response import FrequencyResponse
     from gearwhine.coupling.linear.mesh_harmonics import ResponseParts
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
 
 _GROUPS = {"component": "components", "connector": "bearings", "contact": "gear_meshes"}
 
@@ -484,7 +484,7 @@ SYSTEM_SAME = ("speed_rpm", "mesh_phase", "mesh_stiffness", "modes")
 """Keys of the coupled system that no option over speed changes."""
 
 
-def system_document(solved: "SolvedSystem", housing: "SolvedHousing | None" = None) -> dict[str, Any]:
+def system_document(solved: "SolvedSystem", housing: "HousingModes | None" = None) -> dict[str, Any]:
     """Return the coupled system as the command's JSON, without the curves of the results file.
 
     ``housing`` gives the static error of its modes at the bearings.

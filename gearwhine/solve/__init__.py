@@ -11,10 +11,8 @@ Library objects come from :mod:`gearwhine.from_case`; documents and arrays of th
 - :mod:`~gearwhine.solve.gear_pairs`: each gear pair, and its best tip relief.
 - :mod:`~gearwhine.solve.machine`: the machine in its solved housing, assembled about its operating point. Its modes,
   periodic motions and transients are solved in :mod:`gearwhine.coupling`.
-- :mod:`~gearwhine.solve.operating_point`: static equilibrium of the machine under its mean load.
-- :mod:`gearwhine.solve.sensitivity`: ranking of walls and bearings by what they change in gear pairs, sensors' lines
-  and sound at that equilibrium; changes of the housing, and the model of the lines.
+- :mod:`gearwhine.solve.sensitivity`: changes of the housing by its parameters, which are ranked in
+  :mod:`gearwhine.coupling.load_analysis`.
 - :mod:`~gearwhine.solve.acoustics`: settings of the sound, which is solved in :mod:`gearwhine.coupling.sound`.
 - :mod:`~gearwhine.solve.operating_shapes`: operating shapes of the machine's motion.
-- :mod:`~gearwhine.solve.plausibility`: warnings and error estimates of solved machines.
 """

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from gearwhine.case import Case, CaseError, Problem
@@ -26,20 +27,26 @@ def acoustics_of(case: Case) -> AcousticsSettings:
     return (case.acoustics or Acoustics()).build()
 
 
-def check_before_modes(case: Case) -> Callable[[Case, Mesh], None] | None:
-    """Return what refuses a case's `[acoustics]` on its mesh; None where it has none."""
-    return None if case.acoustics is None else require_acoustics_of_case
+def check_before_modes(case: Case) -> Callable[[Mesh], None] | None:
+    """Return what refuses a case's `[acoustics]` on the mesh of its housing; None where it has none of the two."""
+    if case.acoustics is None or case.housing is None:
+        return None
+    bore = max((seat.diameter for seat in case.housing.seat), default=None)
+    return partial(_require_on_mesh, acoustics_of(case), bore, case.housing.frequency_limit)
 
 
-def require_acoustics_of_case(case: Case, mesh: Mesh) -> None:
+def _require_on_mesh(acoustics: AcousticsSettings, bore: float | None, limit_hz: float | None, mesh: Mesh) -> None:
     """Refuse a radiating surface or microphones that cannot be, before the modes are solved.
 
     Parameters
     ----------
-    case : Case
-        Case with a housing.
+    acoustics : Acoustics
+    bore : float or None
+        Diameter of the widest seat [m].
+    limit_hz : float or None
+        Frequency below which modes are wanted [Hz].
     mesh : Mesh
-        Mesh of its housing; straight elements suffice.
+        Mesh of the housing; straight elements suffice.
 
     Raises
     ------
@@ -49,11 +56,8 @@ def require_acoustics_of_case(case: Case, mesh: Mesh) -> None:
     # The acoustics' kernels are for these cases alone.
     from gearwhine.coupling.sound.acoustics_checks import require_acoustics
 
-    assert case.housing is not None
-    acoustics = acoustics_of(case)
-    bore = max((seat.diameter for seat in case.housing.seat), default=None)
     with refused_by_key(acoustics):
-        require_acoustics(acoustics, mesh, bore, acoustics.highest_frequency or case.housing.frequency_limit)
+        require_acoustics(acoustics, mesh, bore, acoustics.highest_frequency or limit_hz)
 
 
 def sound_left_out(case: Case) -> list[ResultWarning]:

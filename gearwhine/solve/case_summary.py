@@ -4,10 +4,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from gearwhine.case import Case, GearPair, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
+from gearwhine.case import Case, GearPair, Housing, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
 from gearwhine.case.checks.whole_case import axial_locations
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
+from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
@@ -24,11 +25,11 @@ from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
+from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
 from gearwhine.solve.machine import described_machine
 from gearwhine.solve.part_fits import fit_warnings
-from gearwhine.solve.plausibility import centrifugal_warnings, operation_warnings
 
 
 @dataclass(frozen=True)
@@ -126,9 +127,9 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     warnings: list[dict[str, Any]] = []
     if case.housing is not None:
         for name in {case.housing.material, *(region.material for region in case.housing.region)}:
-            material_of(case, name)
-        mesh, warnings = mesh_health.preview_mesh(case, progress)
-        warnings += _checked_acoustics(case, mesh)
+            material_of(case.material, name)
+        mesh, warnings = mesh_health.preview_mesh(case.housing, case.material, case.input_files, progress)
+        warnings += _checked_acoustics(case, case.housing, mesh)
     rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
     for pair in pairs:
         warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
@@ -151,7 +152,7 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     return CheckedCase(case, mesh, rotors, pairs, locations, machine, warnings)
 
 
-def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]:
+def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:
     """Return warnings about the acoustics of a case.
 
     Raises
@@ -163,10 +164,9 @@ def _checked_acoustics(case: Case, preview: MeshPreview) -> list[dict[str, Any]]
         return []
     from gearwhine.coupling.sound.acoustics_checks import acoustics_warnings
 
-    assert case.housing is not None
-    mesh = preview.mesh or build_mesh(case, order=1)
-    refuse(case, mesh)
-    return acoustics_warnings(acoustics_of(case), mesh.bounds, case.housing.frequency_limit)
+    mesh = preview.mesh or build_mesh(housing, case.material, case.input_files, order=1)
+    refuse(mesh)
+    return acoustics_warnings(acoustics_of(case), mesh.bounds, housing.frequency_limit)
 
 
 def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:

@@ -19,9 +19,10 @@ from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak, ReliefAim
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.from_case.gear_pairs import misalignments_of_case
+from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import described_machine
 
 
 def analyse_pairs(
@@ -46,7 +47,7 @@ def relief_aims(
     progress: Progress = silent,
     *,
     point: OperatingPoint | None = None,
-    housing: SolvedHousing | None = None,
+    housing: HousingModes | None = None,
     folder: Path | None = None,
 ) -> tuple[ReliefAim, ...]:
     """Objective of the tip-relief search for each pair.
@@ -70,14 +71,14 @@ def relief_aims(
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = housing or solve_housing(case, progress, folder=folder)
-    described = described_machine(case, reduce_housing(case, housing, progress))
+    described = described_machine(case, housing)
     model = sensor_model(described, point, pairs, progress)
     rows = zip(range(len(aims)), pairs, aims, strict=True)
     return tuple(_aim_of(model, housing, number, pair, aim) for number, pair, aim in rows)
 
 
 def _aim_of(
-    model: MeshHarmonicModel, housing: SolvedHousing, number: int, pair: LoadedGearPair, aim: GivenAim | None
+    model: MeshHarmonicModel, housing: HousingModes, number: int, pair: LoadedGearPair, aim: GivenAim | None
 ) -> ReliefAim:
     """Return the objective of a pair in a machine: at a sensor, by default at the loudest one."""
     if pair.static.force == 0.0:

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.sound.acoustics import Acoustics
+from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.modal_radiation import ARRAYS, POINTS, ModalRadiation
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.source_digest import source_digest
-from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -31,18 +31,18 @@ _WITHOUT_EFFECT = {"lines", "microphone", "microphone_box"}
 
 def kept_radiation(
     acoustics: Acoustics,
-    housing: SolvedHousing,
+    housing: HousingModes,
     radiation: HousingRadiation,
     places: FloatArray,
     between: tuple[float, float],
     progress: Progress = silent,
-) -> tuple[ModalRadiation, SolvedHousing]:
+) -> tuple[ModalRadiation, HousingModes]:
     """Return the radiation of a housing's modes over frequency, solved where the mode cache has it not.
 
     Parameters
     ----------
     acoustics : Acoustics
-    housing : SolvedHousing
+    housing : HousingModes
     radiation : HousingRadiation
         Radiation of the housing.
     places : ndarray, shape (m, 3)
@@ -54,7 +54,7 @@ def kept_radiation(
     Returns
     -------
     ModalRadiation
-    SolvedHousing
+    HousingModes
         The housing, whose record holds it.
     """
     key = _key(acoustics, housing.widest_bore, places, between)

@@ -2,10 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
-from scipy import linalg, sparse
-
 from gearwhine.case import Case, require
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.loaded_machine import point_of_flanks
@@ -13,32 +9,45 @@ from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.run_up import OrderTracking
 from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
-from gearwhine.coupling.machine.components import HousingComponent, SensorPlace, housing_component
+from gearwhine.coupling.load_analysis.load_warnings import find_load
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
+from gearwhine.coupling.machine.components import HousingComponent, component_of_housing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.gear_pairs import aligned_by_default, solve_gears
 from gearwhine.from_case.machine import describe_machine
-from gearwhine.housing import ModeSet
-from gearwhine.housing.housing import RESPONSE_ORDERS
-from gearwhine.housing.modes.residual_modes import leading_residual_modes
+from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing, base_participation
-
-FloatArray = npt.NDArray[np.float64]
+from gearwhine.numerics.result_warnings import ResultWarning
 
 
-def reduce_housing(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
-    """Reduce a solved housing to the quantities that a machine needs: kilobytes, without mesh and shapes."""
-    component, coarser = _housing_components(case, solved, progress)
-    return replace(component, coarser=coarser, warnings=tuple(solved.warnings))
+def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
+    """Reduce a solved housing to the quantities that the case's machine needs: kilobytes, without mesh and shapes."""
+    operation = case.operation
+    participates = operation is not None and (operation.base is not None or operation.gravity is not None)
+    return replace(component_of_housing(solved, participates=participates), displacement_field=None)
 
 
-def described_machine(case: Case, housing: HousingComponent | None) -> Machine:
+def described_machine(case: Case, housing: HousingModes | HousingComponent | None) -> Machine:
     """Describe the machine of a case in its solved housing, or on rigid seats."""
     return describe_machine(case, housing, grounded=housing is None)
 
 
+def load_of_case(
+    case: Case, machine: Machine, progress: Progress = silent
+) -> tuple[SolvedLoad | None, list[ResultWarning]]:
+    """Find the operating point of a case's machine beside another analysis, and its warnings.
+
+    See :func:`gearwhine.coupling.load_analysis.load_warnings.find_load`; the point is None where nothing loads it, too.
+    """
+    if not case.is_loaded:
+        return None, []
+    return find_load(
+        machine, progress, is_needed=case.needs_operating_point, aligned_by_default=aligned_by_default(case)
+    )
+
+
 def solve_pairs(
-    case: Case, housing: SolvedHousing | HousingComponent | None, progress: Progress = silent
+    case: Case, housing: HousingModes | HousingComponent | None, progress: Progress = silent
 ) -> tuple[tuple[LoadedGearPair, ...], OperatingPoint | None]:
     """Solve the gear pairs of a case, and the operating point of which flanks have their misalignment.
 
@@ -54,8 +63,6 @@ def solve_pairs(
     """
     if not case.rotor or case.operation is None:
         return solve_gears(case, progress), None
-    if isinstance(housing, SolvedHousing):
-        housing = reduce_housing(case, housing, progress)
     machine = described_machine(case, housing)
     point = point_of_flanks(machine, progress, is_needed=case.needs_operating_point)
     return machine.with_flanks_of(point).loaded_pairs(progress), point
@@ -84,56 +91,3 @@ def run_of(case: Case) -> Run | None:
     """Return the run of a case's transient; None at constant speed."""
     run = None if case.transient is None else case.transient.run
     return None if run is None else run.build()
-
-
-def full_housing_component(case: Case, solved: SolvedHousing, progress: Progress = silent) -> HousingComponent:
-    """Return the housing with all its residual modes."""
-    participation = _participation(case, solved, progress)
-    return _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
-
-
-def _participation(case: Case, solved: SolvedHousing, progress: Progress) -> FloatArray | None:
-    """Return the participation in the motions of the ground, where base motion or weight needs it."""
-    assert case.operation is not None
-    if case.operation.base is None and case.operation.gravity is None:
-        return None
-    progress("taking the housing's mass for the motion of its base and its weight")
-    return base_participation(case, solved.mesh, solved.modes)
-
-
-def _housing_components(
-    case: Case, solved: SolvedHousing, progress: Progress
-) -> tuple[HousingComponent, HousingComponent | None]:
-    """Return the housing with all its attachments, and with those of one order of response less."""
-    participation = _participation(case, solved, progress)
-    component = _housing_component(case, solved, solved.modes, solved.damping_matrix, participation)
-    attached = solved.modes.residual_modes
-    if attached is None or not solved.loaded:
-        return component, None
-    ports = sparse.csr_array(sparse.vstack(list(solved.loaded.values()), format="csr"))
-    fewer, mixture = leading_residual_modes(attached, ports, solved.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
-    transformation = linalg.block_diag(np.eye(len(solved.modes.frequencies)), mixture)
-    return component, _housing_component(
-        case,
-        solved,
-        replace(solved.modes, residual_modes=fewer),
-        None if solved.damping_matrix is None else transformation.T @ solved.damping_matrix @ transformation,
-        None if participation is None else transformation.T @ participation,
-    )
-
-
-def _housing_component(
-    case: Case, solved: SolvedHousing, modes: ModeSet, damping: FloatArray | None, participation: FloatArray | None
-) -> HousingComponent:
-    assert case.housing is not None
-    return housing_component(
-        modes,
-        solved.damping_ratios,
-        seats={name: modes.project_all(port) for name, port in solved.seat_ports.items()},
-        seat_z={seat.name: seat.center[2] for seat in case.housing.seat},
-        seat_axes={seat.name: seat.center[:2] for seat in case.housing.seat},
-        damping_matrix=damping,
-        sensors={name: modes.project_all(port.matrix)[:, 0] for name, port in solved.sensors.items()},
-        sensor_places={name: SensorPlace(port.position, port.direction) for name, port in solved.sensors.items()},
-        participation=participation,
-    )

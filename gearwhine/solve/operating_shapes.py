@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from gearwhine.case import CaseError, Problem
 from gearwhine.coupling.signals.spectrum import at_time_zero
 from gearwhine.coupling.signals.tones import tones_at
-from gearwhine.housing import HousingError
+from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.modes.natural_modes import ModeSet
 from gearwhine.housing.modes.receptance import OperatingShape
 from gearwhine.housing.pictures.drawn_shapes import DrawnHousing, DrawnShape, peak_displacement
@@ -20,7 +20,6 @@ from gearwhine.housing.storage.mode_file import ModeRecord
 from gearwhine.housing.storage.netcdf import read_netcdf
 from gearwhine.output.manifest import opened_dataset, require_as_written
 from gearwhine.output.sections import arrowed
-from gearwhine.solve.housing_modes import SolvedHousing
 
 if TYPE_CHECKING:
     from gearwhine.coupling.analyses.signature import SolvedSignature
@@ -65,7 +64,7 @@ class RunLine:
         return self.shape.frequency / _TWO_PI
 
 
-def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: SolvedHousing) -> list[RunLine]:
+def read_spectrum_lines(folder: Path, frequencies: Sequence[float], solved: HousingModes) -> list[RunLine]:
     """Read the spectral lines nearest to frequencies [Hz] from a results folder, each once, ascending.
 
     Raises
@@ -223,7 +222,7 @@ def operating_shape_of_line(line: RunLine, modes: ModeSet, housing: DrawnHousing
         ) from error
 
 
-def lines_document(lines: list[RunLine], solved: SolvedHousing, housing: DrawnHousing) -> list[dict[str, Any]]:
+def lines_document(lines: list[RunLine], solved: HousingModes, housing: DrawnHousing) -> list[dict[str, Any]]:
     """Return the lines as the command's JSON."""
     document = []
     for line in lines:

@@ -7,11 +7,11 @@ from the other, so that one of them is a slip of the pen or stands for a sleeve 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from gearwhine.case import Bearing, Case, RollingStiffness
+from gearwhine.case import Bearing, Case, Housing, RollingStiffness
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
 from gearwhine.case.housing import Seat
-from gearwhine.from_case.mesh_health import surface_point_warnings
+from gearwhine.housing.model_warnings import surface_point_warnings
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
 from gearwhine.numerics.findings import in_mm
@@ -38,8 +38,15 @@ def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = No
         *(entry for bearing in case.bearing for entry in _of_bearing(case, bearing, rotors[bearing.rotor], bores)),
         *_of_gears(case, rotors),
         *_of_faces(case),
-        *(() if mesh is None else surface_point_warnings(case, mesh)),
+        *(() if mesh is None or case.housing is None else _beside_surface(case.housing, mesh)),
     ]
+
+
+def _beside_surface(table: Housing, mesh: Mesh) -> Iterator[dict[str, Any]]:
+    """Warn of sensors and masses beside the housing's surface."""
+    return surface_point_warnings(
+        mesh, [sensor.build() for sensor in table.sensor], [mass.build() for mass in table.mass]
+    )
 
 
 def _of_bearing(

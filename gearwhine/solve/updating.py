@@ -18,7 +18,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -31,6 +31,8 @@ from scipy import sparse
 from gearwhine.case import Case, CaseError, Problem, UpdateParameter, require
 from gearwhine.case.checks.whole_case import without_changed
 from gearwhine.case.errors import UNSAID, Location, key_of
+from gearwhine.case.measured import Measured, Update
+from gearwhine.case.model import housing_table
 from gearwhine.case.units import si_unit
 from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import (
@@ -43,7 +45,8 @@ from gearwhine.from_case.parametric_housing import (
     with_entry,
 )
 from gearwhine.housing.correlation import dominance_band, real_shapes
-from gearwhine.housing.measured import MeasuredModes, map_survey
+from gearwhine.housing.measured import map_survey
+from gearwhine.housing.modal_test import ModalTest
 from gearwhine.housing.updating import (
     UNPAIRED,
     Each,
@@ -71,7 +74,7 @@ from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.solve.comparison import map_measured, read_measured
+from gearwhine.solve.comparison import modal_test_of, refused_by_key
 
 _TWO_PI = 2.0 * np.pi
 FloatArray = npt.NDArray[np.float64]
@@ -101,41 +104,47 @@ class Measurement:
     left_out: int = 0
 
 
-def measurement_of(case: Case, progress: Progress = silent) -> Measurement:
-    """Measured targets of a case's update.
+def measurement_of(
+    measured: Measured, table: Update, mesh: Callable[[], Mesh], progress: Progress = silent
+) -> Measurement:
+    """Measured targets of an update.
 
     `[measured] pairing` says how modes are paired. Complex shapes are turned on to the real axis.
+
+    Parameters
+    ----------
+    measured : gearwhine.case.Measured
+    table : gearwhine.case.Update
+    mesh : callable
+        Meshes the housing, on which measured shapes are aligned.
+    progress : callable
 
     Raises
     ------
     CaseError
         Where the survey does not lie on the housing, or shapes share too few degrees of freedom.
     """
-    table = case.update
-    assert table is not None
-    assert case.housing is not None
-    measured = read_measured(case, progress)
-    assert case.measured is not None
-    mode_count, pairing = table.model_modes, case.measured.paired_by
+    test = modal_test_of(measured, progress)
+    modes = test.modes
+    mode_count, pairing = table.model_modes, measured.paired_by
     by_dominance = pairing == "dominance"
     target = Target(
-        frequencies=measured.frequencies,
-        noise=np.full(len(measured.frequencies), table.frequency_noise),
-        band=dominance_band(measured.frequencies),
+        frequencies=modes.frequencies,
+        noise=np.full(len(modes.frequencies), table.frequency_noise),
+        band=dominance_band(modes.frequencies),
         gap=table.gap if by_dominance else 0.0,
         margin=_MARGIN * table.gap if table.gap and by_dominance else -np.inf,
         count=None if mode_count is None else ModeCount(_TWO_PI * mode_count.below, mode_count.least, mode_count.most),
     )
     if pairing == "shapes":
-        return _with_shapes(case, target, measured)
+        return _with_shapes(test, table, mesh, target)
     return Measurement(replace(target, pairing=pairing))
 
 
-def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measurement:
-    assert case.update is not None
-    assert case.measured is not None
-    assert measured.shapes is not None
+def _with_shapes(test: ModalTest, table: Update, mesh: Callable[[], Mesh], target: Target) -> Measurement:
+    measured, tolerance = test.modes, test.tolerance
     geometry = measured.geometry
+    assert measured.shapes is not None
     assert geometry is not None
     shared = np.flatnonzero(~np.isnan(measured.shapes).any(axis=0))
     if len(shared) <= len(measured.shapes):
@@ -145,8 +154,8 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
         )
         raise CaseError([Problem("measured.file", UNSAID, expected)])
     # Aligned once: an alignment that followed each design would hide its changes of size.
-    alignment = map_measured(case, build_mesh(case), geometry).alignment
-    tolerance = case.measured.tolerance
+    with refused_by_key():
+        alignment = test.mapped(mesh(), geometry).alignment
 
     def observer(mesh: Mesh) -> sparse.csr_array:
         mapped = map_survey(mesh, geometry, alignment=alignment, tolerance=tolerance)
@@ -157,7 +166,7 @@ def _with_shapes(case: Case, target: Target, measured: MeasuredModes) -> Measure
         noise=target.noise,
         band=target.band,
         shapes=real_shapes(measured.shapes[:, shared]),
-        shape_noise=case.update.shape_noise,
+        shape_noise=table.shape_noise,
         count=target.count,
     )
     return Measurement(with_shapes, observer, measured.shapes.shape[1] - len(shared))
@@ -502,13 +511,14 @@ def update_housing(
         Where the model cannot be solved as it stands.
     """
     require(case, "housing", "measured", "update", command="update")
-    table = case.update
+    table, housing = case.update, housing_table(case, "update")
     assert table is not None
-    assert case.housing is not None
-    if case.housing.accuracy is not None:
+    assert case.measured is not None
+    if housing.accuracy is not None:
         expected = "a mesh_size in its place: designs are compared on elements of one size (`gearwhine modes` finds it)"
-        raise CaseError([Problem("housing.accuracy", f"{100 * case.housing.accuracy:g} %", expected)])
-    measured = measurement_of(case, progress)
+        raise CaseError([Problem("housing.accuracy", f"{100 * housing.accuracy:g} %", expected)])
+    mesh = partial(build_mesh, housing, case.material, case.input_files)
+    measured = measurement_of(case.measured, table, mesh, progress)
     target = measured.target
     if null and target.shapes is not None:
         expected = "0 where shapes were measured: random frequencies have none"

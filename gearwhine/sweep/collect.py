@@ -11,12 +11,13 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
+from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
 from gearwhine.output.dataset import PHASE_CONVENTION
 from gearwhine.output.quantity import document_of
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
 from gearwhine.sweep.points import axis_name
-from gearwhine.sweep.resolution import MissedPeak, over_with, peak_warnings, speeds_to_add
+from gearwhine.sweep.resolution import over_with, peak_warnings
 from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
 
@@ -66,13 +67,13 @@ def collected_sweep(
     _add_operating_points(grid, variables, coordinates)
     _add_sound(grid, variables, coordinates)
     _add_missed_peaks(peaks, variables)
-    modes = max((result.housing_frequencies_hz.size for result in grid.results()), default=0)
+    modes = max((result.motion.housing_frequencies_hz.size for result in grid.results()), default=0)
     if modes:
         coordinates["housing_mode"] = ("housing_mode", np.arange(1, modes + 1), _unit("1", "number of the mode"))
         variables["housing_frequency"] = grid.rows(
             ("housing_mode",),
             (modes,),
-            lambda result: _padded(result.housing_frequencies_hz, modes),
+            lambda result: _padded(result.motion.housing_frequencies_hz, modes),
             _unit("Hz", "housing natural frequency"),
         )
     attributes = {
@@ -81,7 +82,7 @@ def collected_sweep(
         "case": dump_case(case),
         "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
         "phase_convention": PHASE_CONVENTION,
-        "window": ", ".join(sorted({result.window for result in grid.results()})),
+        "window": ", ".join(sorted({result.motion.window for result in grid.results()})),
     }
     return xr.Dataset(variables, coordinates, attributes)
 
@@ -173,7 +174,7 @@ class _Grid:
 
 
 def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
-    names = _union(list(result.sensor_spectra) for result in grid.results())
+    names = _union(list(result.motion.sensor_spectra) for result in grid.results())
     if not names:
         return
     coordinates["sensor"] = ("sensor", names, {})
@@ -197,7 +198,7 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
     variables["sensor_spectrum"] = grid.rows(
         ("sensor", "order"),
         (len(names), orders.size),
-        lambda result: _on_orders(orders, result, result.sensor_spectra, names),
+        lambda result: _on_orders(orders, result, result.motion.sensor_spectra, names),
         _unit("m/s2", f"peak amplitude of acceleration {within}"),
     )
     for name, key, unit, long_name in (
@@ -232,7 +233,7 @@ def _add_mechanisms(grid: _Grid, names: Sequence[str], variables: dict[str, Any]
 
 
 def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
-    names = _union(list(result.force_spectra) for result in grid.results())
+    names = _union(list(result.motion.force_spectra) for result in grid.results())
     if not names:
         return
     coordinates["contact"] = ("contact", names, {})
@@ -240,7 +241,7 @@ def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coor
     def figures(key: str) -> Callable[[PointResult], FloatArray]:
         def of(result: PointResult) -> FloatArray:
             # Pairs and the contacts of their drive flanks stand in one order.
-            pairs = zip(result.force_spectra, result.document["gear_pairs"], strict=True)
+            pairs = zip(result.motion.force_spectra, result.document["gear_pairs"], strict=True)
             by_name = {name: pair[key] for name, pair in pairs}
             return np.array([by_name.get(name, np.nan) for name in names], dtype=np.float64)
 
@@ -256,13 +257,13 @@ def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coor
     variables["mesh_force_spectrum"] = grid.rows(
         ("contact", "order"),
         (len(names), orders.size),
-        lambda result: _on_orders(orders, result, result.force_spectra, names),
+        lambda result: _on_orders(orders, result, result.motion.force_spectra, names),
         _unit("N", "peak amplitude of the gear-mesh force"),
     )
 
 
 def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, Any]) -> None:
-    names = _union(list(result.bearing_force_mean) for result in grid.results())
+    names = _union(list(result.motion.bearing_force_mean) for result in grid.results())
     if not names:
         return
     coordinates["bearing"] = ("bearing", names, {})
@@ -271,7 +272,7 @@ def _add_bearings(grid: _Grid, variables: dict[str, Any], coordinates: dict[str,
     missing = np.full(5, np.nan)
 
     def loads(group: str, parts: slice) -> Callable[[PointResult], FloatArray]:
-        return lambda result: np.array([getattr(result, group).get(name, missing)[parts] for name in names])
+        return lambda result: np.array([getattr(result.motion, group).get(name, missing)[parts] for name in names])
 
     for kind, axis, unit, parts in (("force", "axis", "N", slice(3)), ("moment", "moment_axis", "N m", slice(3, 5))):
         size = (len(names), parts.stop - (parts.start or 0))
@@ -333,7 +334,7 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
 
     def rows(result: PointResult) -> list[dict[str, Any]]:
         lines = result.document.get("sound", {}).get("lines", ())[:count]
-        return [document_of(SWEPT_LINE, SweptLine(line, result.housing_frequencies_hz)) for line in lines]
+        return [document_of(SWEPT_LINE, SweptLine(line, result.motion.housing_frequencies_hz)) for line in lines]
 
     for name, key, unit, long_name in (
         ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
@@ -387,7 +388,7 @@ def _pair_name(pair: Mapping[str, Any]) -> str:
 
 def _orders(results: Sequence[PointResult]) -> FloatArray:
     """Return every order at which some point has a line."""
-    lines = [np.round(result.orders, _SAME_ORDER) for result in results]
+    lines = [np.round(result.motion.orders, _SAME_ORDER) for result in results]
     return np.unique(np.concatenate(lines)) if lines else np.empty(0)
 
 
@@ -395,7 +396,7 @@ def _on_orders(
     orders: FloatArray, result: PointResult, spectra: Mapping[str, FloatArray], names: Sequence[str]
 ) -> FloatArray:
     rows = np.full((len(names), orders.size), np.nan)
-    at = np.searchsorted(orders, np.round(result.orders, _SAME_ORDER))
+    at = np.searchsorted(orders, np.round(result.motion.orders, _SAME_ORDER))
     for row, name in zip(rows, names, strict=True):
         if name in spectra:
             row[at] = spectra[name]

@@ -13,7 +13,7 @@ from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.numerics.source_digest import installed, source_digest
 from gearwhine.output import file_stems
 from gearwhine.output.files import PRESENTATION, ROOMS, with_contents
-from gearwhine.solve.housing_modes import housing_key, mode_cache_inputs
+from gearwhine.solve.housing_modes import given_housing, housing_key
 
 # Tables that no transient depends on.
 _WITHOUT_EFFECT = frozenset({"title", "notes", "sweep", "rotor_analysis", "measured", "provenance"})
@@ -121,8 +121,9 @@ def _point(place: tuple[int, ...], texts: tuple[str, ...], case: Case, stem: str
             "source": code_digest(),
         }
     )
-    modes_key = None if case.housing is None else content_key(mode_cache_inputs(case))
-    whole = None if case.housing is None else housing_key(case)
+    given = None if case.housing is None else given_housing(case)
+    modes_key = None if given is None else content_key(given.cache_inputs())
+    whole = None if given is None else housing_key(given)
     return Point(place, texts, case, key, modes_key, whole, f"{stem}-{key[:12]}.nc", _duration(case))
 
 

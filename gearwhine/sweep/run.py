@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.failures import WorkersError
+from gearwhine.housing import HousingModes
 from gearwhine.interruption import each_from_thread, in_thread
 from gearwhine.numerics.progress import Progress
 from gearwhine.output import staging
 from gearwhine.solve.acoustics import check_before_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing, write_mode_cache
+from gearwhine.solve.housing_modes import solve_housing, write_mode_cache
 from gearwhine.solve.machine import reduce_housing
 from gearwhine.sweep.points import Point, code_digest
 from gearwhine.sweep.solution import (
@@ -110,7 +111,7 @@ def run_sweep(
 
 def _shared_housings(
     points: Sequence[Point], folder: Path, progress: Progress, *, fresh: bool
-) -> tuple[dict[str | None, HousingComponent], SolvedHousing | None]:
+) -> tuple[dict[str | None, HousingComponent], HousingModes | None]:
     """Solve the housings that points share, by key; none where their modes differ or they have no housing.
 
     Return as well the solution that is still to be cached.
@@ -136,7 +137,7 @@ def _shared_housings(
     return housings, solved
 
 
-def _cache(solved: SolvedHousing | None, folder: Path) -> None:
+def _cache(solved: HousingModes | None, folder: Path) -> None:
     if solved is not None:
         with staging(folder) as place:
             write_mode_cache(place, solved)

@@ -9,7 +9,7 @@ import json
 import os
 import time
 import traceback
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,24 +19,25 @@ import numpy.typing as npt
 from gearwhine import __version__
 from gearwhine.case import Case, dump_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
+from gearwhine.coupling.analyses.modes_and_responses import machine_warnings
+from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
 from gearwhine.coupling.analyses.transient import SolvedTransient, mean_bearing_forces, solve_transient
 from gearwhine.coupling.machine.components import HousingComponent
-from gearwhine.coupling.signals.line_names import LineName
-from gearwhine.coupling.signals.spectrum import Window
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, reduce_motion
+from gearwhine.coupling.sweep.resonances import Resonances
 from gearwhine.failures import explain
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output import finite, json_text
 from gearwhine.output.quantity import add_warnings
 from gearwhine.results.operating_point import load_part
 from gearwhine.results.run import transient_document
-from gearwhine.solve.acoustics import acoustics_of, sound_left_out
+from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
+from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing, run_of
-from gearwhine.solve.operating_point import find_load
-from gearwhine.solve.plausibility import add_mechanisms, add_uncertainty, bearing_load_warnings, machine_warnings
+from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing, run_of
 from gearwhine.sweep.points import Point, code_digest
-from gearwhine.sweep.resonances import Resonances, find_resonances
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,48 +46,17 @@ _TWO_PI = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class PointResult:
-    """A machine in motion, reduced to the quantities that a sweep collects.
+    """Motion of a machine at a point of a sweep.
 
     Attributes
     ----------
     document : dict
         Document of the transient, as in the JSON of ``run``.
-    orders : ndarray, shape (m,)
-        Lines of the spectra, in cycles for each turn of the first driver, up to the trusted limit. The record holds a
-        number of its turns, so these are the same at every speed.
-    sensor_spectra : dict of str to ndarray, shape (m,)
-        Peak amplitude of acceleration [m/s²].
-    force_spectra : dict of str to ndarray, shape (m,)
-        Peak amplitude of the gear-mesh force [N], its mean at order zero.
-    bearing_force_mean, bearing_force_rms : dict of str to ndarray, shape (5,)
-        Mean loads along x, y, z [N] and about x, y [N m], and their rms values without the mean.
-    housing_frequencies_hz : ndarray, shape (n_modes,)
-        Natural frequencies of the housing [Hz]; empty without a housing.
-    window : {"uniform", "hann"}
-        Window of the spectra.
-    line_frequencies : ndarray, shape (l,)
-        Frequencies of the lines whose sound is wanted [Hz]; empty without `[acoustics]`.
-    line_rates : ndarray, shape (l, n, 2)
-        Rates of the housing's coordinates there, real and imaginary part.
-    line_names, line_kinds : tuple of str
-        Names and causes of these lines, see :class:`gearwhine.coupling.signals.line_names.LineName`.
-    resonances : Resonances or None
-        Resonances of the machine, linear about its mean contact; None where no mesh drives a sensor or a sound.
+    motion : ReducedMotion
     """
 
     document: dict[str, Any]
-    orders: FloatArray
-    sensor_spectra: dict[str, FloatArray] = field(default_factory=dict)
-    force_spectra: dict[str, FloatArray] = field(default_factory=dict)
-    bearing_force_mean: dict[str, FloatArray] = field(default_factory=dict)
-    bearing_force_rms: dict[str, FloatArray] = field(default_factory=dict)
-    housing_frequencies_hz: FloatArray = field(default_factory=lambda: np.empty(0))
-    window: Window = "uniform"
-    line_frequencies: FloatArray = field(default_factory=lambda: np.empty(0))
-    line_rates: FloatArray = field(default_factory=lambda: np.empty((0, 0, 2)))
-    line_names: tuple[str, ...] = ()
-    line_kinds: tuple[str, ...] = ()
-    resonances: Resonances | None = None
+    motion: ReducedMotion
 
 
 @dataclass(frozen=True)
@@ -123,18 +93,19 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
         _require_same_code(code)
         begin = time.perf_counter()
         described = described_machine(case, housing)
-        load, warnings_of_load = find_load(case, described)
+        load, warnings_of_load = load_of_case(case, described)
         loaded = load_machine(described, None if load is None else load.point, run_of(case))
         frequencies = described.mesh_frequencies
         solved = solve_transient(loaded.coupled, plan_of(case))
-        result = _reduced(case, solved, housing, time.perf_counter() - begin, warnings_of_load)
+        document = _document(solved, housing, time.perf_counter() - begin, warnings_of_load)
+        motion = reduce_motion(solved, None if case.acoustics is None else acoustics_of(case))
         if load is not None:
-            result.document["load"] = load_part(load)
-        add_uncertainty(result.document, loaded.basis_error, solved.trusted_limit)
-        add_mechanisms(result.document, loaded.mechanisms, solved.line_tolerance_hz)
-        for pair, frequency in zip(result.document["gear_pairs"], frequencies, strict=True):
+            document["load"] = load_part(load)
+        add_uncertainty(document, loaded.basis_error, solved.trusted_limit)
+        add_mechanisms(document, loaded.mechanisms, solved.line_tolerance_hz)
+        for pair, frequency in zip(document["gear_pairs"], frequencies, strict=True):
             pair["mesh_frequency_hz"] = frequency
-        return result
+        return PointResult(document, motion)
     except Exception as error:
         return _failure(error)
 
@@ -166,21 +137,10 @@ def _failure(error: Exception) -> PointFailure:
     return PointFailure(message or str(error))
 
 
-def _reduced(
-    case: Case,
-    solved: SolvedTransient,
-    housing: HousingComponent | None,
-    seconds: float,
-    warnings_of_load: list[dict[str, Any]],
-) -> PointResult:
-    assert case.operation is not None
-    turning_hz = abs(case.operation.speed) / _TWO_PI
-    spectra = [*solved.sensor_spectra.values(), *solved.force_spectra.values()]
-    lines = spectra[0].frequencies if spectra else np.empty(0)
-    count = int(np.searchsorted(lines, solved.trusted_limit * (1.0 + 1e-9), side="right"))
-    contacts = solved.machine.system.contacts
-    # Forces have the drive flanks' name at every point, whichever flanks are loaded there.
-    pressed = {contacts[i].name: contacts[number].name for i, number in enumerate(solved.machine.loaded_contacts)}
+def _document(
+    solved: SolvedTransient, housing: HousingComponent | None, seconds: float, warnings_of_load: list[ResultWarning]
+) -> dict[str, Any]:
+    """Return the document of a point's transient, with the warnings of its housing, its modes and its load."""
     document = transient_document(solved)
     document["seconds"] = {"total": seconds, "time_stepping": solved.result.seconds}
     add_warnings(document, () if housing is None else housing.warnings)
@@ -188,35 +148,7 @@ def _reduced(
     add_warnings(document, warnings_of_load)
     mean_forces = mean_bearing_forces(solved)
     add_warnings(document, bearing_load_warnings(solved.machine.bearings, mean_forces, known=warnings_of_load))
-    forces = solved.histories.bearing_load
-    frequencies, rates, names = sounding_lines(case, solved)
-    return PointResult(
-        document=document,
-        orders=lines[:count] / turning_hz,
-        sensor_spectra={name: spectrum.amplitude[:count] for name, spectrum in solved.sensor_spectra.items()},
-        force_spectra={name: solved.force_spectra[contact].amplitude[:count] for name, contact in pressed.items()},
-        bearing_force_mean={name: force.mean(axis=0) for name, force in forces.items()},
-        bearing_force_rms={name: force.std(axis=0) for name, force in forces.items()},
-        housing_frequencies_hz=np.empty(0) if housing is None else housing.frequencies_hz,
-        window=spectra[0].window if spectra else "uniform",
-        line_frequencies=frequencies,
-        line_rates=rates,
-        line_names=tuple(line.name for line in names),
-        line_kinds=tuple(line.kind for line in names),
-        resonances=find_resonances(case, solved.machine, solved.trusted_limit),
-    )
-
-
-def sounding_lines(case: Case, solved: SolvedTransient) -> tuple[FloatArray, FloatArray, list[LineName]]:
-    """Return the strongest lines of a point's motion, for its sound; none where that is left out.
-
-    See :func:`gearwhine.coupling.sound.motion_lines.strongest_lines`.
-    """
-    if case.acoustics is None or solved.machine.housing is None or sound_left_out(case):
-        return np.empty(0), np.empty((0, 0, 2)), []
-    from gearwhine.coupling.sound.motion_lines import strongest_lines
-
-    return strongest_lines(acoustics_of(case), solved)
+    return document
 
 
 POINTS = "points"
@@ -257,8 +189,8 @@ def write_point(folder: Path, place: Path, point: Point, result: PointResult | P
         attributes["failure"] = json_text({"message": result.message, "traceback": result.traceback})
         arrays = {}
     else:
-        attributes |= {"document": json_text(finite(result.document)), "window": result.window}
-        arrays = _arrays(result)
+        attributes |= {"document": json_text(finite(result.document)), "window": result.motion.window}
+        arrays = _arrays(result.motion)
     staged = place / point.file
     write_netcdf(staged, arrays, attributes)
     write_checksum(staged)
@@ -289,36 +221,36 @@ def outdated_points(folder: Path, points: tuple[Point, ...]) -> list[Path]:
     return [path for path in sorted((folder / POINTS).glob("*.nc")) if path.name not in names]
 
 
-def _arrays(result: PointResult) -> Variables:
+def _arrays(motion: ReducedMotion) -> Variables:
     arrays: Variables = {
-        "order": ("order", result.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
+        "order": ("order", motion.orders, {"units": "1", "long_name": "cycles for each turn of the first driver"})
     }
     for group, (dimension, unit, long_name) in _SPECTRA.items():
-        spectra = getattr(result, group)
+        spectra = getattr(motion, group)
         if spectra:
             arrays[dimension] = (dimension, list(spectra), {})
             values = np.array(list(spectra.values()))
             arrays[group] = ((dimension, "order"), values, {"units": unit, "long_name": long_name})
     for group, long_name in _FORCES.items():
-        forces = getattr(result, group)
+        forces = getattr(motion, group)
         if forces:
             arrays |= {"bearing": ("bearing", list(forces), {}), "load": ("load", list(_LOADS), {})}
             values = np.array(list(forces.values()))
             arrays[group] = (("bearing", "load"), values, {"units": "N, N m of moments", "long_name": long_name})
-    if result.line_frequencies.size:
+    if motion.line_frequencies.size:
         line_attributes = {"units": "Hz", "long_name": "frequency of a line whose sound is wanted"}
-        arrays["line_frequencies"] = ("sound_line", result.line_frequencies, line_attributes)
+        arrays["line_frequencies"] = ("sound_line", motion.line_frequencies, line_attributes)
         line_attributes = {
             "units": "m kg^0.5 / s",
             "long_name": "rates of the housing's coordinates, real and imaginary",
         }
-        arrays["line_rates"] = (("sound_line", "coordinate", "part"), result.line_rates, line_attributes)
-        arrays["line_names"] = ("sound_line", list(result.line_names), {"long_name": "name of the line"})
-        arrays["line_kinds"] = ("sound_line", list(result.line_kinds), {"long_name": "cause of the line"})
-    if result.resonances is not None:
-        arrays |= _resonance_arrays(result.resonances)
+        arrays["line_rates"] = (("sound_line", "coordinate", "part"), motion.line_rates, line_attributes)
+        arrays["line_names"] = ("sound_line", list(motion.line_names), {"long_name": "name of the line"})
+        arrays["line_kinds"] = ("sound_line", list(motion.line_kinds), {"long_name": "cause of the line"})
+    if motion.resonances is not None:
+        arrays |= _resonance_arrays(motion.resonances)
     attributes = {"units": "Hz", "long_name": "housing natural frequency"}
-    arrays["housing_frequencies_hz"] = ("housing_mode", result.housing_frequencies_hz, attributes)
+    arrays["housing_frequencies_hz"] = ("housing_mode", motion.housing_frequencies_hz, attributes)
     return arrays
 
 
@@ -388,8 +320,7 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         )
         if group in arrays
     }
-    return PointResult(
-        document=json.loads(attributes["document"]),
+    motion = ReducedMotion(
         orders=arrays["order"],
         housing_frequencies_hz=arrays["housing_frequencies_hz"],
         window=attributes["window"],
@@ -400,3 +331,4 @@ def _result(arrays: dict[str, npt.NDArray[Any]], attributes: dict[str, Any]) -> 
         resonances=_resonances(arrays),
         **named,
     )
+    return PointResult(json.loads(attributes["document"]), motion)

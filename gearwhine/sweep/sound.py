@@ -8,8 +8,7 @@ solved.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -17,30 +16,22 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.case.speeds_and_torques import mesh_frequencies
-from gearwhine.coupling.sound.proofs import (
-    doubts,
-    gathered,
-    interior_pressure,
-    known_source,
-    known_source_at,
-    microphone_doubts,
-    power_balance_db,
-)
+from gearwhine.coupling.sound.proofs import gathered
+from gearwhine.coupling.sweep.line_sound import LineSound, interpolated_line_sound, line_sound, radiated_level
+from gearwhine.coupling.sweep.missed_peaks import RadiatedLevel
 from gearwhine.housing import HousingError
-from gearwhine.housing.acoustics.modal_radiation import POINTS, ModalRadiation
-from gearwhine.housing.acoustics.radiation import LEAK, POWERS_AGREE, SOURCE_HEARD, SOURCE_OFF, counting
+from gearwhine.housing.acoustics.modal_radiation import POINTS
+from gearwhine.housing.acoustics.radiation import counting
 from gearwhine.housing.acoustics.sound_levels import a_weighting, power_level, pressure_level, sum_of_levels
 from gearwhine.numerics.progress import Progress, in_order, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output.quantity import document_of
 from gearwhine.results.sound import SWEPT_LINE, SweptLine, parts_of_modes
-from gearwhine.sweep.resolution import RadiatedLevel
 from gearwhine.sweep.solution import PointResult
 
 if TYPE_CHECKING:
     from gearwhine.case import Case, SweptKey
-    from gearwhine.housing.acoustics.radiation import HousingRadiation, RadiatedSound
-    from gearwhine.solve.housing_modes import SolvedHousing
+    from gearwhine.housing import HousingModes
     from gearwhine.sweep.points import Point
     from gearwhine.sweep.run import SweptPoint
 
@@ -48,18 +39,16 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _TWO_PI = 2.0 * np.pi
-_LARGEST_INTERPOLATION_ERROR = 0.02  # estimated error of an interpolation up to which it holds: a tenth of a decibel
 _FAINT_LINE_RATIO = 1e-3  # part of a point's loudest line, by an estimate, below which a line is left out
-_UNPROVED: dict[str, Any] = {"known_source_error": None, "known_source_rms": None}
 
 
 def add_sound(
     case: Case,
     keys: Sequence[SweptKey],
     swept: Sequence[SweptPoint],
-    housing: SolvedHousing,
+    housing: HousingModes,
     progress: Progress = silent,
-) -> tuple[list[dict[str, Any]], SolvedHousing, RadiatedLevel | None]:
+) -> tuple[list[dict[str, Any]], HousingModes, RadiatedLevel | None]:
     """Add the sound to the documents of a sweep's points.
 
     Parameters
@@ -69,7 +58,7 @@ def add_sound(
     keys : sequence of SweptKey
     swept : sequence of SweptPoint
         Points, at least one.
-    housing : SolvedHousing
+    housing : HousingModes
         Housing of that case.
     progress : callable
 
@@ -77,7 +66,7 @@ def add_sound(
     -------
     list of dict
         Warnings.
-    SolvedHousing
+    HousingModes
         The housing, whose record holds the radiation over frequency where it is solved.
     callable or None
         Sound power level of other rates of the housing's coordinates, without a solution: interpolated where the
@@ -113,10 +102,10 @@ def add_sound(
     natural = len(housing.modes.frequencies_hz)
     jobs: list[tuple[int, int, float, Any]] = []  # number of the point and of its line, frequency, rates
     for number, swept_point in enumerate(swept):
-        if not isinstance(swept_point.outcome, PointResult) or not len(swept_point.outcome.line_frequencies):
+        if not isinstance(swept_point.outcome, PointResult) or not len(swept_point.outcome.motion.line_frequencies):
             continue
-        frequencies = swept_point.outcome.line_frequencies
-        rates = swept_point.outcome.line_rates[..., 0] + 1j * swept_point.outcome.line_rates[..., 1]
+        frequencies = swept_point.outcome.motion.line_frequencies
+        rates = swept_point.outcome.motion.line_rates[..., 0] + 1j * swept_point.outcome.motion.line_rates[..., 1]
         estimate = radiation.equivalent_power(rates.T) * pulsating_efficiency(
             frequencies, radiation.area, radiation.medium.speed_of_sound
         )
@@ -128,22 +117,22 @@ def add_sound(
         between = AUDIBLE, acoustics.limit_hz(field)
         table, housing = kept_radiation(acoustics, housing, radiation, places, between, progress)
 
-    def solve(job: tuple[int, int, float, Any]) -> _Line:
+    def solve(job: tuple[int, int, float, Any]) -> LineSound:
         *_, hertz, rates = job
-        line = None if table is None else _interpolated(table, radiation, hertz, rates[:, 0], positions, natural)
-        return line or _line(radiation.solve(hertz, rates), positions, places, natural)
+        line = None if table is None else interpolated_line_sound(table, radiation, hertz, rates[:, 0], positions)
+        return line or line_sound(radiation.solve(hertz, rates), positions)
 
-    lines: dict[int, list[_Line]] = {}
+    lines: dict[int, list[tuple[LineSound, dict[str, Any]]]] = {}
     for (number, place, *_), line in zip(jobs, in_order(solve, jobs, "sound of the sweep", progress), strict=True):
         point, outcome = swept[number].point, swept[number].outcome
         assert isinstance(outcome, PointResult)
         assert point.case.operation is not None
-        order = line.entry["frequency_hz"] * _TWO_PI / abs(point.case.operation.speed)
-        line.entry.update(order=order, name=outcome.line_names[place], kind=outcome.line_kinds[place])
-        lines.setdefault(number, []).append(line)
+        entry, order = _entry(line, natural), line.frequency_hz * _TWO_PI / abs(point.case.operation.speed)
+        entry.update(order=order, name=outcome.motion.line_names[place], kind=outcome.motion.line_kinds[place])
+        lines.setdefault(number, []).append((line, entry))
     failures: list[HousingError] = []
     for number, point_lines in lines.items():
-        counted = counting(point_lines)
+        counted = counting([line for line, _ in point_lines])
         refused = next((line.refused for line in counted if line.refused is not None), None)
         if refused is not None:
             failures.append(refused)
@@ -151,11 +140,12 @@ def add_sound(
             warnings.append(warning("sound_of_point", f"the sound at {where} is left out: {refused}"))
             continue
         warnings += [entry for line in counted for entry in line.warnings]
-        balances = [line.entry["power_balance_db"] for line in counted]
-        leaks = [line.entry["interior_pressure"] for line in counted]
-        sources = [line.entry for line in counted if line.entry["known_source_error"] is not None]
-        worst_source = max(sources, key=lambda entry: float(entry["known_source_error"]), default=_UNPROVED)
-        entries = sorted((line.entry for line in point_lines), key=lambda entry: -float(entry["sound_power_db"]))
+        balances = [line.power_balance_db for line in counted]
+        leaks = [line.interior_pressure for line in counted]
+        sources = [(line.known_source_error, line.known_source_rms) for line in counted]
+        proved = [(error, rms) for error, rms in sources if error is not None]
+        source_error, source_rms = max(proved, key=lambda source: source[0], default=(None, None))
+        entries = sorted((entry for _, entry in point_lines), key=lambda entry: -float(entry["sound_power_db"]))
         outcome = swept[number].outcome
         assert isinstance(outcome, PointResult)
         outcome.document["sound"] = {
@@ -164,24 +154,15 @@ def add_sound(
             "total_db_a": sum_of_levels(entry["sound_power_db_a"] for entry in entries),
             "power_balance_db": max((value for value in balances if value is not None), key=abs, default=None),
             "interior_pressure": max((value for value in leaks if value is not None), default=None),
-            **{key: worst_source[key] for key in _UNPROVED},
+            "known_source_error": source_error,
+            "known_source_rms": source_rms,
             "loudest": document_of(SWEPT_LINE, SweptLine(entries[0], housing.modes.frequencies_hz)),
             "lines": entries,
         }
     if failures and len(failures) == len(lines):
         raise failures[0]
     warnings = [*gathered(warnings), *_beyond_warnings(keys, swept, acoustics.limit_hz(field))]
-    return warnings, housing, partial(_radiated, radiation, table)
-
-
-def _radiated(radiation: HousingRadiation, table: ModalRadiation | None, hertz: float, rates: ComplexArray) -> float:
-    """Sound power level of rates of the housing's coordinates without a solution [dB]."""
-    from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
-
-    if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _LARGEST_INTERPOLATION_ERROR:
-        return float(power_level(table.power(hertz, rates)[0]))
-    sphere = pulsating_efficiency(np.array([hertz]), radiation.area, radiation.medium.speed_of_sound)
-    return float(power_level(radiation.equivalent_power(rates[:, None])[0] * sphere[0]))
+    return warnings, housing, partial(radiated_level, radiation, table)
 
 
 def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limit: float) -> Iterator[dict[str, Any]]:
@@ -223,82 +204,18 @@ def _where(keys: Sequence[SweptKey], point: Point) -> str:
     return ", ".join(f"{key.key}={text}" for key, text in zip(keys, point.texts, strict=True))
 
 
-@dataclass(frozen=True)
-class _Line:
-    """Sound of a line of a point: its entry in the document, its powers, and warnings or the refusal of its proofs."""
-
-    entry: dict[str, Any]
-    power: float
-    surface_power: float
-    warnings: list[dict[str, Any]]
-    refused: HousingError | None
-
-
-def _line(sound: RadiatedSound, positions: Mapping[str, FloatArray], places: FloatArray, natural: int) -> _Line:
-    """Return the figures of a sound, without the sound itself: a sweep has thousands."""
-    refused = None
-    try:
-        sound.require_proofs()
-    except HousingError as error:
-        refused = error
-    heard = sound.pressure_at(places) if len(places) else np.zeros(0, dtype=np.complex128)
-    entry = _entry(
-        sound.frequency_hz, sound.power, sound.radiation_efficiency, dict(zip(positions, heard, strict=True))
-    )
-    entry |= {"power_balance_db": power_balance_db(sound), "interior_pressure": interior_pressure(sound)}
-    proof, off = known_source(sound), known_source_at(sound, places)
-    entry |= _UNPROVED if proof is None else {"known_source_error": proof.largest, "known_source_rms": proof.rms}
-    warnings = doubts(sound, "a line")
-    if off is not None:
-        warnings += microphone_doubts(sound.frequency_hz, dict(zip(positions, off.tolist(), strict=True)))
-    entry["contributions"] = {"housing_modes": parts_of_modes(sound.by_mode, natural, sound.power)}
-    return _Line(entry, sound.power, sound.surface_power, warnings, refused)
-
-
-def _interpolated(
-    table: ModalRadiation,
-    radiation: HousingRadiation,
-    hertz: float,
-    rates: ComplexArray,
-    positions: Mapping[str, FloatArray],
-    natural: int,
-) -> _Line | None:
-    """Return the figures of a line by interpolation; None where that or a proof is doubtful."""
-    if not table.holds(hertz):
-        return None
-    power, surface_power, error = table.power(hertz, rates)
-    leak, off, rms, heard_off = (
-        table.around(hertz, values)
-        for values in (table.interior_residual, table.source_error, table.source_rms, table.point_source_error)
-    )
-    if (
-        max(error, table.pressure_error) > _LARGEST_INTERPOLATION_ERROR
-        or abs(surface_power / power - 1.0) > POWERS_AGREE
-    ):
-        return None
-    if leak > LEAK or off > SOURCE_OFF or heard_off > SOURCE_HEARD:
-        return None
-    heard = table.pressure_at(np.array([hertz]))[0] @ rates
-    efficiency = power / float(radiation.equivalent_power(rates[:, None])[0])
-    entry = _entry(hertz, power, efficiency, dict(zip(positions, heard, strict=True)))
-    entry |= {
-        "power_balance_db": float(power_level(surface_power) - power_level(power)),
-        "interior_pressure": leak if radiation.method == "boundary-elements" else None,
-    }
-    proved = {"known_source_error": off, "known_source_rms": rms}
-    entry |= proved if radiation.method == "boundary-elements" else _UNPROVED
-    entry["contributions"] = {"housing_modes": parts_of_modes(table.by_mode(hertz, rates), natural, power)}
-    return _Line(entry, power, surface_power, [], None)
-
-
-def _entry(hertz: float, power: float, efficiency: float, heard: Mapping[str, complex]) -> dict[str, Any]:
-    level = float(power_level(power))
+def _entry(line: LineSound, natural: int) -> dict[str, Any]:
+    """Return the document of a line; ``natural`` is the number of the housing's modes, before its residual modes."""
+    level = float(power_level(line.power))
     entry: dict[str, Any] = {
-        "frequency_hz": hertz,
+        "frequency_hz": line.frequency_hz,
         "sound_power_db": level,
-        "sound_power_db_a": level + float(a_weighting(hertz)),
-        "radiation_efficiency": efficiency,
+        "sound_power_db_a": level + float(a_weighting(line.frequency_hz)),
+        "radiation_efficiency": line.radiation_efficiency,
     }
-    if heard:
-        entry["microphones_db"] = {name: float(pressure_level(pressure)) for name, pressure in heard.items()}
+    if line.heard:
+        entry["microphones_db"] = {name: float(pressure_level(pressure)) for name, pressure in line.heard.items()}
+    entry |= {"power_balance_db": line.power_balance_db, "interior_pressure": line.interior_pressure}
+    entry |= {"known_source_error": line.known_source_error, "known_source_rms": line.known_source_rms}
+    entry["contributions"] = {"housing_modes": parts_of_modes(line.by_mode, natural, line.power)}
     return entry

@@ -18,7 +18,7 @@ from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.matrices import NOTHING, Additions, Matrices, NodeBlocks
 from gearwhine.housing.fem.nearest_point import SurfacePoint, surface_point
 from gearwhine.housing.model.patches import Patch, Point, RigidBody, patch_matrix, point_matrix
-from gearwhine.meshes import Mesh
+from gearwhine.meshes import GeometryError, Mesh
 from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
 
@@ -55,10 +55,17 @@ def attach_fixtures(matrices: Matrices, mesh: Mesh, fixtures: Iterable[Fixture])
 
     Raises
     ------
-    HousingError, gearwhine.meshes.GeometryError
-        Where one of them does not fit the mesh.
+    HousingError
+        With a finding for each that does not fit the mesh; its part is the kind and the name of the fixture.
     """
-    additions = sum((attachment.additions(mesh) for attachment in fixtures), Additions())
+    additions, misfits = Additions(), list[Finding]()
+    for fixture in fixtures:
+        try:
+            additions += fixture.additions(mesh)
+        except (HousingError, GeometryError) as error:
+            kind = "mass" if isinstance(fixture, LumpedMass) else type(fixture).__name__.lower()
+            misfits.append(Finding((kind, fixture.name), "", None, f"what fits the mesh; {error}"))
+    refuse(misfits, HousingError)
     return matrices.plus(additions)
 
 

@@ -129,6 +129,18 @@ def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
     return patch_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), name=f"seat {seat.name!r}")
 
 
+def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:
+    """Return the port of a bearing: motions x, y, z and rotations about x, y from the nodes', shape (5, 3 n_nodes).
+
+    They are those of its seat at a distance from its centre [m]. The transpose spreads a bearing force over the nodes.
+
+    Any bearing can load these; none loads the rotation about z, in which the shaft turns.
+    """
+    # A rotation about y moves a point above the centre towards +x, one about x towards -y.
+    turned = sparse.diags_array([arm, -arm], dtype=np.float64) @ seat[[4, 3]]
+    return sparse.csr_array(sparse.vstack([seat[[0, 1]] + turned, seat[[2, 3, 4]]]))
+
+
 _FARTHEST = 0.1
 """Distance of a sensor from the surface, as a part of the mesh's diagonal, beyond which it is on no housing."""
 

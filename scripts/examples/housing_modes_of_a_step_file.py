@@ -26,5 +26,5 @@ seat = gw.Seat("front", center=(0.0, 0.06, 0.075), diameter=0.05)
 housing = gw.Housing.from_step(step, 0.02, steel, seats=[seat], fixtures=[floor], damping_ratio=0.01)
 modes = housing.modes(below_hz=4000.0)
 
-print(f"{modes.mode_set.certificate.found} modes below 4 kHz, complete: {modes.mode_set.certificate.complete}")
+print(f"{modes.modes.certificate.found} modes below 4 kHz, complete: {modes.modes.certificate.complete}")
 print("  ".join(f"{frequency:.0f} Hz" for frequency in modes.frequencies_hz))

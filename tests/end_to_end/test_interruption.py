@@ -23,8 +23,7 @@ from gearwhine.output.dataset import arrays_of, labels_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, plan_of, reduce_housing
-from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing
 from gearwhine.solve.rotors import solve_rotors
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
@@ -58,7 +57,7 @@ def write_whole(file: Path) -> set[str]:
     rotors, housing = solve_rotors(case), solve_housing(case)
     part = reduce_housing(case, housing)
     described = described_machine(case, part)
-    load, _ = find_load(case, described)
+    load, _ = load_of_case(case, described)
     assert load is not None
     standing = load_machine(described, load.point)
     pairs, machine = standing.pairs, standing.coupled

@@ -61,7 +61,7 @@ def test_stresses_that_jump_between_materials_are_no_error(block_of: BlockOf) ->
 def test_rigid_modes_have_no_error_and_fixtures_bear_tractions(block_of: BlockOf) -> None:
     mesh = block_of("hexahedron20", (0.3, 0.1, 0.02), (6, 2, 1))
     free = Housing(mesh, STEEL).modes(count=8)
-    errors = free.mode_set.discretisation_errors
+    errors = free.modes.discretisation_errors
     assert errors is not None
     assert (errors[:6] == 0.0).all()
     assert (errors[6:] > 0.0).all()

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from gearwhine.housing import Housing, HousingError, Joint, LumpedMass, Material, Patch, Seat, Sensor, Support
-from gearwhine.housing.housing import bearing_port, cover_joints
 from gearwhine.housing.model.bushings import Bushing
+from gearwhine.housing.model.cover_bolts import cover_joints
+from gearwhine.housing.model.seats import bearing_port
 from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
 from gearwhine.meshes.box import Bore, Cover, CoverBolts, WallThickness
 
@@ -34,18 +35,16 @@ def test_a_clamped_housing_cannot_come_out_free(box: Housing) -> None:
     assert free.frequencies_hz[6] > 100.0
     held = box.modes(count=2)
     assert (held.frequencies_hz > 100.0).all()
-    assert held.mode_set.certificate.complete
+    assert held.modes.certificate.complete
     assert held.health.ok
 
 
 def test_modes_carry_what_a_machine_takes_of_them(box: Housing) -> None:
     found = box.modes(count=3, bearings={"near the front": ("front bearing", 0.01)})
-    n = len(found.frequencies_hz) + len(
-        found.mode_set.residual_modes.frequencies if found.mode_set.residual_modes else ()
-    )
-    assert set(found.seats) == {"front bearing", "back bearing"}
-    assert found.seats["front bearing"].shape == (n, 6)
-    assert found.sensors["top"].shape == (n,)
+    n = len(found.frequencies_hz) + len(found.modes.residual_modes.frequencies if found.modes.residual_modes else ())
+    assert set(found.seat_motions) == {"front bearing", "back bearing"}
+    assert found.seat_motions["front bearing"].shape == (n, 6)
+    assert found.sensor_motions["top"].shape == (n,)
     assert found.damping_ratios == pytest.approx([0.02] * 3)
     # What is fixed moves with the ground: Σ (φᵀ M R)² → the whole mass from below, as modes are added.
     mass = box.matrices().total_mass

@@ -13,7 +13,8 @@ from gearwhine.analyses.result import Result
 from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
+from gearwhine.housing import HousingModes
 from gearwhine.sweep.solution import PointResult
 
 QUICK: dict[str, Any] = {
@@ -38,7 +39,7 @@ def small_gearbox() -> gw.CaseStudy:
     return gw.load("small-gearbox")
 
 
-def sounding_housing() -> SolvedHousing:
+def sounding_housing() -> HousingModes:
     """Its solved housing."""
     housing = small_gearbox().housing
     assert housing is not None
@@ -53,7 +54,7 @@ def sounding_gearbox(changes: dict[str, Any]) -> gw.CaseStudy:
 def swept_point(case: Case, text: str, outcome: PointResult | None = None, *, modes_key: str = "") -> Any:
     """A point of a sweep with the value of its key, whose motion has no lines by default."""
     point = SimpleNamespace(case=case, texts=(text,), modes_key=modes_key)
-    return SimpleNamespace(outcome=outcome or PointResult({}, np.zeros(0)), point=point)
+    return SimpleNamespace(outcome=outcome or PointResult({}, ReducedMotion(np.zeros(0))), point=point)
 
 
 @cache

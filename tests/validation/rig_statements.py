@@ -16,7 +16,7 @@ from gearwhine.case import load_case
 from gearwhine.coupling import TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.coupled_system import embed
-from gearwhine.solve.housing_modes import SolvedHousing
+from gearwhine.housing import HousingModes
 from gearwhine.solve.machine import described_machine, reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,14 +63,14 @@ class Run:
         return dict(zip(self.mode_hz.tolist(), shares.tolist(), strict=False))
 
 
-def settled_runs(name: str | Path, solved: SolvedHousing, dominant: list[int] | None = None) -> Runs:
+def settled_runs(name: str | Path, solved: HousingModes, dominant: list[int] | None = None) -> Runs:
     """Return ``runs(speed)`` in rpm of a rig's case; each is marched once.
 
     Parameters
     ----------
     name : str or Path
         Of the case.
-    solved : SolvedHousing
+    solved : HousingModes
         Its modes.
     dominant : list of int, optional
         Modes that ``runs(speed, eight=True)`` keeps alone, from 0, as the source did.

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 
+from gearwhine.coupling.load_analysis.solved_load import DeflectedShaft, SolvedLoad
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.figures.gears.contact import draw_contact_pattern
 from gearwhine.figures.rotors import shaft_assembly
@@ -42,7 +43,6 @@ from gearwhine.figures.style import (
 )
 from gearwhine.output import file_stems
 from gearwhine.rotors import Segment
-from gearwhine.solve.operating_point import DeflectedShaft, SolvedLoad
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -52,9 +52,9 @@ from gearwhine.figures.style import (
     sheet_height,
     shortened,
 )
+from gearwhine.housing import HousingModes
 from gearwhine.housing.correlation.comparison import Comparison
 from gearwhine.output.sections import arrowed, counted
-from gearwhine.solve.housing_modes import SolvedHousing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -501,7 +501,7 @@ def draw_transient(
     title: str,
     solved: SolvedTransient,
     signature: SolvedSignature | None,
-    housing: SolvedHousing | None,
+    housing: HousingModes | None,
     comparison: Comparison | None,
 ) -> Iterator[tuple[str, Figure]]:
     """Draw the figures of a transient: yield the name of each, such as ``spectrum``, and the figure."""
@@ -588,7 +588,7 @@ def _mark(axes: Axes, meshes: tuple[float, ...], limit: float) -> None:
             axes.axvline(harmonic * frequency, color=RED, lw=0.8, ls=(0, (4, 3)), zorder=0)
 
 
-def _marked_modes(housing: SolvedHousing | None, comparison: Comparison | None) -> FloatArray:
+def _marked_modes(housing: HousingModes | None, comparison: Comparison | None) -> FloatArray:
     if comparison is not None:
         return np.array([pair.model for pair in comparison.pairs]) / (2.0 * np.pi)
     return np.empty(0) if housing is None else housing.modes.frequencies_hz

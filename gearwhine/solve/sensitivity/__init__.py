@@ -1,1 +1,1 @@
-"""Sensitivity of a loaded case: which wall, bearing or position changes gear pairs, sensors' lines and sound most."""
+"""Sensitivity of a loaded case: parameters of its housing, as changes of the housing's model."""

@@ -4,54 +4,26 @@ Parameters are those of the case's ``[update]``, else the walls of a box; of any
 surface.
 """
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
 from gearwhine.case import Case, UpdateParameter
 from gearwhine.case.box import FACES
+from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
-from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.coupling.statics.sensitivity import Adjoint
-from gearwhine.from_case.mesh import materials_of
+from gearwhine.from_case.housing import bearing_places, build_seats
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
-from gearwhine.housing.fem.surface import flat_faces
-from gearwhine.housing.housing import bearing_port
-from gearwhine.housing.material import element_constants
-from gearwhine.housing.model.seats import seat_matrix, sensor_port
+from gearwhine.housing.model.seats import bearing_port, seat_matrix, sensor_port
 from gearwhine.housing.updating import ModelSensitivity
-from gearwhine.housing.updating.static_sensitivity import PortRates, StaticSensitivity
+from gearwhine.housing.updating.housing_change import HousingChange, face_changes
+from gearwhine.housing.updating.static_sensitivity import PortRates
 from gearwhine.meshes import Mesh
-from gearwhine.meshes.box.morph import MorphError, with_middles
-from gearwhine.solve.housing_modes import SolvedHousing, bearing_places
+from gearwhine.meshes.box.morph import MorphError
 
-FloatArray = npt.NDArray[np.float64]
-
-_LEAST_FACE = 0.01  # part of the whole surface from which a flat face is a parameter
-
-
-def housing_fields(
-    case: Case, housing: SolvedHousing, point: OperatingPoint, adjoints: Sequence[Adjoint]
-) -> StaticSensitivity:
-    """Return the displacements of a housing's nodes at an operating point and of adjoint states, with their forces."""
-    assert point.housing is not None
-    parted, material, materials = materials_of(case, housing.mesh)
-    every = np.arange(len(housing.mesh.points))
-    gravity = point.shafts[0].gravity
-    return StaticSensitivity(
-        housing.mesh,
-        element_constants(parted, material, materials),
-        housing.modes.displacement(point.housing, every),
-        np.array([housing.modes.displacement(adjoint.housing, every) for adjoint in adjoints]),
-        {bearing.name: bearing.force for bearing in point.bearings},
-        {bearing.name: np.array([adjoint.force(bearing.name) for adjoint in adjoints]) for bearing in point.bearings},
-        np.zeros(3) if gravity is None else np.array(gravity),
-    )
+_COMMAND = "load --sensitivity"
 
 
 def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
@@ -71,64 +43,6 @@ def housing_parameters(case: Case) -> tuple[UpdateParameter, ...]:
     return tuple(parameters)
 
 
-@dataclass(frozen=True, eq=False)
-class HousingChange:
-    """Change of a housing by one parameter.
-
-    Derivatives are by the parameter's coordinate: z of :class:`gearwhine.housing.updating.Parameter` for a number of
-    the case, and the shift along the normal [m] for a face.
-
-    Attributes
-    ----------
-    parameter : str
-    kind : str
-        ``housing`` or ``face``.
-    rate : ModelSensitivity
-        Derivative of the housing's model.
-    bearings, sensors : mapping of str to scipy.sparse.csr_array
-        Derivatives of the ports of bearings and of sensors; empty where they stay.
-    slope : float
-        Derivative of the parameter [SI] by its coordinate; 1 of a face.
-    reference : float or None
-        Value that the parameter's relative steps refer to [SI]; None of a length, whose steps are lengths.
-    thickness : float or None
-        Thickness of a wall [m], infinite of a face, whose wall is not known; None of other parameters.
-    """
-
-    parameter: str
-    kind: str
-    rate: ModelSensitivity
-    bearings: PortRates
-    sensors: PortRates
-    slope: float
-    reference: float | None
-    thickness: float | None
-
-
-def slopes_of(changes: Sequence[HousingChange]) -> FloatArray:
-    """Return the derivatives of parameters by their coordinates [SI], shape (n_parameters,)."""
-    return np.array([change.slope for change in changes])
-
-
-def by_changes(fields: StaticSensitivity, changes: Sequence[HousingChange]) -> FloatArray:
-    """Differentiate each outcome by the parameters of changes [outcome/SI], shape (n_adjoints, n_parameters)."""
-    by_coordinates = fields.by_parameters([change.rate for change in changes], [change.bearings for change in changes])
-    return np.asarray(by_coordinates / slopes_of(changes))
-
-
-def by_case_parameters(case: Case, fields: StaticSensitivity, parameters: Sequence[UpdateParameter]) -> FloatArray:
-    """Differentiate outcomes by numbers of a case's housing, in SI, shape (n_adjoints, n_parameters).
-
-    Raises
-    ------
-    CaseError, meshes.box.morph.MorphError
-        As :func:`case_changes`.
-    """
-    if not parameters:
-        return np.zeros((len(fields.adjoint), 0))
-    return by_changes(fields, case_changes(case, fields.mesh, parameters))
-
-
 def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], str | None]:
     """Differentiate the model of a case's housing by the parameters that are ranked.
 
@@ -138,14 +52,14 @@ def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], 
     str or None
         Why flat faces stand in place of walls, where they do.
     """
-    parameters = housing_parameters(case)
+    parameters, seats = housing_parameters(case), [seat.name for seat in housing_table(case, _COMMAND).seat]
     if not parameters:
-        return face_changes(case, mesh), None
+        return face_changes(mesh, seats), None
     try:
         return case_changes(case, mesh, parameters), None
     except MorphError as error:
         note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
-        return face_changes(case, mesh), note
+        return face_changes(mesh, seats), note
 
 
 def case_changes(case: Case, mesh: Mesh, parameters: Sequence[UpdateParameter]) -> tuple[HousingChange, ...]:
@@ -195,10 +109,9 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
     facets of its surface and by the nearest point of the surface to a sensor, and so has no formula of its own.
     """
     above, below = meshed.beside(number)
-    assert above.housing is not None
-    assert below.housing is not None
     is_rigid = rate.velocity is None
-    if is_rigid and above.housing.seat == below.housing.seat and above.housing.sensor == below.housing.sensor:
+    tables = [housing_table(case, _COMMAND) for case in (above, below)]
+    if is_rigid and tables[0].seat == tables[1].seat and tables[0].sensor == tables[1].sensor:
         return {}, {}
     meshes = [meshed.mesh] * 2
     if rate.velocity is not None:
@@ -213,35 +126,10 @@ def _port_rates(meshed: MeshedParameters, number: int, rate: ModelSensitivity) -
 
 def _ports(case: Case, mesh: Mesh) -> tuple[dict[str, sparse.csr_array], dict[str, sparse.csr_array]]:
     """Assemble the ports of a case's bearings and of its sensors on a mesh."""
-    assert case.housing is not None
-    seats = {seat.name: seat.build() for seat in case.housing.seat}
-    places = bearing_places(case)
+    table = housing_table(case, _COMMAND)
+    seats = {seat.name: seat for seat in build_seats(table)}
+    places = bearing_places(table.seat, case.bearing, case.rotor)
     return (
         {name: bearing_port(seat_matrix(mesh, seats[seat]), arm) for name, (seat, arm) in places.items()},
-        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in case.housing.sensor},
+        {sensor.name: sensor_port(mesh, sensor.build()).matrix for sensor in table.sensor},
     )
-
-
-def face_changes(case: Case, mesh: Mesh) -> tuple[HousingChange, ...]:
-    """Differentiate the model of a case's housing by material on the large flat faces of its surface.
-
-    A face moves along its normal with the layer of elements on it; seats and fixtures stay. It is named as
-    :func:`gearwhine.housing.fem.surface.flat_face_names` has it, such as ``inside of bottom at 0, 10, 0 mm``.
-    """
-    assert case.housing is not None
-    seats = [mesh.surface(seat.name) for seat in case.housing.seat]
-    held_nodes = np.unique(
-        np.concatenate([block.nodes.ravel() for seat in seats for block in seat] or [np.empty(0, int)])
-    )
-    faces = flat_faces(mesh)
-    whole = sum(face.area for face in faces)
-    changes = []
-    for face in faces:
-        if face.area < _LEAST_FACE * whole:
-            continue
-        velocity = np.zeros_like(mesh.points)
-        velocity[np.unique(np.concatenate([block.corners.ravel() for block in face.facets]))] = face.normal
-        velocity[held_nodes] = 0.0
-        rate = ModelSensitivity(with_middles(mesh, velocity))
-        changes.append(HousingChange(face.name, "face", rate, {}, {}, slope=1.0, reference=None, thickness=math.inf))
-    return tuple(changes)

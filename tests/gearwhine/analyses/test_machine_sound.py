@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import described_housing
 
 import gearwhine as gw
 from gearwhine.case import CaseError
@@ -15,7 +16,6 @@ from gearwhine.case.acoustics import Acoustics as AcousticsTable
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.sound import Acoustics, Microphone
-from gearwhine.solve.housing_modes import bearing_places, describe_housing
 
 COARSE: dict[str, Any] = {
     "housing.box.mesh_size": "45 mm",
@@ -139,15 +139,13 @@ def test_the_sound_of_a_machine_is_that_of_its_case(
 
 @pytest.mark.slow
 def test_the_sound_of_a_machine_on_the_modes_of_a_housing_of_python(study: gw.CaseStudy) -> None:
-    """The housing is meshed and solved by `gw.Housing`; its widest seat has no diameter, so that the holes are said."""
+    """The housing is meshed and solved by `gw.Housing`, with the seats of the case."""
     case, solved = study.case, study.housing
     assert solved is not None
     assert case.housing is not None
-    described = replace(describe_housing(case, solved.mesh), damping_ratio=float(case.housing.damping_ratio))  # type: ignore[arg-type]
-    modes = described.modes(below_hz=case.housing.frequency_limit, bearings=bearing_places(case))
+    modes = described_housing(case, solved.mesh).modes(below_hz=case.housing.frequency_limit, bearings=solved.bearings)
     assert modes.displacement_field.complete_below_hz == pytest.approx(solved.displacement_field.complete_below_hz)
-    holes = {"close_holes": 1.1 * solved.widest_bore} if solved.widest_bore else {}
-    found = gw.Study(replace(study.machine, housing=modes)).sound(**ESTIMATE, **holes)
+    found = gw.Study(replace(study.machine, housing=modes)).sound(**ESTIMATE)
     expected = study.changed(in_case(ESTIMATE)).sound()
     levels = [[line["sound_power_db"] for line in one.document["lines"]] for one in (found, expected)]
     assert levels[0] == pytest.approx(levels[1], abs=1e-6)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from case_housings import described_housing
 
 import gearwhine as gw
 from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
 from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
-from gearwhine.solve.housing_modes import bearing_places, describe_housing
 from gearwhine.solve.machine import plan_of
 
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
@@ -151,10 +151,7 @@ def test_a_machine_on_the_modes_of_a_housing_of_python_is_that_of_the_case() -> 
     case, solved = study.case, study.housing
     assert solved is not None
     assert case.housing is not None
-    assert isinstance(case.housing.damping_ratio, float)
-    described = replace(describe_housing(case, solved.mesh), damping_ratio=case.housing.damping_ratio)
-    places = bearing_places(case)
-    modes = described.modes(below_hz=case.housing.frequency_limit, bearings=places)
+    modes = described_housing(case, solved.mesh).modes(below_hz=case.housing.frequency_limit, bearings=solved.bearings)
     found = gw.Study(replace(study.machine, housing=modes)).steady()
     expected = study.steady()
     motions = (result.document["motions"][0]["sensors"] for result in (found, expected))

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import mesh_of
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.meshes import Mesh, write_mesh
 from gearwhine.rotors import Bearing, Rotor, Segment, ShaftMaterial, write_ross
@@ -121,7 +121,7 @@ def test_a_case_takes_its_files_along(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def box() -> Mesh:
-    return build_mesh(load_case("steel-box", ["housing.box.mesh_size=120 mm"]).case)
+    return mesh_of(load_case("steel-box", ["housing.box.mesh_size=120 mm"]).case)
 
 
 def of_mesh(folder: Path) -> gw.CaseStudy:

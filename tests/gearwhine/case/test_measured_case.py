@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import mesh_of
 
 from gearwhine.case import CaseError, case_document, dump_case, load_case, parse_case
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes, MeasuredResponses, SurveyData, write_survey
@@ -12,7 +13,7 @@ from gearwhine.housing.measured.survey_planning import survey_grid
 from gearwhine.meshes import Mesh
 from gearwhine.results.check import check_document, measured_document
 from gearwhine.results.comparison import survey_document
-from gearwhine.solve.comparison import map_measured, read_measured
+from gearwhine.solve.comparison import modal_test_of, read_measured, refused_by_key
 
 RIG: dict[str, Any] = case_document(load_case("nasa-gear-noise-rig").case)
 COARSE = np.array([[-0.1395, 0.0, -0.165], [0.1395, 0.254, 0.165]])
@@ -33,7 +34,8 @@ def a_survey(count: int = 9) -> SurveyData:
 
 
 def test_listed_frequencies_may_have_damping(tmp_path: Path) -> None:
-    modes = read_measured(case_with(tmp_path, frequencies=["658 Hz", "1.049 kHz"], damping_ratios=[0.01, 0.02]))
+    given = case_with(tmp_path, frequencies=["658 Hz", "1.049 kHz"], damping_ratios=[0.01, 0.02])
+    modes = read_measured(given.measured)
     np.testing.assert_allclose(modes.frequencies, 2 * np.pi * np.array([658.0, 1049.0]))
     np.testing.assert_array_equal(modes.damping_ratios, [0.01, 0.02])
     assert modes.shapes is None
@@ -43,7 +45,7 @@ def test_listed_frequencies_may_have_damping(tmp_path: Path) -> None:
 def test_a_file_is_found_from_the_case_and_read(tmp_path: Path, name: str) -> None:
     write_survey(tmp_path / name, a_survey())
     case = case_with(tmp_path, file=name)
-    modes = read_measured(case)
+    modes = read_measured(case.measured)
     np.testing.assert_allclose(modes.frequencies, 2 * np.pi * np.array([658.0, 1049.0]))
     assert modes.shapes.shape == (2, 9)
     document = measured_document(case)
@@ -105,7 +107,7 @@ def test_modes_are_found_in_a_file_of_responses(tmp_path: Path) -> None:
     write_survey(tmp_path / "frf.uff", SurveyData(geometry, None, responses))
     case = case_with(tmp_path, file="frf.uff")
     assert measured_document(case)["responses"]["lines"] == 181
-    modes = read_measured(case)
+    modes = read_measured(case.measured)
     np.testing.assert_allclose(modes.frequencies, [natural], rtol=1e-6)
     np.testing.assert_allclose(modes.damping_ratios, [0.01], rtol=1e-4)
     np.testing.assert_allclose(np.abs(modes.shapes[0]), shape / 9.0, rtol=1e-6)
@@ -113,9 +115,8 @@ def test_modes_are_found_in_a_file_of_responses(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def rig_mesh() -> Mesh:
-    from gearwhine.from_case.mesh import build_mesh
 
-    return build_mesh(load_case("nasa-gear-noise-rig", ['housing.box.mesh_size="60 mm"']).case)
+    return mesh_of(load_case("nasa-gear-noise-rig", ['housing.box.mesh_size="60 mm"']).case)
 
 
 def test_the_survey_is_laid_on_the_housing(tmp_path: Path, rig_mesh: Mesh) -> None:
@@ -130,11 +131,12 @@ def test_the_survey_is_laid_on_the_housing(tmp_path: Path, rig_mesh: Mesh) -> No
         {"point": label, "position": grid.positions[int(label) - 1].tolist()} for label in ("1", "40", "80", "116")
     ]
     case = case_with(tmp_path, file="s.csv", align={"landmarks": landmarks})
-    survey = map_measured(case, rig_mesh, read_measured(case).geometry)
+    test = modal_test_of(case.measured)
+    survey = test.mapped(rig_mesh, test.modes.geometry)
     assert survey.distances.max() < 1e-9
     document = survey_document(survey)
     assert document["alignment"]["turned_degrees"] == pytest.approx(120.0)
     field = np.random.default_rng(0).normal(size=(1, len(rig_mesh.points), 3))
     np.testing.assert_allclose(survey.shapes(field), grid.normal_motion(field), atol=1e-9)
-    with pytest.raises(CaseError, match=r"measured\.file.*can be aligned"):
-        map_measured(case_with(tmp_path, file="s.csv"), rig_mesh, geometry)
+    with pytest.raises(CaseError, match=r"measured\.file.*can be aligned"), refused_by_key():
+        modal_test_of(case_with(tmp_path, file="s.csv").measured).mapped(rig_mesh, geometry)

@@ -8,7 +8,7 @@ from matplotlib.text import Annotation
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
-from gearwhine.solve.operating_point import SolvedLoad
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 
 pytestmark = pytest.mark.slow
 

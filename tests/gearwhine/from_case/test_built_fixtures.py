@@ -82,5 +82,5 @@ def test_bolts_of_a_cover_clamp_the_materials_that_are_there(
     expected = bolted_joint(
         0.008, 0.014, materials[body], materials["steel"], cover=(materials[cover], 0.010), outer=0.030
     ).stiffness
-    built = cover_joints(case)[0].bushing.stiffness
+    built = cover_joints(case.housing, case.material)[0].bushing.stiffness
     assert built == pytest.approx((*[expected.shear] * 2, expected.axial, *[expected.tilting] * 2, expected.torsional))

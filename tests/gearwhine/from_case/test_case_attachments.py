@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.case.checks.whole_case import warnings_of
-from gearwhine.from_case.fixtures import build_attachments
+from gearwhine.from_case.fixtures import build_fixtures
 from gearwhine.meshes import BoxGeometry, Mesh, WallThickness, mesh_box, write_mesh
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
@@ -172,7 +172,7 @@ def test_anything_anywhere_makes_a_case_or_a_case_error(data: st.DataObject) -> 
     else:
         # What the case lets pass, the housing takes: no second opinion on amounts, axes and inertias.
         entries = sum(len(document["housing"][kind]) for kind in ("support", "mount", "joint", "mass"))
-        assert len(list(build_attachments(case))) == entries
+        assert len(build_fixtures(case.housing, case.material)) == entries
         lines = []
     assert all(": expected " in line for line in lines)
 

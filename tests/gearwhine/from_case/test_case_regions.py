@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import materials_on
 from scipy.optimize import brentq
 
 from gearwhine.case import CaseError, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.from_case.mesh import materials_of
 from gearwhine.meshes import Mesh, write_mesh
 
 BOX = tomllib.loads(files("gearwhine.cases").joinpath("steel-box.toml").read_text(encoding="utf-8"))
@@ -77,7 +77,7 @@ def test_regions_that_do_not_fit_the_mesh_are_told_all_at_once(block_of: Callabl
         {"name": "cap", "material": "steel", "volume": "lit"},
     )
     with pytest.raises(CaseError) as caught:
-        materials_of(parse_case(_case(*regions), source="case.toml"), mesh)
+        materials_on(parse_case(_case(*regions), source="case.toml"), mesh)
     keys = {problem.key: problem.expected for problem in caught.value.problems}
     assert set(keys) == {"housing.region[1].box", "housing.region[2].box", "housing.region[3].volume"}
     assert '2 of its 2 are in region "half" too' in keys["housing.region[1].box"]

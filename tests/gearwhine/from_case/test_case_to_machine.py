@@ -267,7 +267,7 @@ def test_a_housing_has_its_damping_sensors_and_masses() -> None:
     solved = solve_housing(case)
     hertz = solved.modes.frequencies_hz
     assert solved.damping_ratios == pytest.approx(np.interp(hertz, [500.0, 2500.0], [0.01, 0.05]))
-    assert solved.attached_mass == pytest.approx(3.0)
+    assert solved.housing.attached_mass == pytest.approx(3.0)
     assert solved.sensors["cover"].direction.tolist() == [0.0, -1.0, 0.0]
     assert solved.sensors["wall"].direction.tolist() == [1.0, 0.0, 0.0]
     # Three orders of response attached to thirty motions, less what depends on others.

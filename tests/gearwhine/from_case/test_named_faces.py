@@ -4,16 +4,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from case_housings import mesh_of
 
 import gearwhine as gw
 from gearwhine.case import CaseError, load_case
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.housing.acoustics.radiating_surface import RadiatingSurface
 from gearwhine.housing.acoustics.surface_velocity import surface_velocity
 from gearwhine.housing.acoustics.wrapping import wrap
 from gearwhine.housing.fem.surface import flat_face_names
+from gearwhine.housing.updating.housing_change import face_changes
 from gearwhine.meshes import Mesh, write_mesh
-from gearwhine.solve.sensitivity.housing_changes import face_changes
 
 CASE = """
 [material.steel]
@@ -44,7 +44,7 @@ def write(tmp_path: Path, block_of: Callable[..., Mesh]) -> Callable[[str], Path
 def test_a_face_has_one_name_everywhere(write: Callable[[str], Path]) -> None:
     """By its point, else by direction and middle: in the sound as in the sensitivities."""
     case = gw.load(write('[[housing.face]]\nname = "lid"\nat = ["120 mm", "100 mm", "20 mm"]\n')).case
-    mesh = build_mesh(case)
+    mesh = mesh_of(case)
     names = {face.name for face in flat_face_names(mesh)}
     assert names == {
         "lid",
@@ -54,7 +54,7 @@ def test_a_face_has_one_name_everywhere(write: Callable[[str], Path]) -> None:
         "-z at 100, 50, 0 mm",
         "+z at 100, 50, 50 mm",
     }
-    assert {change.parameter for change in face_changes(case, mesh)} <= names
+    assert {change.parameter for change in face_changes(mesh, ())} <= names
     surface: RadiatingSurface = wrap(mesh, 0.02, 0.02)
     assert set(surface_velocity(mesh, surface).face_of_triangles()) == names
 
@@ -73,10 +73,10 @@ def test_a_face_has_one_name_everywhere(write: Callable[[str], Path]) -> None:
 def test_points_beside_the_surface_are_refused(write: Callable[[str], Path], name: str, at: str, said: str) -> None:
     case = gw.load(write(f'[[housing.face]]\nname = "{name}"\nat = {at}\n')).case
     if not said:
-        assert name in build_mesh(case).surfaces
+        assert name in mesh_of(case).surfaces
         return
     with pytest.raises(CaseError) as refused:
-        build_mesh(case)
+        mesh_of(case)
     assert said in str(refused.value)
 
 
@@ -88,7 +88,7 @@ def test_faces_of_a_box_have_names_already() -> None:
 def test_inner_sides_of_walls_have_the_names_of_their_outer_sides() -> None:
     """A box of walls of 10 mm: six outer sides by name, six inner ones behind them; feet have no inner side."""
     case = load_case("steel-box", ["housing.box.mesh_size=60 mm"]).case
-    names = [face.name for face in flat_face_names(build_mesh(case))]
+    names = [face.name for face in flat_face_names(mesh_of(case))]
     inner = sorted(name for name in names if name.startswith("inside of "))
     assert [name.split()[2] for name in inner] == ["back", "bottom", "front", "left", "right", "top"]
     assert "inside of bottom at 0, 10, 0 mm" in inner

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from case_housings import materials_on, mesh_of
 
 from gearwhine.case import case_document, load_case, parse_case
-from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import ParametricHousing, _followed, fitted_case
 from gearwhine.housing import HousingError, assemble
 from gearwhine.housing.updating.parameters import coordinate_bounds, values_at
@@ -86,8 +86,8 @@ def test_where_the_neighbours_mesh_would_fold_a_new_one_is_made(designs: Paramet
     followed = _followed(start, case)
     assert followed is not None
     with pytest.raises(HousingError, match="folded"):
-        assemble(*materials_of(case, followed))
-    assert np.array_equal(designs.solve(narrow, start).mesh.points, build_mesh(case).points)
+        assemble(*materials_on(case, followed))
+    assert np.array_equal(designs.solve(narrow, start).mesh.points, mesh_of(case).points)
 
 
 def test_a_design_that_is_no_sound_housing_is_said(designs: ParametricHousing) -> None:

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from case_housings import mesh_of
 
 from gearwhine.case import CadFile, load_case
-from gearwhine.from_case.mesh import bores_along_axes, build_mesh
+from gearwhine.from_case.mesh import bores_along_axes
 from gearwhine.meshes import GeometryError, find_bores, mesh_cad
 from gearwhine.meshes.gmsh_meshing import gmsh_session
 
@@ -47,7 +48,7 @@ def test_shafts_along_x_of_the_file_lie_along_z_of_the_machine(bored: Path) -> N
         'housing.seat=[{name="main", center=["45 mm", "30 mm", "60 mm"], diameter="40 mm"}]',
     ]
     case = load_case("steel-box", [*changes, "housing.support=", "housing.sensor="]).case
-    mesh = build_mesh(case)
+    mesh = mesh_of(case)
     np.testing.assert_allclose(mesh.bounds, [[0.0, 0.0, 0.0], [0.09, 0.06, 0.12]], atol=1e-9)
     assert "main" in mesh.surfaces
     rows = bores_along_axes(mesh)

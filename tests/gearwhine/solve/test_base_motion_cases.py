@@ -16,7 +16,7 @@ from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
-from gearwhine.solve.housing_modes import base_participation, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of
 
 BASE = {
@@ -74,10 +74,10 @@ def test_a_free_housing_takes_part_as_a_rigid_body() -> None:
     document["housing"]["box"]["mesh_size"] = "60 mm"
     case = parse_case(document)
     solved = solve_housing(case)
-    held = base_participation(case, solved.mesh, solved.modes)
+    held = solved.participation
     product = held.T @ held
     np.testing.assert_allclose(product[:3, :3], solved.mass * np.eye(3), atol=1e-6 * solved.mass)
-    x, y, z = np.array(solved.checks["health"]["center_of_gravity_m"])
+    x, y, z = np.array(solved.health.body.center)
     moments = solved.mass * np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
     np.testing.assert_allclose(product[:3, 3:], moments, atol=1e-6 * solved.mass)
 

@@ -10,10 +10,10 @@ from gearwhine.case import Case, case_document, load_case, parse_case
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, first_touch, solve_over_torques
 from gearwhine.coupling.gears import loaded_transmission_error, mesh_stiffness
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
+from gearwhine.coupling.sweep.resonances import find_resonances
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.results.system import sections
 from gearwhine.solve.gear_pairs import analyse_pairs
-from gearwhine.sweep.resonances import find_resonances
 
 HELICAL = (
     "gear.*.module=3.066814498467792 mm",  # at 15 degrees the same centre distance
@@ -91,7 +91,7 @@ def test_transmissibility_lines_and_resonances_of_a_braked_machine_are_those_of_
             bearing["stiffness"] = {"matrix": np.diag([1.2e8, 1.2e8, 5e7, 0.0, 0.0]).tolist()}
         study = gw.build(**document)
         result, machine = study.system(), study.machine.assembled
-        resonances = find_resonances(study.case, machine, 2500.0)
+        resonances = find_resonances(machine, 2500.0)
         assert resonances is not None
         (response,) = result.solved.responses
         (force,) = response.mesh_force.values()

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearwhine.analyses.housing import compare
+import gearwhine as gw
 from gearwhine.case import load_case
 from gearwhine.housing.correlation.comparison import Comparison, ModePair
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
 from gearwhine.housing.measured.survey_data import SurveyData
 from gearwhine.housing.measured.survey_files import write_survey
-from gearwhine.solve.comparison import comparison_warnings
+from gearwhine.housing.modal_test import comparison_warnings
 from gearwhine.solve.housing_modes import solve_housing
 
 pytestmark = pytest.mark.usefixtures("unrendered")
@@ -33,9 +33,8 @@ def test_a_survey_in_a_file_is_paired_by_shape(tmp_path: Path) -> None:
     shapes = solved.survey.normal_motion(solved.modes.shapes)[found]
     modes = MeasuredModes(0.99 * solved.modes.frequencies[found], np.full(4, 0.01), shapes + 0j, geometry)
     write_survey(tmp_path / "survey.uff", SurveyData(geometry=geometry, modes=modes))
-    case = load_case("small-gearbox", (*COARSE, f'measured={{file="{tmp_path}/survey.uff"}}')).case
     out = tmp_path / "out"
-    found = compare(case, folder=out)
+    found = gw.load("small-gearbox", (*COARSE, f'measured={{file="{tmp_path}/survey.uff"}}')).compare()
     found.write(out)
     document = found.document
     assert [pair["mode"] for pair in document["pairs"]] == [1, 2, 4, 5]

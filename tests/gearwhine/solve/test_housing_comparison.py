@@ -6,25 +6,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearwhine.case import CaseError, load_case
+from gearwhine.case import load_case
+from gearwhine.housing import HousingError, HousingModes
 from gearwhine.housing.correlation.comparison import Pairing
 from gearwhine.housing.measured import MeasuredGeometry, MeasuredModes
+from gearwhine.housing.modal_test import pair_modes
 from gearwhine.output import finite, json_text
 from gearwhine.output.terminal import shown_by
 from gearwhine.results.comparison import _survey, comparison_document, sections
-from gearwhine.solve.comparison import compare_housing, pair_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.comparison import compare_measured
+from gearwhine.solve.housing_modes import solve_housing
 
 CASE = load_case("small-gearbox", ("housing.box.mesh_size=30 mm", "housing.frequency_limit=4 kHz")).case
 
 
 @pytest.fixture(scope="module")
-def solved() -> SolvedHousing:
+def solved() -> HousingModes:
     return solve_housing(CASE)
 
 
 @pytest.fixture(scope="module")
-def twin(solved: SolvedHousing) -> tuple[MeasuredModes, np.ndarray]:
+def twin(solved: HousingModes) -> tuple[MeasuredModes, np.ndarray]:
     """All modes but the third and the last two, 2 % lower, the second of them found twice; and the model's shapes."""
     shapes = solved.survey.normal_motion(solved.modes.shapes)
     frequencies = solved.modes.frequencies
@@ -42,7 +44,7 @@ def twin(solved: SolvedHousing) -> tuple[MeasuredModes, np.ndarray]:
     return MeasuredModes(found[order], None, test[order], geometry), shapes
 
 
-def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray]) -> None:
+def test_the_twin_is_paired_by_shape(solved: HousingModes, twin: tuple[MeasuredModes, np.ndarray]) -> None:
     comparison = pair_modes(solved, *twin)
     document = json.loads(json_text(finite(comparison_document(comparison, solved))))
     count = len(twin[0].frequencies)
@@ -62,7 +64,7 @@ def test_the_twin_is_paired_by_shape(solved: SolvedHousing, twin: tuple[Measured
 
 
 def test_the_screen_says_what_is_missing(
-    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
+    solved: HousingModes, twin: tuple[MeasuredModes, np.ndarray], capsys: pytest.CaptureFixture[str]
 ) -> None:
     shown_by(sections)(finite(comparison_document(pair_modes(solved, *twin), solved)))
     out = capsys.readouterr().out
@@ -74,26 +76,26 @@ def test_the_screen_says_what_is_missing(
 
 
 def test_a_model_known_less_high_than_the_test_is_refused(
-    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray]
+    solved: HousingModes, twin: tuple[MeasuredModes, np.ndarray]
 ) -> None:
     measured, shapes = twin
     high = replace(measured, frequencies=1.2 * measured.frequencies)
-    with pytest.raises(CaseError, match="are paired with the model's up to there"):
+    with pytest.raises(HousingError, match="are paired with the model's up to there"):
         pair_modes(solved, high, shapes)
 
 
-def test_measured_frequencies_alone_are_paired_as_the_case_says(solved: SolvedHousing) -> None:
+def test_measured_frequencies_alone_are_paired_as_the_case_says(solved: HousingModes) -> None:
     given = MeasuredModes(2.0 * np.pi * np.array(CASE.measured.frequencies))
     comparison = pair_modes(solved, given, pairing="dominance")
     assert comparison.shapes is None
     assert comparison.gap is not None
-    assert comparison.pairs == compare_housing(CASE, solved).pairs  # the case asks for dominance
+    assert comparison.pairs == compare_measured(CASE.measured, solved).comparison.pairs  # the case asks for dominance
     assert pair_modes(solved, given).pairing == "nearest"
 
 
 @pytest.mark.parametrize("pairing", ["order", "nearest", "dominance"])
 def test_pairs_of_frequencies_have_the_mac_of_measured_shapes(
-    solved: SolvedHousing, twin: tuple[MeasuredModes, np.ndarray], pairing: Pairing
+    solved: HousingModes, twin: tuple[MeasuredModes, np.ndarray], pairing: Pairing
 ) -> None:
     by_shape, other = (pair_modes(solved, *twin, pairing=name) for name in ("shapes", pairing))
     document = json.loads(json_text(finite(comparison_document(other, solved))))

@@ -10,9 +10,9 @@ from reducer_case import reducer
 
 import gearwhine as gw
 from gearwhine.analyses.result import Result
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.output.terminal import show
 from gearwhine.results.operating_point import sections
-from gearwhine.solve.operating_point import SolvedLoad
 
 pytestmark = pytest.mark.slow
 

@@ -23,9 +23,10 @@ from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
+from gearwhine.housing import HousingModes
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import reduce_housing
 
 HELIX = 15.0  # degrees
 SENSOR = "right wall"
@@ -59,7 +60,7 @@ class Gearbox:
     """A case with its solved pairs, and the linear response by the lines of `load`."""
 
     case: Case
-    housing: SolvedHousing
+    housing: HousingModes
     pairs: tuple[LoadedGearPair, ...]
     model: LineModel
 
@@ -74,19 +75,19 @@ class Gearbox:
 
 
 @pytest.fixture(scope="module")
-def housing() -> SolvedHousing:
+def housing() -> HousingModes:
     return solve_housing(helical_case(GIVEN))
 
 
-def gearbox(housing: SolvedHousing, relief: TipRelief | None, *more: str) -> Gearbox:
+def gearbox(housing: HousingModes, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
     pairs = solve_gears(case)
-    point = describe_machine(case, full_housing_component(case, housing)).operating_point()
+    point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 
 
 @pytest.fixture(scope="module")
-def given(housing: SolvedHousing) -> Gearbox:
+def given(housing: HousingModes) -> Gearbox:
     return gearbox(housing, GIVEN)
 
 
@@ -140,7 +141,7 @@ def test_the_level_of_the_given_flanks_is_that_of_their_lines(given: Gearbox, ai
     ids=["backward", "braking"],
 )
 def test_the_level_is_that_of_the_lines_whichever_way_the_gears_turn_or_carry(
-    housing: SolvedHousing, other_way: tuple[str, ...]
+    housing: HousingModes, other_way: tuple[str, ...]
 ) -> None:
     other = gearbox(housing, GIVEN, *other_way)
     (aim,) = relief_aims(other.case, other.pairs)
@@ -166,7 +167,7 @@ def test_the_parts_of_a_line_are_its_causes_alone(given: Gearbox) -> None:
         assert by_error == pytest.approx(through / spring * errors[n - 1], rel=1e-6)
 
 
-def test_torque_ripple_of_a_mesh_s_order_is_no_part_of_its_lines(given: Gearbox, housing: SolvedHousing) -> None:
+def test_torque_ripple_of_a_mesh_s_order_is_no_part_of_its_lines(given: Gearbox, housing: HousingModes) -> None:
     """Lines and their parts are by the meshes, which the ripple leaves as they are."""
     (teeth,) = {gear.teeth for gear in given.case.gear}
     ripple = f"operation.ripple=[{{ amplitude = '30 N*m', order = {teeth} }}]"
@@ -190,7 +191,7 @@ def test_transmission_error_alone_is_not_that_level(given: Gearbox, aim: SensorL
 
 @pytest.mark.parametrize("relief", [None, TipRelief(25e-6, length=4e-3)])
 def test_the_level_of_other_flanks_is_that_of_the_machine_with_them(
-    housing: SolvedHousing, aim: SensorLevel, relief: TipRelief | None
+    housing: HousingModes, aim: SensorLevel, relief: TipRelief | None
 ) -> None:
     """By the mesh stiffness of the other flanks too, though the machine of the aim has that of the given ones."""
     other = gearbox(housing, relief)
@@ -199,7 +200,7 @@ def test_the_level_of_other_flanks_is_that_of_the_machine_with_them(
 
 @pytest.mark.slow
 def test_the_best_relief_is_quieter_than_others_by_their_lines(
-    housing: SolvedHousing, given: Gearbox, aim: SensorLevel
+    housing: HousingModes, given: Gearbox, aim: SensorLevel
 ) -> None:
     (pair,) = solve_over_torques(analyse_pairs(given.case, given.pairs), aims=[aim])
     assert pair.optimum is not None

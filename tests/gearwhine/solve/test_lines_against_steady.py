@@ -17,7 +17,7 @@ from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import full_housing_component
+from gearwhine.solve.machine import reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def test_lines_are_those_of_the_motion_where_the_mesh_hardly_varies(case: Case) 
     housing = solve_housing(case)
     pairs = solve_gears(case)
     machine = coupled(case, housing)
-    point = describe_machine(case, full_housing_component(case, housing)).operating_point()
+    point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     drive, _ = machine.system.contacts
     assert drive.contact.faces is not None
     assert drive.contact.faces.shared.size

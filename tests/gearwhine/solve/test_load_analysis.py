@@ -13,11 +13,12 @@ import gearwhine as gw
 from gearwhine.analyses.result import Result
 from gearwhine.case import CaseError
 from gearwhine.cli import run_command
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.output.terminal import show_section
 from gearwhine.results import chapters_of
 from gearwhine.results.operating_point import sections
 from gearwhine.rotors.rolling_bearings.rows import STEEL
-from gearwhine.solve.operating_point import SolvedLoad, load_warnings
 
 WIDEST = 100  # columns of the terminal
 # Pinion of `helical-pair`: 23 teeth of module 3 mm, 15 degrees of helix, 20 degrees of normal pressure angle.

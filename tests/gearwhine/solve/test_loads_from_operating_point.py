@@ -18,8 +18,7 @@ from gearwhine.coupling.gears import loaded_transmission_error
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibrium
-from gearwhine.solve.machine import described_machine, solve_pairs
-from gearwhine.solve.operating_point import find_load
+from gearwhine.solve.machine import described_machine, load_of_case, solve_pairs
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
 from gearwhine.sweep.points import code_digest
@@ -211,7 +210,7 @@ def test_a_sweep_over_torque_finds_every_points_equilibrium(tmp_path: Path) -> N
         for bearing in load["bearings"]:
             force = point.bearing(bearing["name"]).force[:2]
             assert bearing["force_n"][:2] == pytest.approx(force)
-            mean = result.bearing_force_mean[bearing["name"]][:2]
+            mean = result.motion.bearing_force_mean[bearing["name"]][:2]
             assert mean == pytest.approx(force, abs=0.02 * float(np.hypot(*force)))
         swept.append(SweptPoint(one, result, resumed=False))
     data = collected_sweep(given, keys, swept)
@@ -240,14 +239,14 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
-    found, told = find_load(parse_case(changed), described_machine(parse_case(changed), None))
+    found, told = load_of_case(parse_case(changed), described_machine(parse_case(changed), None))
     assert found is None
     assert told[0]["message"].startswith("no operating point is found")
     assert told[0]["message"].endswith(": no static equilibrium of the machine")
     with pytest.raises(EquilibriumNotFoundError):
-        find_load(parse_case(document()), described_machine(parse_case(document()), None))
+        load_of_case(parse_case(document()), described_machine(parse_case(document()), None))
     idle = parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}})
-    assert find_load(idle, described_machine(idle, None)) == (None, [])
+    assert load_of_case(idle, described_machine(idle, None)) == (None, [])
 
 
 def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
@@ -345,7 +344,7 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
     given["rotor"][1]["axis"] = ["72.5 mm", "0 m"]
     given["bearing"] = [bearing | ACROSS for bearing in given["bearing"] if bearing["name"].endswith("left")]
     case = parse_case(given)
-    load, (entry,) = find_load(case, described_machine(case, None))
+    load, (entry,) = load_of_case(case, described_machine(case, None))
     assert load is None
     assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
     (pair,), _ = solve_pairs(case, None)

@@ -8,7 +8,7 @@ import pytest
 import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.solve.housing_modes import mode_cache_inputs, solve_housing
+from gearwhine.solve.housing_modes import given_housing, solve_housing
 from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 CASE = """
@@ -44,7 +44,7 @@ def test_elements_get_smaller_until_the_accuracy_is_reached(tmp_path: Path) -> N
     assert solved.modes.discretisation_errors.max() == last["largest_error"]
     assert [line for line in lines if "largest estimated error" in line][-1].endswith("9 % is wanted")
     assert not [entry for entry in solved.warnings if entry["name"] == "discretisation"]
-    assert solved.record.key == content_key(mode_cache_inputs(case))
+    assert solved.record.key == content_key(given_housing(case).cache_inputs())
     fixed = solve_housing(_case(tmp_path, size=f"mesh_size = {last['mesh_size_m']!r}"))
     assert (fixed.modes.frequencies == solved.modes.frequencies).all()
     assert fixed.refinement == []

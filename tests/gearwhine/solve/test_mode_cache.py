@@ -7,23 +7,23 @@ from typing import Any
 
 import meshio
 import pytest
+from case_housings import mesh_of
 
 import gearwhine
 from gearwhine.case import Case, Housing, case_document, load_case, parse_case
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.housing.modes import eigensolver
 from gearwhine.housing.modes.eigensolver import arpack_modes
 from gearwhine.housing.storage.netcdf import content_key
 from gearwhine.meshes import write_mesh
 from gearwhine.numerics.source_digest import _source_files, source_digest
-from gearwhine.solve.housing_modes import MODES_CODE, mode_cache_inputs, solve_housing
+from gearwhine.solve.housing_modes import MODES_CODE, given_housing, solve_housing
 
 CASE = "nasa-gear-noise-rig"
 
 
 def key(case: Case) -> str:
-    mesh = build_mesh(case) if case.housing is not None and case.housing.mesh is not None else None
-    return content_key(mode_cache_inputs(case, mesh))
+    mesh = mesh_of(case) if case.housing is not None and case.housing.mesh is not None else None
+    return content_key(given_housing(case).cache_inputs(mesh))
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +125,7 @@ def of_mesh(file: Path, **changes: Any) -> Case:
 
 def test_a_mesh_file_counts_by_its_content(tmp_path: Path) -> None:
     """Its name, place and format do not matter; one number in it does, also in a file that it refers to."""
-    mesh = build_mesh(load_case("steel-box", ['housing.box.mesh_size="60 mm"']).case)
+    mesh = mesh_of(load_case("steel-box", ['housing.box.mesh_size="60 mm"']).case)
     files = [tmp_path / "one.msh", tmp_path / "elsewhere" / "other.msh"]
     for file in files:
         write_mesh(mesh, file)
@@ -157,7 +157,7 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
     def of_cad(path: Path) -> str:
         cad = given.cad.model_copy(update={"file": path})
         return content_key(
-            mode_cache_inputs(case.model_copy(update={"housing": given.model_copy(update={"cad": cad})}))
+            given_housing(case.model_copy(update={"housing": given.model_copy(update={"cad": cad})})).cache_inputs()
         )
 
     assert of_cad(file) == of_cad(copy)
@@ -166,7 +166,7 @@ def test_another_file_counts_by_its_bytes(tmp_path: Path) -> None:
 
 
 def test_the_inputs_say_what_the_key_is_made_of() -> None:
-    inputs = mode_cache_inputs(load_case("steel-box").case)
+    inputs = given_housing(load_case("steel-box").case).cache_inputs()
     assert set(inputs) == {"housing", "bearings", "attachment_orders", "material", "versions", "source"}
     assert inputs["housing"]["box"]["wall"] == "0.01 m"
     assert inputs["material"]["steel"]["density"] == "7850 kg/m^3"

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from case_housings import mesh_of
 from coupled_cases import coupled
 from matplotlib.figure import Figure
 
@@ -15,9 +16,9 @@ import gearwhine
 from gearwhine.case import CaseError, load_case, swept_keys
 from gearwhine.case.input_files import file_contents
 from gearwhine.coupling.analyses.transient import solve_transient
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.figures.machine.sweep import _draw_mesh_orders
 from gearwhine.figures.spectra import draw_waterfall
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.meshes import read_mesh, write_mesh
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of, reduce_housing
@@ -55,7 +56,7 @@ def test_a_point_is_another_one_where_a_file_read_with_its_mesh_has_changed(tmp_
     begin, end = source.index("[housing.box]"), source.index("[[housing.seat]]")
     case_file = tmp_path / "meshed.toml"
     case_file.write_text(f'{source[:begin]}[housing.mesh]\nfile = "deck.inp"\n\n{source[end:]}')
-    write_mesh(build_mesh(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
+    write_mesh(mesh_of(load_case("small-gearbox", COARSE[:1]).case), tmp_path / "box.inp")
     (tmp_path / "deck.inp").write_text("*INCLUDE, INPUT=box.inp\n")
     loaded = load_case(str(case_file))
     keys = swept_keys(loaded.case, ["operation.torque=50 N*m,60 N*m"])
@@ -100,10 +101,11 @@ def test_a_point_is_the_main_job_bit_for_bit(solved: tuple) -> None:
     point, housing, result = solved
     machine = coupled(point.case, housing)
     whole = solve_transient(machine, plan_of(point.case))
+    motion = result.motion
     for name, spectrum in whole.sensor_spectra.items():
-        np.testing.assert_array_equal(result.sensor_spectra[name], spectrum.amplitude[: result.orders.size])
+        np.testing.assert_array_equal(motion.sensor_spectra[name], spectrum.amplitude[: motion.orders.size])
     # Orders are cycles for each turn: one turn is recorded, so they are whole numbers.
-    assert result.orders == pytest.approx(np.arange(result.orders.size), abs=1e-9)
+    assert motion.orders == pytest.approx(np.arange(motion.orders.size), abs=1e-9)
 
 
 def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
@@ -112,16 +114,17 @@ def test_a_point_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> N
     back = read_point(tmp_path, point)
     assert isinstance(back, PointResult)
     assert back.document == result.document
+    found, written = back.motion, result.motion
     for group in ("sensor_spectra", "force_spectra", "bearing_force_mean", "bearing_force_rms"):
-        assert list(getattr(back, group)) == list(getattr(result, group))
-        for name, values in getattr(result, group).items():
-            np.testing.assert_array_equal(getattr(back, group)[name], values)
-    np.testing.assert_array_equal(back.orders, result.orders)
-    assert result.resonances is not None
-    assert back.resonances is not None
-    assert result.resonances.mode_rates.shape[2] == result.resonances.line_rates.shape[1] > 0
-    for field in fields(result.resonances):
-        np.testing.assert_array_equal(getattr(back.resonances, field.name), getattr(result.resonances, field.name))
+        assert list(getattr(found, group)) == list(getattr(written, group))
+        for name, values in getattr(written, group).items():
+            np.testing.assert_array_equal(getattr(found, group)[name], values)
+    np.testing.assert_array_equal(found.orders, written.orders)
+    assert written.resonances is not None
+    assert found.resonances is not None
+    assert written.resonances.mode_rates.shape[2] == written.resonances.line_rates.shape[1] > 0
+    for field in fields(written.resonances):
+        np.testing.assert_array_equal(getattr(found.resonances, field.name), getattr(written.resonances, field.name))
     # Another content under the same name is not this point, nor is half a file.
     assert read_point(tmp_path, replace(point, key="another")) is None
     file = tmp_path / "points" / point.file
@@ -148,7 +151,7 @@ def test_a_damaged_point_is_no_point(solved: tuple, tmp_path: Path) -> None:
     assert read_point(tmp_path, point) is not None
     # Whoever reads NetCDF reads it.
     with xr.open_dataset(file) as opened:
-        np.testing.assert_array_equal(opened["order"], result.orders)
+        np.testing.assert_array_equal(opened["order"], result.motion.orders)
 
 
 def test_a_failure_on_file_reads_back_the_same(solved: tuple, tmp_path: Path) -> None:
@@ -169,12 +172,13 @@ def test_spectra_of_unlike_lengths_meet_on_their_orders(solved: tuple) -> None:
     point, _, result = solved
     case = load_case("small-gearbox", COARSE).case
     keys = swept_keys(case, ["transient.discard=1,0"])
-    finer = replace(
-        result,
+    motion = replace(
+        result.motion,
         orders=np.arange(5) / 2.0,
-        sensor_spectra={name: np.arange(5.0) for name in result.sensor_spectra},
-        force_spectra={name: np.arange(5.0) for name in result.force_spectra},
+        sensor_spectra={name: np.arange(5.0) for name in result.motion.sensor_spectra},
+        force_spectra={name: np.arange(5.0) for name in result.motion.force_spectra},
     )
+    finer = replace(result, motion=motion)
     swept = [
         SweptPoint(replace(point, place=(0,)), result, False),
         SweptPoint(replace(point, place=(1,)), finer, False),
@@ -183,7 +187,7 @@ def test_spectra_of_unlike_lengths_meet_on_their_orders(solved: tuple) -> None:
     assert data.order.values[:5].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
     top = data.sensor_spectrum.sel(sensor="top")
     np.testing.assert_array_equal(top[1, :5], np.arange(5.0))
-    np.testing.assert_array_equal(top[0, [0, 2, 4]], result.sensor_spectra["top"][:3])
+    np.testing.assert_array_equal(top[0, [0, 2, 4]], result.motion.sensor_spectra["top"][:3])
     assert np.isnan(top[0, [1, 3]]).all()
     assert np.isnan(top[1, 5:]).all()
 
@@ -238,12 +242,14 @@ def made_up(number: int) -> PointResult:
             "sensors": [{"name": "top", "rms_m_per_s2": 7.0 * number, "peaks": peaks}],
             "gear_pairs": pairs,
         },
-        orders=np.array([0.0, 1.0, 2.5]),
-        sensor_spectra={"top": number + np.array([0.0, 1.0, 2.0])},
-        force_spectra={"a -> b": number + np.array([3.0, 4.0, 5.0]), "c -> d": number + np.array([6.0, 7.0, 8.0])},
-        bearing_force_mean={"left": load, "right": -load},
-        bearing_force_rms={"left": 10.0 * load, "right": 20.0 * load},
-        window="hann",
+        motion=ReducedMotion(
+            orders=np.array([0.0, 1.0, 2.5]),
+            sensor_spectra={"top": number + np.array([0.0, 1.0, 2.0])},
+            force_spectra={"a -> b": number + np.array([3.0, 4.0, 5.0]), "c -> d": number + np.array([6.0, 7.0, 8.0])},
+            bearing_force_mean={"left": load, "right": -load},
+            bearing_force_rms={"left": 10.0 * load, "right": 20.0 * load},
+            window="hann",
+        ),
     )
 
 

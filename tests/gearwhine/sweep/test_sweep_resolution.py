@@ -13,12 +13,14 @@ import gearwhine as gw
 from gearwhine.case import SweptKey, case_document, dump_case
 from gearwhine.case.swept_keys import parse_over
 from gearwhine.coupling import amplitude_spectrum
+from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
+from gearwhine.coupling.sweep.resonances import PLACES_ABOUT_MODE, SOUND, Resonances
 from gearwhine.output.quantity import document_of
 from gearwhine.output.sections import Finding, Table
 from gearwhine.results.first_page import first_page
 from gearwhine.results.sweep import PEAK, sections
-from gearwhine.sweep.resolution import MissedPeak, missed_peaks, over_with, peak_warnings, speeds_to_add
-from gearwhine.sweep.resonances import PLACES_ABOUT_MODE, SOUND, Resonances
+from gearwhine.sweep.resolution import missed_peaks, over_with, peak_warnings
 from gearwhine.sweep.solution import PointResult
 
 pytestmark = pytest.mark.slow
@@ -62,7 +64,8 @@ def point(number: int, rpm: float, found: Resonances, *, other: float = 0.0, nat
     heard = float(level(ORDER * abs(rpm) / 60.0, natural))
     line = {"order": ORDER, "sound_power_db": heard, "kind": "mesh", "name": f"1× {TEETH}"}
     total = 10.0 * np.log10(10.0 ** (0.1 * heard) + 10.0 ** (0.1 * other))
-    result = PointResult({"sound": {"lines": [line], "total_db": total}}, np.zeros(0), resonances=found)
+    motion = ReducedMotion(np.zeros(0), resonances=found)
+    result = PointResult({"sound": {"lines": [line], "total_db": total}}, motion)
     case = SimpleNamespace(operation=SimpleNamespace(speed=rpm * np.pi / 30.0))
     place = SimpleNamespace(case=case, place=(number,), texts=(f"{rpm:g} rpm",))
     return SimpleNamespace(point=place, outcome=result)
@@ -105,7 +108,7 @@ def test_a_line_that_the_linear_response_does_not_make_is_not_followed() -> None
     """A mesh that hardly excites, beside another cause of the same order: 30 dB above all that the mesh could do."""
     keys, points = swept(1400.0, 1650.0)
     for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
-        object.__setattr__(one.outcome, "resonances", resonances(rpm, over=30.0))
+        object.__setattr__(one.outcome.motion, "resonances", resonances(rpm, over=30.0))
     assert missed_peaks(keys, points) == []
 
 
@@ -127,7 +130,7 @@ def test_the_sound_of_a_peak_is_radiated_as_the_lines_are() -> None:
     """A mode that radiates 4 dB more than even walls would: at both points, from which the peak is told, less so."""
     keys, points = swept(1400.0, 1650.0)
     for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
-        found = one.outcome.resonances
+        found = one.outcome.motion.resonances
         rates = 1e4 * np.sqrt(size(ORDER * rpm / 60.0))
         object.__setattr__(found, "mode_rates", np.full((1, 1, 1), 1e4 + 0j))
         object.__setattr__(found, "line_rates", np.full((1, 1), rates + 0j))
@@ -143,7 +146,7 @@ def of_a_sensor(points: list[Any], rpms: tuple[float, ...], order: float = ORDER
     """Leave a sensor, the roof, in place of the sound."""
     for one, rpm in zip(points, rpms, strict=True):
         one.outcome.document.pop("sound")
-        object.__setattr__(one.outcome, "resonances", resonances(rpm, output="roof", order=order))
+        object.__setattr__(one.outcome.motion, "resonances", resonances(rpm, output="roof", order=order))
 
 
 def test_without_sound_a_sensor_misses_its_peak() -> None:
@@ -152,8 +155,8 @@ def test_without_sound_a_sensor_misses_its_peak() -> None:
     of_a_sensor(points, (1400.0, 1650.0))
     for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
         amplitude = np.sqrt(2.0) * 1e-6 * 10.0 ** (level(ORDER * rpm / 60.0) / 20.0)
-        object.__setattr__(one.outcome, "orders", np.array([0.0, 27.0, ORDER, 29.0]))
-        object.__setattr__(one.outcome, "sensor_spectra", {"roof": np.array([1e9, 0.0, amplitude, 0.0])})
+        object.__setattr__(one.outcome.motion, "orders", np.array([0.0, 27.0, ORDER, 29.0]))
+        object.__setattr__(one.outcome.motion, "sensor_spectra", {"roof": np.array([1e9, 0.0, amplitude, 0.0])})
     (peak,) = missed_peaks(keys, points)
     assert peak.output == "roof"
     assert peak.level_db == pytest.approx(90.0, abs=0.05)
@@ -168,14 +171,14 @@ def test_a_sensor_in_a_node_at_the_points_has_the_correction_of_all_sensors() ->
     keys, points = swept(1400.0, 1650.0)
     of_a_sensor(points, (1400.0, 1650.0))
     for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
-        found = one.outcome.resonances
+        found = one.outcome.motion.resonances
         amplitude = np.sqrt(2.0) * 1e-6 * 10.0 ** (level(ORDER * rpm / 60.0) / 20.0)
         object.__setattr__(found, "outputs", ("roof", "node"))
         object.__setattr__(found, "line_levels", np.concatenate([found.line_levels, found.line_levels - 80.0]))
         object.__setattr__(found, "levels_near", np.concatenate([found.levels_near, found.levels_near]))
-        object.__setattr__(one.outcome, "orders", np.array([0.0, 27.0, ORDER, 29.0]))
+        object.__setattr__(one.outcome.motion, "orders", np.array([0.0, 27.0, ORDER, 29.0]))
         spectra = {"roof": np.array([0.0, 0.0, amplitude, 0.0]), "node": np.array([0.0, 0.0, 1e-3 * amplitude, 0.0])}
-        object.__setattr__(one.outcome, "sensor_spectra", spectra)
+        object.__setattr__(one.outcome.motion, "sensor_spectra", spectra)
     (peak,) = missed_peaks(keys, points)
     assert peak.output == "node"
     assert peak.level_db == pytest.approx(90.0, abs=0.05)
@@ -193,9 +196,9 @@ def test_levels_of_a_sensor_are_the_same_under_either_window(window: Any, order:
     for one, rpm in zip(points, (1400.0, 1650.0), strict=True):
         amplitude = np.sqrt(2.0) * 1e-6 * 10.0 ** (level(order * rpm / 60.0) / 20.0)
         spectrum = amplitude_spectrum(amplitude * np.sin(2.0 * np.pi * order * turns), 1.0 / 400.0, window)
-        object.__setattr__(one.outcome, "orders", spectrum.frequencies)
-        object.__setattr__(one.outcome, "sensor_spectra", {"roof": spectrum.amplitude})
-        object.__setattr__(one.outcome, "window", window)
+        object.__setattr__(one.outcome.motion, "orders", spectrum.frequencies)
+        object.__setattr__(one.outcome.motion, "sensor_spectra", {"roof": spectrum.amplitude})
+        object.__setattr__(one.outcome.motion, "window", window)
     (peak,) = missed_peaks(keys, points)
     assert peak.level_db == pytest.approx(90.0, abs=0.05)
     louder = max(float(size(order * rpm / 60.0)) for rpm in (1400.0, 1650.0))
@@ -214,7 +217,7 @@ def with_modes(points: list[Any], *others: float) -> None:
     naturals = np.array(sorted([NATURAL, *others]))
     widths = RATIO * naturals
     for one in points:
-        found = one.outcome.resonances
+        found = one.outcome.motion.resonances
         near = level(naturals[:, None] + widths[:, None] * PLACES_ABOUT_MODE) - 3.0
         object.__setattr__(found, "frequencies", naturals)
         object.__setattr__(found, "half_widths", widths)

@@ -10,9 +10,11 @@ from sounding_gearbox import QUICK, sounding_gearbox, sounding_housing, swept_po
 
 from gearwhine.case.swept_keys import swept_keys
 from gearwhine.coupling.sound.solution import build_radiation
+from gearwhine.coupling.sweep.line_sound import interpolated_line_sound
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.sweep.solution import PointResult
-from gearwhine.sweep.sound import _interpolated, add_sound
+from gearwhine.sweep.sound import _entry, add_sound
 
 SPEEDS = (60.0, 90.0)  # of the first driver at the two points [Hz]
 # Of each point: order of the line, its name by the order, housing mode that moves, and its rate.
@@ -47,11 +49,13 @@ def sounds() -> list[dict[str, Any]]:
             rates[place, mode, place % 2] = rate
         outcome = PointResult(
             {},
-            np.zeros(0),
-            line_frequencies=np.array([order * speed for order, *_ in lines]),
-            line_rates=rates,
-            line_names=tuple(name for _, name, *_ in lines),
-            line_kinds=tuple("mesh" if "x" in name else "other" for _, name, *_ in lines),
+            ReducedMotion(
+                np.zeros(0),
+                line_frequencies=np.array([order * speed for order, *_ in lines]),
+                line_rates=rates,
+                line_names=tuple(name for _, name, *_ in lines),
+                line_kinds=tuple("mesh" if "x" in name else "other" for _, name, *_ in lines),
+            ),
         )
         turned = sounding_gearbox(QUICK | {"operation.speed": f"{60.0 * speed} rpm"}).case
         swept.append(swept_point(turned, f"{60.0 * speed} rpm", outcome))
@@ -125,9 +129,9 @@ def test_an_interpolated_line_has_the_figures_of_its_table() -> None:
     )
     radiation: Any = SimpleNamespace(method="boundary-elements", equivalent_power=lambda _: np.array([8e-6]))
     places = {"near": np.zeros(3), "far": np.ones(3)}
-    line = _interpolated(table, radiation, 1000.0, rates, places, 1)
+    line = interpolated_line_sound(table, radiation, 1000.0, rates, places)
     assert line is not None
-    entry = line.entry
+    entry = _entry(line, 1)
     assert entry["sound_power_db"] == pytest.approx(10.0 * np.log10(2e-6 / 1e-12), abs=1e-9)
     # A-weighting is nothing at 1 kHz, by its definition.
     assert entry["sound_power_db_a"] == pytest.approx(entry["sound_power_db"], abs=0.01)
@@ -145,4 +149,4 @@ def test_an_interpolated_line_has_the_figures_of_its_table() -> None:
         {"name": "housing mode 1", "share": pytest.approx(0.75)},
         {"name": "local compliance", "share": pytest.approx(0.25)},
     ]
-    assert _interpolated(table, radiation, 1001.0, rates, places, 1) is None
+    assert interpolated_line_sound(table, radiation, 1001.0, rates, places) is None

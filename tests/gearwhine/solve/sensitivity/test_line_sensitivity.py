@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from case_housings import materials_on, mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
@@ -20,25 +21,28 @@ from gearwhine.coupling.gears.loaded.transmission_error import (
 from gearwhine.coupling.linear import line_sensitivity
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.load_analysis import ranking
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
+from gearwhine.coupling.machine.components import component_of_housing
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
 from gearwhine.from_case.gear_pairs import solve_gears
 from gearwhine.from_case.machine import describe_machine
-from gearwhine.from_case.mesh import build_mesh, materials_of
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing import HousingModes
 from gearwhine.housing.material import element_constants
+from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
-from gearwhine.solve.sensitivity import ranking
-from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
-from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.sensitivity.housing_changes import case_changes, housing_changes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -78,23 +82,23 @@ def case() -> Case:
     return parse_case(document)
 
 
-Solved = tuple[SolvedHousing, OperatingPoint, SolvedLines]
+Solved = tuple[HousingModes, OperatingPoint, SolvedLines]
 
 
 def solve(case: Case, mesh: Mesh) -> Solved:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
         housing = solve_housing(case)
-    machine = describe_machine(case, full_housing_component(case, housing))
+    machine = describe_machine(case, reduce_housing(case, housing))
     point = machine.operating_point()
-    lines = solve_lines(case, machine, point, housing, silent, count=9)
+    lines = solve_lines(machine, point, housing, count=9)
     assert lines is not None
     return housing, point, lines
 
 
 @pytest.fixture(scope="module")
 def solved(case: Case) -> Solved:
-    return solve(case, build_mesh(case))
+    return solve(case, mesh_of(case))
 
 
 def chosen(lines: Sequence[Line]) -> list[Line]:
@@ -119,7 +123,7 @@ def test_the_whole_chain_by_the_housing(case: Case, solved: Solved) -> None:
     lines = chosen(found.lines)
     assert len(lines) == 4
     adjoints = [adjoint(point, found.model.by_static(one)) for one in lines]
-    fields = housing_fields(case, housing, point, adjoints)
+    fields = housing_fields(housing, point, adjoints)
     changes = case_changes(case, housing.mesh, PARAMETERS)
     rates, slopes = found.rates(fields, changes), slopes_of(changes)
     own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
@@ -159,7 +163,8 @@ class Scaled(RollingElementLaw):
 def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     """Amplitudes of the machine about another equilibrium, on the same modes."""
     _, _, found = solved
-    machine = describe_machine(case, full_housing_component(case, found.housing)).at_operating_point(point)
+    part = component_of_housing(found.housing, participates=False, with_coarser=False)
+    machine = describe_machine(case, part).at_operating_point(point)
     pairs = solve_gears(case, silent, {one.names: one.station_gap for one in point.pairs})
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
@@ -181,13 +186,13 @@ def test_the_equilibrium_changes_tangents_and_flanks(case: Case, solved: Solved,
         for entry in document["bearing"]:
             del entry["damping"]
         case = parse_case(document)
-        machine = describe_machine(case, full_housing_component(case, housing))
+        machine = describe_machine(case, reduce_housing(case, housing))
         point = machine.operating_point()
         assert all(load.mounted.damping_time > 0.0 for load in point.bearings)
-        lines = solve_lines(case, machine, point, housing, silent, count=9)
+        lines = solve_lines(machine, point, housing, count=9)
         assert lines is not None
         solved = housing, point, found = housing, point, lines
-    machine = describe_machine(case, full_housing_component(case, housing))
+    machine = describe_machine(case, reduce_housing(case, housing))
     name = point.bearings[0].name
     own = np.array(
         [adjoint(point, found.model.by_static(one)).by_bearing_stiffness(name) for one in chosen(found.lines)]
@@ -360,8 +365,9 @@ def test_short_steps_of_either_way_are_the_slope(case: Case, solved: Solved, mon
     monkeypatch.setattr(ranking, "_LENGTH_STEP", 1e-9)
     monkeypatch.setattr(ranking, "_RELATIVE_STEP", 1e-6)
     housing, point, _ = solved
-    machine = describe_machine(case, full_housing_component(case, housing))
-    found = ranking.solve_load_sensitivity(case, machine, point, housing)
+    machine = describe_machine(case, reduce_housing(case, housing))
+    changes, _ = housing_changes(case, housing.mesh)
+    found = ranking.solve_load_sensitivity(machine, point, housing, changes)
     kinds = {one.kind for one in found.influences}
     assert kinds == {"housing", "bearing stiffness", "bearing position"}
     for kind in kinds:
@@ -401,7 +407,7 @@ def test_the_damping_follows_the_modes() -> None:
 def test_the_density_of_even_strains(case: Case, solved: Solved) -> None:
     """Linear fields u = A x and (1 + 2i) B x have Re G = ω² ρ u · λ - σ(A) : ε(B); in the imaginary u it turns over."""
     mesh = solved[0].mesh
-    parted, material, materials = materials_of(case, mesh)
+    parted, material, materials = materials_on(case, mesh)
     constants = element_constants(parted, material, materials)
     gradient, other = np.random.default_rng(2).normal(size=(2, 3, 3))
     motion, against = mesh.points @ gradient.T, mesh.points @ other.T

@@ -6,25 +6,25 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from case_housings import mesh_of
 
 import gearwhine as gw
 from gearwhine.case import Case, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.case.box import FACES
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing import HousingModes
+from gearwhine.housing.updating.housing_change import by_changes, face_changes
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
+from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import described_machine, reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import (
-    by_case_parameters,
-    by_changes,
-    face_changes,
-    housing_fields,
+    case_changes,
     housing_parameters,
 )
 
@@ -61,12 +61,12 @@ def fitted(case: Case) -> FittedCase:
     return fitted_case(case, parameters=PARAMETERS)
 
 
-Solve = Callable[[Case, Mesh], tuple[SolvedHousing, OperatingPoint]]
+Solve = Callable[[Case, Mesh], tuple[HousingModes, OperatingPoint]]
 
 
 @pytest.fixture(scope="module")
 def solve() -> Solve:
-    def solved(case: Case, mesh: Mesh) -> tuple[SolvedHousing, OperatingPoint]:
+    def solved(case: Case, mesh: Mesh) -> tuple[HousingModes, OperatingPoint]:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
             housing = solve_housing(case)
@@ -77,15 +77,15 @@ def solve() -> Solve:
 
 @pytest.fixture(scope="module")
 def fields(case: Case, solve: Solve) -> StaticSensitivity:
-    housing, point = solve(case, build_mesh(case))
+    housing, point = solve(case, mesh_of(case))
     (pair,) = pair_adjoints(point)
-    return housing_fields(case, housing, point, list(pair.values()))
+    return housing_fields(housing, point, list(pair.values()))
 
 
 @pytest.mark.slow
 def test_numbers_of_the_housing(case: Case, fitted: FittedCase, fields: StaticSensitivity, solve: Solve) -> None:
     """Walls, bosses, a length with its seats, springs and a modulus together, along a direction: to 1e-5."""
-    own = by_case_parameters(case, fields, PARAMETERS)
+    own = by_changes(fields, case_changes(case, fields.mesh, PARAMETERS))
     meshed = MeshedParameters(fitted, fitted.start, case, fields.mesh)
     values = np.array([number.start for number in fitted.numbers])
     way = values * np.random.default_rng(1).normal(size=len(values))
@@ -111,21 +111,24 @@ def test_the_weight_of_the_housing(case: Case, solve: Solve) -> None:
     document["operation"]["gravity"] = [3.0, -9.81, 0.0]
     density = [UpdateParameter(name="density", keys=("material.iron.density",), range=("6000 kg/m^3", "8000 kg/m^3"))]
     fitted = fitted_case(parse_case(document), parameters=density)
-    mesh = build_mesh(case)
+    mesh = mesh_of(case)
     lighter, heavy, heavier = (solve(fitted.at([value]), mesh) for value in (7100.0, 7200.0, 7300.0))
     (pair,) = pair_adjoints(heavy[1])
-    fields = housing_fields(parse_case(document), *heavy, [pair["misalignment"]])
-    own = by_case_parameters(parse_case(document), fields, density)[0, 0]
+    weighed = parse_case(document)
+    fields = housing_fields(heavy[0], heavy[1], [pair["misalignment"]])
+    own = by_changes(fields, case_changes(weighed, mesh, density))[0, 0]
     either = [point.pairs[0].misalignment for _, point in (heavier, lighter)]
     assert own == pytest.approx((either[0] - either[1]) / 200.0, rel=1e-6)
 
 
 def test_material_on_a_face_is_a_thicker_wall(case: Case, fields: StaticSensitivity) -> None:
     """Of the bottom's inner face, against the wall's thickness, by which all nodes of the mesh move."""
-    changes = face_changes(case, fields.mesh)
+    seats = [seat.name for seat in case.housing.seat] if case.housing is not None else []
+    changes = face_changes(fields.mesh, seats)
     faces = dict(zip([change.parameter for change in changes], by_changes(fields, changes).T, strict=True))
     own = faces["inside of bottom at 0, 10, 0 mm"]
-    np.testing.assert_allclose(own[:2], by_case_parameters(case, fields, PARAMETERS[1:2])[:2, 0], rtol=0.05)
+    wall = by_changes(fields, case_changes(case, fields.mesh, PARAMETERS[1:2]))
+    np.testing.assert_allclose(own[:2], wall[:2, 0], rtol=0.05)
     # Outer faces have the names of the box's own surfaces, inner ones those of the walls too.
     inner = {name for name in faces if " at " in name}
     walls = {"left", "right", "bottom", "top", "back", "front"}

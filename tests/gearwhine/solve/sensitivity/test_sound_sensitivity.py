@@ -6,33 +6,36 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
+from case_housings import mesh_of
 from kept_mesh_stiffness import without_stiffness
 
 import gearwhine as gw
 from gearwhine.case import Case, CaseError, UpdateParameter, case_document, load_case, parse_case
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_sensitivity import LineModel
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
+from gearwhine.coupling.load_analysis.influences import LineChange
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.sound import solution
 from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.from_case.machine import describe_machine
-from gearwhine.from_case.mesh import build_mesh
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
+from gearwhine.housing import HousingModes
 from gearwhine.housing.acoustics.radiation import HousingRadiation
 from gearwhine.housing.acoustics.sound_levels import a_weighting
+from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.meshes import Mesh
 from gearwhine.meshes.shape_functions import shape_functions
-from gearwhine.numerics.progress import silent
 from gearwhine.output.sections import Table
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
-from gearwhine.solve.housing_modes import SolvedHousing, solve_housing
-from gearwhine.solve.machine import full_housing_component
-from gearwhine.solve.sensitivity.housing_changes import by_changes, case_changes, housing_fields, slopes_of
-from gearwhine.solve.sensitivity.influences import LineChange
-from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
+from gearwhine.solve.acoustics import acoustics_of
+from gearwhine.solve.housing_modes import solve_housing
+from gearwhine.solve.machine import reduce_housing
+from gearwhine.solve.sensitivity.housing_changes import case_changes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,7 +46,7 @@ PARAMETERS = [
     UpdateParameter(name="feet", keys=("housing.support.*.stiffness.y",), range=(0.5, 2.0), factor=True),
 ]
 
-Solved = tuple[SolvedHousing, OperatingPoint, SolvedLines]
+Solved = tuple[HousingModes, OperatingPoint, SolvedLines]
 
 
 def sounding(acoustics: dict[str, object]) -> Case:
@@ -58,18 +61,18 @@ def sounding(acoustics: dict[str, object]) -> Case:
     return parse_case(document)
 
 
-def solve_at_rest(case: Case, mesh: Mesh) -> tuple[SolvedHousing, Machine, OperatingPoint]:
+def solve_at_rest(case: Case, mesh: Mesh) -> tuple[HousingModes, Machine, OperatingPoint]:
     """Solve a case anew on a mesh as far as it is the same for all sounds: modes, machine and equilibrium."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
         housing = solve_housing(case)
-    machine = describe_machine(case, full_housing_component(case, housing))
+    machine = describe_machine(case, reduce_housing(case, housing))
     return housing, machine, machine.operating_point()
 
 
 def solve_sound(
     case: Case,
-    at_rest: tuple[SolvedHousing, Machine, OperatingPoint],
+    at_rest: tuple[HousingModes, Machine, OperatingPoint],
     base: HousingRadiation | None = None,
 ) -> Solved:
     """Solve the lines of a case, its radiating surface anew, or as one whose points keep their facets."""
@@ -77,7 +80,7 @@ def solve_sound(
     with pytest.MonkeyPatch.context() as patch:
         if base is not None:
             patch.setattr(solution, "build_radiation", lambda *_: on_same_facets(base, housing.mesh))
-        lines = solve_lines(case, machine, point, housing, silent)
+        lines = solve_lines(machine, point, housing, acoustics_of(case))
     assert lines is not None
     return housing, point, lines
 
@@ -112,7 +115,7 @@ def derivatives(case: Case, solved: Solved, model: LineModel) -> tuple[FloatArra
     """Derivatives of the lines by the parameters, shape (n_lines, n_parameters), of the housing, and their slopes."""
     housing, point, found = solved
     lines = [one.line for one in sound_lines(solved)]
-    fields = housing_fields(case, housing, point, [adjoint(point, model.by_static(one)) for one in lines])
+    fields = housing_fields(housing, point, [adjoint(point, model.by_static(one)) for one in lines])
     changes = case_changes(case, housing.mesh, PARAMETERS)
     rates, slopes = found.rates(fields, changes), slopes_of(changes)
     own = by_changes(fields, changes) + np.array([found.model.by_housing(one, rates) for one in lines]) / slopes
@@ -135,14 +138,14 @@ class Beside(NamedTuple):
     """A case without a sound at a part of the way by all parameters, and what is the same of it for all sounds."""
 
     case: Case
-    at_rest: tuple[SolvedHousing, Machine, OperatingPoint]
+    at_rest: tuple[HousingModes, Machine, OperatingPoint]
 
 
 @pytest.fixture(scope="module")
 def way() -> tuple[float, FloatArray, list[Beside]]:
     """A step, all parameters' parts of the way, and the case as it is, a step ahead and a step back."""
     case = sounding(CHAINS["erp"][0])
-    mesh = build_mesh(case)
+    mesh = mesh_of(case)
     fitted = fitted_case(case, parameters=PARAMETERS)
     meshed = MeshedParameters(fitted, fitted.start, case, mesh)
     values = np.array([number.start for number in fitted.numbers])
@@ -311,7 +314,7 @@ def test_a_wall_by_either_step_is_near_what_solving_all_anew_finds() -> None:
     (row,) = [row for row in result["sensitivity"] if row["parameter"] == "back wall"]
     for key, thickness in (("level_db", "11 mm"), ("reverse_level_db", "9 mm")):
         other = gw.load("small-gearbox", changes | {"housing.box.wall.back": thickness}).case
-        (after,) = sound_lines(solve_sound(other, solve_at_rest(other, build_mesh(other))))
+        (after,) = sound_lines(solve_sound(other, solve_at_rest(other, mesh_of(other))))
         found = 10.0 * np.log10(after.line.value / 1e-12) - before["sound_power_db"]
         assert row["sound"][0][key] == pytest.approx(found, abs=0.8)
         assert abs(found) > 2.5

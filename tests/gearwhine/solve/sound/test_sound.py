@@ -14,6 +14,7 @@ from gearwhine.case import CaseError, swept_keys
 from gearwhine.cli.command_line import run_command
 from gearwhine.coupling.sound.microphones import microphone_histories
 from gearwhine.coupling.sound.solution import build_radiation
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.housing.acoustics.modal_radiation import ModalRadiation
 from gearwhine.output.export import write_sounds
 from gearwhine.output.files import staging
@@ -253,7 +254,10 @@ def test_many_lines_of_a_sweep_come_from_the_radiation_kept_with_the_modes(monke
         monkeypatch.setattr("gearwhine.sweep.sound.POINTS", most)
         named = ("line",) * 6
         one = PointResult(
-            {}, np.zeros(0), line_frequencies=frequencies, line_rates=rates, line_names=named, line_kinds=named
+            {},
+            ReducedMotion(
+                np.zeros(0), line_frequencies=frequencies, line_rates=rates, line_names=named, line_kinds=named
+            ),
         )
         told, kept, _ = add_sound(study.case, keys, [swept_point(study.case, "10 N*m", one)], housing)
         assert told == []

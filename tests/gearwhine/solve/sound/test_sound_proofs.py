@@ -21,6 +21,7 @@ from gearwhine.coupling.sound.proofs import (
     power_balance_db,
 )
 from gearwhine.coupling.sound.solution import build_radiation, solve_sound
+from gearwhine.coupling.sweep.reduced_motion import ReducedMotion
 from gearwhine.housing import HousingError
 from gearwhine.housing.acoustics import boundary_elements, radiation, wrapping
 from gearwhine.housing.acoustics.radiation import counting
@@ -161,11 +162,13 @@ def test_lines_of_a_sweep_have_the_same_proofs(monkeypatch: pytest.MonkeyPatch) 
     rates[0, 4], rates[1, 4] = [1e-3, 2e-3], [-1e-3, 0.0]
     outcome = PointResult(
         {},
-        np.zeros(0),
-        line_frequencies=np.array([900.0, 2400.0]),
-        line_rates=rates,
-        line_names=("10× input", "1× pinion -> wheel"),
-        line_kinds=("other", "mesh"),
+        ReducedMotion(
+            np.zeros(0),
+            line_frequencies=np.array([900.0, 2400.0]),
+            line_rates=rates,
+            line_names=("10× input", "1× pinion -> wheel"),
+            line_kinds=("other", "mesh"),
+        ),
     )
     swept = [swept_point(case, "10 N*m", outcome)]
     keys = swept_keys(case, ["operation.torque=10 N*m,20 N*m"])
@@ -198,11 +201,13 @@ def test_a_point_whose_powers_disagree_is_left_without_sound(monkeypatch: pytest
         outcomes.append(
             PointResult(
                 {},
-                np.zeros(0),
-                line_frequencies=np.array([frequency]),
-                line_rates=rates,
-                line_names=("1× pinion -> wheel",),
-                line_kinds=("mesh",),
+                ReducedMotion(
+                    np.zeros(0),
+                    line_frequencies=np.array([frequency]),
+                    line_rates=rates,
+                    line_names=("1× pinion -> wheel",),
+                    line_kinds=("mesh",),
+                ),
             )
         )
     swept = [swept_point(case, text, one) for one, text in zip(outcomes, ("10 N*m", "20 N*m"), strict=True)]

@@ -1,35 +1,35 @@
 """Sensitivity ranking at an operating point: gear pairs, sensors' lines and sound by wall thickness and bearings.
 
 The gradients are those of :mod:`gearwhine.coupling.statics.sensitivity` and
-:mod:`gearwhine.coupling.linear.line_sensitivity`. Parameters of the housing are those of
-:mod:`gearwhine.solve.sensitivity.housing_changes`.
+:mod:`gearwhine.coupling.linear.line_sensitivity`. Parameters of the housing are
+given as changes of its model, :mod:`gearwhine.housing.updating.housing_change`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case, CaseError, Problem
-from gearwhine.coupling import Machine
+from gearwhine.coupling.description.excitation import Run
+from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.load_analysis.housing_fields import housing_fields
+from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity, sound_weights
+from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
+from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
+from gearwhine.housing import HousingModes
+from gearwhine.housing.updating.housing_change import HousingChange, by_changes, face_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
 from gearwhine.numerics.progress import Progress, silent
-from gearwhine.solve.housing_modes import SolvedHousing
-from gearwhine.solve.sensitivity.housing_changes import (
-    HousingChange,
-    by_changes,
-    housing_changes,
-    housing_fields,
-    slopes_of,
-)
-from gearwhine.solve.sensitivity.influences import Influence, LoadSensitivity, sound_weights
-from gearwhine.solve.sensitivity.line_model import SolvedLines, solve_lines
+
+if TYPE_CHECKING:
+    from gearwhine.coupling.sound.acoustics import Acoustics
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -262,56 +262,108 @@ class Ranking:
 
 
 def solve_load_sensitivity(
-    case: Case,
     machine: Machine,
     point: OperatingPoint,
-    housing: SolvedHousing | None,
-    progress: Progress = silent,
+    housing: HousingModes | None = None,
+    changes: Sequence[HousingChange] = (),
     *,
+    acoustics: "Acoustics | None" = None,
+    run: Run | None = None,
     line: str | None = None,
+    note: str | None = None,
+    progress: Progress = silent,
 ) -> LoadSensitivity:
     """Compute the gradients of an operating point, and of the sensors' lines and the sound about it, ranked.
 
     Parameters
     ----------
-    case : Case
     machine : Machine
-        Machine of the case.
     point : OperatingPoint
         Operating point of the machine.
-    housing : SolvedHousing or None
-        Housing that the machine stands in.
-    progress : callable
+    housing : HousingModes, optional
+        Housing that the machine stands in; without one bearings alone are ranked, by what they change in gear pairs.
+    changes : sequence of HousingChange
+        Parameters of the housing that are ranked.
+    acoustics : Acoustics, optional
+        Method and medium of the sound, whose lines are ranked by where it is given.
+    run : SpeedRun or FreeRun, optional
+        Course of the speed that the machine is assembled for.
     line : str, optional
         Line that is ranked and drawn, such as ``roof``, ``roof@1377`` or ``sound@1377``; by default the highest of
         a sensor, and the A-weighted power of the sound.
+    note : str, optional
+        Parts that are left out or stand in place of others, in words.
+    progress : callable
 
     Raises
     ------
-    CaseError
-        Where there is no such line, or the radiating surface cannot be made.
+    UnknownLineError
+        Where there is no such line.
+    gearwhine.coupling.errors.AcousticsError
+        Where the radiating surface cannot be made.
     gearwhine.housing.HousingError
         Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
-    solved = solve_lines(case, machine, point, housing, progress)
+    solved = solve_lines(machine, point, housing, acoustics, run, progress)
     sensor_line, sound_line = _chosen(line, solved)
     progress("adjoint states of gear pairs and lines")
     ranking = Ranking(point, solved)
     influences = []
     for bearing in point.bearings:
         influences += [ranking.by_bearing_stiffness(bearing.name), ranking.by_bearing_position(bearing.name)]
-    density, line_density, sound_density, note = None, None, None, None
+    density, line_density, sound_density = None, None, None
     if ranking.adjoints and housing is not None and point.housing is not None:
         progress("gradients by the housing")
-        fields = housing_fields(case, housing, point, ranking.adjoints)
+        fields = housing_fields(housing, point, ranking.adjoints)
         density, line_density, sound_density = ranking.densities(fields, sensor_line, sound_line)
-        changes, note = housing_changes(case, fields.mesh)
         influences += ranking.by_housing(fields, changes)
     widths = np.array([pair.pair.geometry.face_width for pair in point.pairs])
     influences.sort(key=lambda influence: -float(np.abs(widths * influence.changes[:, 0]).max(initial=0.0)))
     return LoadSensitivity(
         tuple(influences), density, note, solved, sensor_line, line_density, sound_line, sound_density
     )
+
+
+def rank_parts(
+    machine: Machine,
+    point: OperatingPoint,
+    *,
+    acoustics: "Acoustics | None" = None,
+    run: Run | None = None,
+    line: str | None = None,
+    progress: Progress = silent,
+) -> LoadSensitivity:
+    """Rank the bearings of a machine, and the flat faces of its housing where that has a finite-element model.
+
+    The parameters, and what is raised, are those of :func:`solve_load_sensitivity`.
+    """
+    housing, changes, note = None, tuple[HousingChange, ...](), None
+    if isinstance(machine.housing, HousingModes):
+        housing = machine.housing
+        changes = face_changes(housing.mesh, [seat.name for seat in housing.housing.seats])
+    elif machine.housing is not None:
+        note = (
+            "walls are not ranked, nor are lines of sensors and sound looked at: the machine has a reduced housing, "
+            "without the finite-element model that gearwhine.Housing.modes() keeps"
+        )
+    return solve_load_sensitivity(
+        machine, point, housing, changes, acoustics=acoustics, run=run, line=line, note=note, progress=progress
+    )
+
+
+class UnknownLineError(CouplingError):
+    """A line that is asked for and that no sensor and no sound has.
+
+    Attributes
+    ----------
+    line : str
+    expected : str
+        Lines that there are, in words.
+    """
+
+    def __init__(self, line: str, expected: str) -> None:
+        super().__init__(f"line {line!r}: expected {expected}")
+        self.line, self.expected = line, expected
 
 
 def _chosen(text: str | None, solved: SolvedLines | None) -> tuple[int, int | None]:
@@ -332,5 +384,5 @@ def _chosen(text: str | None, solved: SolvedLines | None) -> tuple[int, int | No
         names.setdefault(f"{_SOUND}@{harmonic.line.frequency / _TWO_PI:.0f}", (0, n))
     if text not in names:
         listed = ", ".join(repr(name) for name in names) or "none: no mesh drives a sensor or a sound"
-        raise CaseError([Problem("--line", text, f"one of the highest lines: {listed}")])
+        raise UnknownLineError(text, f"one of the highest lines: {listed}")
     return names[text]

@@ -3,7 +3,8 @@
 Between two speeds of a sweep a mesh harmonic changes as its linear response does: it is driven by the loaded
 transmission errors and the load shuttling of all meshes of its order together, with their phases
 (:mod:`gearwhine.coupling.linear.mesh_harmonics`), which stay what they are as long as the load does. So the response at
-other frequencies than that of the point has the peaks that the points pass by (:mod:`gearwhine.sweep.resolution`).
+other frequencies than that of the point has the peaks that the points pass by
+(:mod:`gearwhine.coupling.sweep.missed_peaks`).
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
@@ -79,22 +79,23 @@ class Resonances:
     mode_rates: ComplexArray
 
 
-def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Resonances | None:
-    """Find the resonances of a machine up to a frequency; None where it has no mesh, no output, or no proof.
+def find_resonances(
+    machine: CoupledMachine, limit_hz: float, *, speed_of_sound: float | None = None
+) -> Resonances | None:
+    """Find the resonances of a machine at steady speed up to a frequency.
+
+    None where its speed varies or its base moves, and where it has no mesh, no output, or no proof.
 
     Parameters
     ----------
-    case : Case
-        Case of the machine.
     machine : CoupledMachine
-        Machine at a steady speed.
     limit_hz : float
         Frequency up to which the housing's modes are complete [Hz].
+    speed_of_sound : float, optional
+        That of the medium into which the housing radiates [m/s]; without one it does not.
     """
-    steady = (case.transient is None or case.transient.run is None) and (
-        case.operation is None or case.operation.base is None
-    )
-    heard = case.acoustics is not None and machine.housing is not None
+    steady = machine.speed_profile is None and machine.loads.base is None
+    heard = speed_of_sound is not None and machine.housing is not None
     listens = machine.housing is not None and (machine.housing.sensors or heard)
     if not (steady and listens and limit_hz > _LOWEST_HZ):
         return None
@@ -106,7 +107,7 @@ def find_resonances(case: Case, machine: CoupledMachine, limit_hz: float) -> Res
             return None
         chosen = _swinging(modes, limit_hz)
         damped, widths = modes.eigenvalues.imag[chosen], -modes.eigenvalues.real[chosen]
-        lines = [_solve_line(case, machine, modes, line, damped, widths) for line in driven]
+        lines = [_solve_line(machine, modes, line, damped, widths, speed_of_sound) for line in driven]
     except (GearError, ModesError):
         return None
     return Resonances(
@@ -137,23 +138,27 @@ class _Line(NamedTuple):
 
 
 def _solve_line(
-    case: Case, machine: CoupledMachine, modes: CoupledModes, line: MeshLoad, damped: FloatArray, widths: FloatArray
+    machine: CoupledMachine,
+    modes: CoupledModes,
+    line: MeshLoad,
+    damped: FloatArray,
+    widths: FloatArray,
+    speed_of_sound: float | None,
 ) -> _Line:
     """Solve a line at its own frequency and about each mode [rad/s]."""
     housing = machine.housing
     assert housing is not None
     sensors = np.array(list(machine.sensor_rows.values())).reshape(-1, machine.system.size)
-    heard = case.acoustics is not None
-    coordinates = machine.rows(housing.name, np.eye(housing.size)) if heard else sensors[:0]
+    coordinates = sensors[:0] if speed_of_sound is None else machine.rows(housing.name, np.eye(housing.size))
     # Two half-widths below a mode that is nearly overdamped may be below zero.
     near = np.maximum(damped[:, None] + widths[:, None] * PLACES_ABOUT_MODE, _TWO_PI)
     omega = np.concatenate([[line.frequency], near.ravel()])
     moved = superposed(modes.pairs, line.load[None, None], omega, np.concatenate([sensors, coordinates]))[:, 0]
     levels = decibels(omega[:, None] ** 2 * np.abs(moved[:, : len(sensors)]))
     rates = 1j * omega[:, None] * moved[:, len(sensors) :]
-    if case.acoustics is not None:
+    if speed_of_sound is not None:
         # The surface is not known here: a body of a square metre stands for it, in proportion alone.
-        efficiency = pulsating_efficiency(omega / _TWO_PI, 1.0, case.acoustics.speed_of_sound)
+        efficiency = pulsating_efficiency(omega / _TWO_PI, 1.0, speed_of_sound)
         with np.errstate(divide="ignore"):
             sound = 10.0 * np.log10((np.abs(rates) ** 2).sum(axis=1) * efficiency)
         levels = np.column_stack([levels, sound])

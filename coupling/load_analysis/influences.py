@@ -1,6 +1,6 @@
 """Influences of a machine's parameters at an operating point: changes of gear pairs, lines and sound by a step.
 
-:mod:`gearwhine.solve.sensitivity.ranking` makes and ranks them.
+:mod:`gearwhine.coupling.load_analysis.ranking` makes and ranks them.
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.linear.line_sensitivity import Line
-from gearwhine.solve.sensitivity.line_model import SolvedLines
+from gearwhine.coupling.load_analysis.line_model import SolvedLines
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound

@@ -3,8 +3,8 @@
 import numpy as np
 
 from gearwhine.case import load_case
+from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
 from gearwhine.solve.machine import described_machine
-from gearwhine.solve.plausibility import bearing_load_warnings
 
 BALLS = (
     'bearing.0.stiffness={ rolling = { catalogue = { type = "deep-groove", bore = "35 mm", '

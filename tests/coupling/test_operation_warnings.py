@@ -6,10 +6,11 @@ import pytest
 from reducer_case import reducer
 
 from gearwhine.case import Case, parse_case
+from gearwhine.coupling.analyses.operation_warnings import operation_warnings
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings
+from gearwhine.coupling.load_analysis.solved_load import solve_load
 from gearwhine.solve.case_summary import check_case
 from gearwhine.solve.machine import described_machine
-from gearwhine.solve.operating_point import load_warnings, solve_load
-from gearwhine.solve.plausibility import operation_warnings
 
 RUN = {"transient": {"run": {"from": "2000 rpm", "time": "1 s"}}}
 

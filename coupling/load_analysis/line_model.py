@@ -1,6 +1,6 @@
-"""Model of a case's lines: the machine linear about its operating point, and the derivatives of its housing.
+"""Model of a machine's lines: the machine linear about its operating point, and the derivatives of its housing.
 
-Lines are those of the sensors and, where the case has acoustics, of the sound power. The gradients are those of
+Lines are those of the sensors and, where its sound is sought, of the sound power. The gradients are those of
 :mod:`gearwhine.coupling.linear.line_sensitivity`, whose motion and adjoint fields must be exact in the housing's basis.
 Residual modes of the sensors, which the modes of a solved housing do not have, bring the fields close; then the
 responses of the housing's finite-element matrices at the lines' frequencies to the loads in both fields join the basis,
@@ -8,33 +8,33 @@ and the lines are solved again. The adjoint load of a sensor is one on a point, 
 skin.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
 
-from gearwhine.case import Case
-from gearwhine.coupling import Machine
+from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.linear.housing_rates import HousingRates
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.load_analysis.housing_fields import bearing_ports
+from gearwhine.coupling.machine.components import component_of_housing
+from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.fixtures import attach_all
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.housing import ModeSet, modal_damping
+from gearwhine.housing import HousingModes, ModeSet, modal_damping
 from gearwhine.housing.housing import RESPONSE_ORDERS
+from gearwhine.housing.modes.housing_field import HousingField
 from gearwhine.housing.modes.natural_modes import ModeSetExtension
 from gearwhine.housing.updating import modal_sensitivities
+from gearwhine.housing.updating.housing_change import HousingChange
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
-from gearwhine.numerics.progress import Progress
-from gearwhine.solve.acoustics import acoustics_of, refused_by_key
-from gearwhine.solve.housing_modes import SolvedHousing, describe_housing
-from gearwhine.solve.machine import full_housing_component, run_of
-from gearwhine.solve.sensitivity.housing_changes import HousingChange
+from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
+    from gearwhine.coupling.sound.acoustics import Acoustics
     from gearwhine.coupling.sound.mesh_harmonics import HarmonicSound
     from gearwhine.housing.acoustics.radiation import HousingRadiation
 
@@ -49,7 +49,7 @@ _TWO_PI = 2.0 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class SolvedLines:
-    """Lines of a case's sensors and of its sound, with the model that they are of.
+    """Lines of a machine's sensors and of its sound, with the model that they are of.
 
     Attributes
     ----------
@@ -58,14 +58,14 @@ class SolvedLines:
         Lines of the sensors, the highest first.
     sound : tuple of HarmonicSound
         Lines of the sound, the loudest by their A-weighted power first.
-    housing : SolvedHousing
+    housing : HousingModes
         Housing with residual modes of the sensors, and the harmonic responses at the lines.
     """
 
     model: LineModel
     of_sensors: tuple[Line, ...]
     sound: "tuple[HarmonicSound, ...]"
-    housing: SolvedHousing
+    housing: HousingModes
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -79,7 +79,7 @@ class SolvedLines:
 
     @property
     def held(self) -> str | None:
-        """Parts that the case fixes, so that they do not follow the operating point, in words."""
+        """Parts whose flanks or stiffness are given, so that they do not follow the operating point, in words."""
         pairs = [
             pair.geometry.label
             for pair, is_found in zip(self.model.pairs, self.model.found, strict=True)
@@ -146,11 +146,12 @@ class SolvedLines:
 
 
 def solve_lines(
-    case: Case,
     machine: Machine,
     point: OperatingPoint,
-    housing: SolvedHousing | None,
-    progress: Progress,
+    housing: HousingModes | None,
+    acoustics: "Acoustics | None" = None,
+    run: Run | None = None,
+    progress: Progress = silent,
     *,
     count: int = LINES,
 ) -> SolvedLines | None:
@@ -158,91 +159,107 @@ def solve_lines(
 
     Parameters
     ----------
-    case : Case
     machine : Machine
-        Machine of the case.
     point : OperatingPoint
         Operating point of the machine.
-    housing : SolvedHousing or None
+    housing : HousingModes or None
         Housing that the machine stands in.
+    acoustics : Acoustics, optional
+        Method and medium of the sound, whose lines are sought where it is given.
+    run : SpeedRun or FreeRun, optional
+        Course of the speed that the machine is assembled for.
     progress : callable
     count : int
         Number of lines of each sensor.
 
     Raises
     ------
-    CaseError
+    gearwhine.coupling.errors.AcousticsError
         Where the radiating surface cannot be made.
     gearwhine.housing.HousingError
         Where a line fails its proofs, see :meth:`gearwhine.housing.acoustics.radiation.RadiatedSound.require_proofs`.
     """
-    if housing is None or not case.gear_pair or machine.speed == 0.0:
+    if housing is None or not machine.gear_pairs or machine.speed == 0.0:
         return None
-    if not housing.loaded or not (housing.sensors or case.acoustics):
+    loaded = bearing_ports(housing, machine)
+    if not loaded or not (housing.sensors or acoustics):
         return None
     progress("residual modes of the sensors")
-    matrices = attach_all(case, housing.mesh, describe_housing(case, housing.mesh).free_matrices())
+    matrices = housing.housing.matrices()
     extension = ModeSetExtension(matrices, housing.modes)
     modes = housing.modes
     if housing.sensors:
         ports = [sensor.matrix for sensor in housing.sensors.values()]
         modes = extension.with_ports(modes, ports, orders=RESPONSE_ORDERS)
     about = machine.at_operating_point(point)
-    pairs = solve_gears(case, progress, {pair.names: pair.station_gap for pair in point.pairs})
+    # Flanks that nearly carry evenly keep their gap here, whose derivative is sought.
+    gaps = {pair.names: pair.station_gap for pair in point.pairs}
+    flanks = [
+        replace(pair, misalignment=0.0, face_gap=gaps.get((pair.driver, pair.driven), ()))
+        if pair.misalignment is None
+        else pair
+        for pair in machine.gear_pairs
+    ]
+    pairs = replace(about, gear_pairs=flanks).loaded_pairs(progress)
     components = about.rotor_components(progress=progress)
     misalignment_is_found = tuple(pair.misalignment is None for pair in machine.gear_pairs)
-    radiation = _radiation(case, replace(housing, modes=modes), progress)
+    limit = _TWO_PI * housing.trusted_limit_hz
+    radiation = _radiation(acoustics, housing.with_modes(modes, None).displacement_field, progress)
 
     def solved(modes: ModeSet, heard: Sequence[float] | None = None) -> SolvedLines:
-        damping = modal_damping(modes, matrices) if matrices.damping.nnz else None
-        extended = replace(housing, modes=modes, damping_matrix=damping)
-        stands = replace(about, housing=full_housing_component(case, extended, progress))
-        model = LineModel(stands.assemble(pairs, components, run_of(case)), point, pairs, misalignment_is_found)
-        lines = model.lines(_TWO_PI * housing.trusted_limit_hz, count)
-        return SolvedLines(model, lines, _sound(case, extended, model, radiation, heard, progress), extended)
+        extended = housing.with_modes(modes, modal_damping(modes, matrices) if matrices.damping.nnz else None)
+        part = component_of_housing(extended, participates=about.moves_housing_as_a_body, with_coarser=False)
+        stands = replace(about, housing=part)
+        model = LineModel(stands.assemble(pairs, components, run), point, pairs, misalignment_is_found)
+        lines = model.lines(limit, count)
+        field = extended.displacement_field
+        return SolvedLines(model, lines, _sound(acoustics, field, model, radiation, heard, progress), extended)
 
     progress("lines of the sensors")
     first = solved(modes)
     if not first.lines:
         return None
     progress("responses of the housing at the lines")
-    exact = extension.with_harmonic_responses(modes, _housing_loads(first))
+    exact = extension.with_harmonic_responses(modes, _housing_loads(first, loaded))
     return solved(exact, [sound.line.frequency for sound in first.sound])
 
 
-def _radiation(case: Case, housing: SolvedHousing, progress: Progress) -> "HousingRadiation | None":
-    """Return the radiating surface of a case with acoustics."""
-    if case.acoustics is None:
+def _radiation(acoustics: "Acoustics | None", field: HousingField, progress: Progress) -> "HousingRadiation | None":
+    """Return the radiating surface of a housing whose sound is sought."""
+    if acoustics is None:
         return None
-    # The acoustics' kernels are for these cases alone.
+    # The acoustics' kernels are for these machines alone.
     from gearwhine.coupling.sound.solution import build_radiation
 
-    acoustics = acoustics_of(case)
-    with refused_by_key(acoustics):
-        return build_radiation(acoustics, housing.displacement_field, progress)
+    return build_radiation(acoustics, field, progress)
 
 
 def _sound(
-    case: Case,
-    housing: SolvedHousing,
+    acoustics: "Acoustics | None",
+    field: HousingField,
     model: LineModel,
     radiation: "HousingRadiation | None",
     heard: Sequence[float] | None,
     progress: Progress,
 ) -> "tuple[HarmonicSound, ...]":
     """Solve for the loudest lines with the modes of a housing, or for those of known frequencies [rad/s]."""
-    if radiation is None:
+    if acoustics is None or radiation is None:
         return ()
     from gearwhine.coupling.sound.mesh_harmonics import loudest_lines
 
     progress("sound of the lines")
-    field = housing.displacement_field
-    limit = min(acoustics_of(case).limit_hz(field), field.complete_below_hz)
+    limit = min(acoustics.limit_hz(field), field.complete_below_hz)
     return loudest_lines(model, radiation.with_shapes(field.shapes), _TWO_PI * limit, heard)
 
 
-def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
+def _housing_loads(solved: SolvedLines, loaded: Mapping[str, sparse.csr_array]) -> list[tuple[float, FloatArray]]:
     """Return the loads on the housing's nodes in the motions and adjoint fields of lines, by frequency.
+
+    Parameters
+    ----------
+    solved : SolvedLines
+    loaded : mapping of str to scipy.sparse.csr_array
+        Motions of the bearings' places from the nodes'.
 
     Returns
     -------
@@ -259,7 +276,7 @@ def _housing_loads(solved: SolvedLines) -> list[tuple[float, FloatArray]]:
             continue
         motion = np.zeros(3 * len(solved.housing.mesh.points), dtype=np.complex128)
         against = adjoint_load
-        for name, port in solved.housing.loaded.items():
+        for name, port in loaded.items():
             load, adjoint = solved.model.bearing_loads(line, name)
             motion += np.asarray(port.T @ load)
             against = against + np.asarray(port.T @ adjoint)

@@ -1,0 +1,264 @@
+"""Operating point of a machine: static equilibrium under its mean load, lives of its bearings, and its plausibility.
+
+The equilibrium is that of :meth:`gearwhine.coupling.Machine.operating_point`. This module adds the lives of its
+bearings, and warnings: :mod:`gearwhine.coupling.load_analysis.load_warnings`.
+"""
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, taken_misalignments
+from gearwhine.coupling.gears.loaded.gear_pair import load_gear_pair
+from gearwhine.coupling.gears.loaded.transmission_error import LoadedMesh
+from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+from gearwhine.coupling.machine_description import Machine
+from gearwhine.coupling.statics.operating_point import BearingLoad, OperatingPoint, PairLoad, ShaftDeflection
+from gearwhine.numerics.progress import Progress, silent
+from gearwhine.rotors.rolling_bearings.rated_life import BearingLife
+
+FloatArray = npt.NDArray[np.float64]
+
+TORQUES = tuple(np.linspace(0.1, 1.5, 15).round(6).tolist())
+"""Parts of the torque of operation at which the equilibrium is found over torque."""
+
+_PLACES = 201  # places along a shaft at which its deflection is given
+_ZERO_DEFLECTION = 1e-15  # deflection up to which it counts as zero [m]
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedBearing:
+    """A bearing at the operating point.
+
+    Attributes
+    ----------
+    load : BearingLoad
+    rated : BearingLife or None
+        Ratings and lives of a rolling bearing; None of others.
+    preload : float or None
+        Axial force with which its rows are pressed without torque and weight [N], the larger of two; None where no
+        bearing of the shaft has an axial offset or a spring.
+    """
+
+    load: BearingLoad
+    rated: BearingLife | None = None
+    preload: float | None = None
+
+    @property
+    def given_load(self) -> FloatArray | None:
+        """Force of the shaft along x, y, z for which its stiffness is made [N]; None where there is none."""
+        load = self.load.mounted.design_load
+        return None if load is None else np.array(load)
+
+    @property
+    def peak_pressure(self) -> float | None:
+        """Greatest pressure of the rolling elements [Pa]; None for other bearings."""
+        return None if self.load.rolling is None else self.load.rolling.peak_pressure
+
+    @property
+    def most_loaded(self) -> dict[str, float] | None:
+        """Row and number of the most loaded element from 1, its azimuth [rad] and load on the outer ring [N]."""
+        if self.load.rolling is None:
+            return None
+        loads = [row.outer_load for row in self.load.rolling.rows]
+        row = int(np.argmax([load.max() for load in loads]))
+        place = int(np.argmax(loads[row]))
+        azimuth = float(self.load.rolling.rows[row].azimuths[place])
+        return {"row": row + 1, "element": place + 1, "azimuth_rad": azimuth, "load_n": float(loads[row][place])}
+
+    @property
+    def element_loads(self) -> FloatArray | None:
+        """Load of each rolling element on the outer ring, row after row [N]; None for other bearings."""
+        state = self.load.rolling
+        return None if state is None else np.concatenate([row.outer_load for row in state.rows])
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedPair:
+    """A gear pair at the operating point, and the misalignment that mesh stiffness and motion take.
+
+    Attributes
+    ----------
+    load : PairLoad
+        Of sound teeth without pitch deviations.
+    misalignment : TakenMisalignment
+    hunting : LoadedMesh or None
+        Static mesh over the hunting period, of teeth with their pitch deviations and faults under the force and the gap
+        of the operating point; None where all mesh periods are alike, and where it is not asked for.
+    """
+
+    load: PairLoad
+    misalignment: TakenMisalignment
+    hunting: LoadedMesh | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedLoad:
+    """The operating point of a machine.
+
+    Attributes
+    ----------
+    machine : Machine
+    point : OperatingPoint
+    bearings : tuple of LoadedBearing
+    pairs : tuple of LoadedPair
+    over_torque : dict of float to OperatingPoint
+        Equilibria by the torque of the first driver [N m], where they are asked for.
+    sensitivity : LoadSensitivity or None
+        Gradients, where they are asked for.
+    """
+
+    machine: Machine
+    point: OperatingPoint
+    bearings: tuple[LoadedBearing, ...]
+    pairs: tuple[LoadedPair, ...]
+    over_torque: dict[float, OperatingPoint]
+    sensitivity: LoadSensitivity | None = None
+
+    @property
+    def on_housing(self) -> bool:
+        """Whether the compliance of a housing acts; seats are rigid without."""
+        return self.machine.housing is not None
+
+    @property
+    def gravity(self) -> Sequence[float] | None:
+        """Gravity along x, y, z [m/s²]."""
+        return self.machine.gravity
+
+    @cached_property
+    def shafts(self) -> tuple["DeflectedShaft", ...]:
+        """Deflection of each shaft along it."""
+        return tuple(_deflected(shaft, self.machine) for shaft in self.point.shafts)
+
+
+@dataclass(frozen=True, eq=False)
+class DeflectedShaft:
+    """Deflection of a shaft at places along it.
+
+    Attributes
+    ----------
+    name : str
+    at : ndarray, shape (n,)
+        Places from the left end [m].
+    z : ndarray, shape (n,)
+        Places along z of the machine [m].
+    motion : ndarray, shape (6, n)
+        Displacements along x, y, z [m] and rotations about them [rad].
+    """
+
+    name: str
+    at: FloatArray
+    z: FloatArray
+    motion: FloatArray
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Largest displacement across the axis [m], and its place from the left end [m]; zeros where it is rounding."""
+        across = np.hypot(self.motion[0], self.motion[1])
+        place = int(across.argmax())
+        return (float(across[place]), float(self.at[place])) if across[place] > _ZERO_DEFLECTION else (0.0, 0.0)
+
+    @property
+    def twist(self) -> float:
+        """Largest difference of the rotation about z along the shaft [rad]."""
+        return float(np.ptp(self.motion[5]))
+
+
+def _deflected(deflection: ShaftDeflection, machine: Machine) -> DeflectedShaft:
+    at = np.linspace(0.0, machine.shaft(deflection.name).rotor.length, _PLACES)
+    return DeflectedShaft(deflection.name, at, deflection.part.start + at, deflection.motions(at))
+
+
+def solve_load(
+    machine: Machine,
+    progress: Progress = silent,
+    *,
+    over_torque: bool = False,
+    over_hunting_period: bool = False,
+    aligned_by_default: Collection[str] = (),
+) -> SolvedLoad:
+    """Find the static equilibrium of a machine under its torques and its weight.
+
+    Parameters
+    ----------
+    machine : Machine
+    progress : callable
+    over_torque : bool
+        Whether to solve for the equilibria at `TORQUES` as well.
+    over_hunting_period : bool
+        Whether to solve pairs with pitch deviations or damaged teeth over their hunting period, too.
+    aligned_by_default : collection of str
+        Labels of the pairs that are aligned because nothing is said of their misalignment.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+        Where a load drives a motion that nothing holds.
+    gearwhine.coupling.EquilibriumNotFoundError
+        Where no equilibrium is found.
+    """
+    progress("static equilibrium of the machine")
+    point = machine.operating_point()
+    points: dict[float, OperatingPoint] = {}
+    for number, part in enumerate(TORQUES if over_torque and machine.torque != 0.0 else ()):
+        progress("static equilibrium over torque", number / len(TORQUES))
+        outputs = [
+            output if output.torque is None else replace(output, torque=part * output.torque)
+            for output in machine.outputs
+        ]
+        loaded = replace(machine, torque=part * machine.torque, outputs=outputs)
+        points[part * machine.torque] = loaded.operating_point()
+    preloads = _preloads(machine, progress)
+    bearings = tuple(
+        LoadedBearing(
+            bearing,
+            None if bearing.rolling is None else BearingLife(bearing.rolling, machine.speeds[bearing.mounted.rotor]),
+            preloads.get(bearing.name),
+        )
+        for bearing in point.bearings
+    )
+    pairs = tuple(map(LoadedPair, point.pairs, taken_misalignments(machine, point, aligned_by_default)))
+    if over_hunting_period:
+        pairs = tuple(
+            replace(pair, hunting=_over_hunting_period(machine, number, pair.load)) for number, pair in enumerate(pairs)
+        )
+    return SolvedLoad(machine, point, bearings, pairs, points)
+
+
+def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> LoadedMesh | None:
+    """Return the static mesh of a pair over its hunting period, at the force and the gap of the operating point."""
+    geometry = machine.pair_geometries[number]
+    gears = (geometry.driver, geometry.driven)
+    if load.force == 0.0 or not any(gear.pitch_deviations or gear.faults for gear in gears):
+        return None
+    # Inertias are for the damping alone.
+    pair = replace(machine.gear_pairs[number], misalignment=0.0, face_gap=load.face_gap, damping=0.0)
+    torque = math.copysign(load.force * geometry.driver.base_radius, machine.pair_torques[number])
+    speed = machine.speeds[load.pair.driver.shaft]
+    return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting
+
+
+def _preloads(machine: Machine, progress: Progress) -> dict[str, float]:
+    """Axial force of each rolling bearing's rows without torque and weight [N], on shafts with a preloaded bearing."""
+    elements = {mounted.bearing.name: mounted.elements for mounted in machine.bearings}
+    preloaded = {
+        mounted.rotor for mounted in machine.bearings if mounted.elements is not None and mounted.elements.is_preloaded
+    }
+    if not preloaded:
+        return {}
+    progress("preload of the bearings")
+    preloads = {}
+    for bearing in machine.preload_point().bearings:
+        rolling = elements[bearing.name]
+        if (
+            bearing.rolling is not None
+            and rolling is not None
+            and rolling.thrust_senses
+            and bearing.mounted.rotor in preloaded
+        ):
+            preloads[bearing.name] = max(map(abs, bearing.rolling.row_thrusts)) + 0.0
+    return preloads
