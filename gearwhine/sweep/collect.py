@@ -13,7 +13,8 @@ from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
 from gearwhine.output.dataset import PHASE_CONVENTION
-from gearwhine.output.quantity import document_of
+from gearwhine.output.quantity import Quantity, document_of
+from gearwhine.results.operating_point import SWEPT_PAIR
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
 from gearwhine.sweep.grid import Solved
@@ -28,6 +29,40 @@ FloatArray = npt.NDArray[np.float64]
 
 _PEAKS = 10  # number of highest peaks of each sensor
 _SAME_ORDER = 9  # decimals to which orders of one line agree
+
+# Quantities of the points' documents, by key.
+_POINT = (
+    Quantity("speed_rpm", name="rotation_speed", long_name="speed of the first driver"),
+    Quantity(
+        "trusted_below_hz", name="trusted_limit", long_name="frequency up to which the housing's modes are complete"
+    ),
+    Quantity(
+        "energy_error",
+        name="energy_error",
+        unit="1",
+        long_name="part of the energy that is missing from the balance",
+    ),
+    Quantity("steps", name="steps", unit="1", long_name="time steps"),
+)
+_PEAK = (
+    Quantity("frequency_hz", name="sensor_peak_frequency", long_name="frequency of the highest lines"),
+    Quantity("amplitude_m_per_s2", name="sensor_peak_amplitude", long_name="peak amplitude of the highest lines"),
+)
+_MESH = (
+    Quantity("mean_force_n", name="mesh_force_mean", long_name="mean gear-mesh force"),
+    Quantity("peak_force_n", name="mesh_force_peak", long_name="largest gear-mesh force"),
+    Quantity("mesh_frequency_hz", name="mesh_frequency", long_name="tooth-mesh frequency"),
+    Quantity(
+        "contact_loss_fraction",
+        name="contact_loss",
+        unit="1",
+        long_name="part of the time in which the flanks are apart",
+    ),
+)
+_SOUND = (
+    Quantity("total_db", name="sound_power_level", long_name="sound power level of all lines re 1 pW"),
+    Quantity("total_db_a", name="sound_power_level_a", long_name="A-weighted sound power level of all lines re 1 pW"),
+)
 
 
 def collected_sweep(
@@ -52,13 +87,7 @@ def collected_sweep(
         for name, key in zip(names, keys, strict=True)
     }
     variables: dict[str, Any] = {}
-    for name, key, unit, long_name in (
-        ("rotation_speed", "speed_rpm", "rpm", "speed of the first driver"),
-        ("trusted_limit", "trusted_below_hz", "Hz", "frequency up to which the housing's modes are complete"),
-        ("energy_error", "energy_error", "1", "part of the energy that is missing from the balance"),
-        ("steps", "steps", "1", "time steps"),
-    ):
-        variables[name] = grid.rows((), (), _entry(key), _unit(unit, long_name))
+    variables |= grid.quantities(_POINT, (), (), _entry)
     variables["done"] = (names, grid.filled(False, lambda outcome: isinstance(outcome, PointResult)), {})
     variables["failure"] = (names, grid.filled("", _failure), {"long_name": "why there is no result"})
     orders = _orders(grid.results())
@@ -157,6 +186,19 @@ class _Grid:
                 values[swept_point.point.place] = of(swept_point.outcome)
         return ((*self.names, *dimensions), values, attributes)
 
+    def quantities(
+        self,
+        quantities: Sequence[Quantity],
+        dimensions: tuple[str, ...],
+        shape: tuple[int, ...],
+        of: Callable[[str], Callable[[PointResult], Any]],
+    ) -> dict[str, Any]:
+        """Return the variables of quantities; ``of`` takes a key to the function that has its values of a point."""
+        return {
+            row.name: self.rows(dimensions, shape, of(row.key), _unit(row.file_unit, row.long_name))
+            for row in quantities
+        }
+
     def words(
         self,
         dimensions: tuple[str, ...],
@@ -207,11 +249,7 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
         lambda result: _on_orders(orders, result, result.motion.sensor_spectra, names),
         _unit("m/s2", f"peak amplitude of acceleration {within}"),
     )
-    for name, key, unit, long_name in (
-        ("sensor_peak_frequency", "frequency_hz", "Hz", "frequency of the highest lines"),
-        ("sensor_peak_amplitude", "amplitude_m_per_s2", "m/s2", "peak amplitude of the highest lines"),
-    ):
-        variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, long_name))
+    variables |= grid.quantities(_PEAK, ("sensor", "peak"), (len(names), _PEAKS), peaks)
     _add_mechanisms(grid, names, variables, coordinates)
 
 
@@ -253,13 +291,7 @@ def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coor
 
         return of
 
-    for name, key, unit, long_name in (
-        ("mesh_force_mean", "mean_force_n", "N", "mean gear-mesh force"),
-        ("mesh_force_peak", "peak_force_n", "N", "largest gear-mesh force"),
-        ("mesh_frequency", "mesh_frequency_hz", "Hz", "tooth-mesh frequency"),
-        ("contact_loss", "contact_loss_fraction", "1", "part of the time in which the flanks are apart"),
-    ):
-        variables[name] = grid.rows(("contact",), (len(names),), figures(key), _unit(unit, long_name))
+    variables |= grid.quantities(_MESH, ("contact",), (len(names),), figures)
     variables["mesh_force_spectrum"] = grid.rows(
         ("contact", "order"),
         (len(names), orders.size),
@@ -313,12 +345,7 @@ def _add_operating_points(grid: _Grid, variables: dict[str, Any], coordinates: d
 
     if pairs:
         coordinates["loaded_pair"] = ("loaded_pair", pairs, {})
-        for name, key, unit, long_name in (
-            ("misalignment", "misalignment_rad", "rad", "angle between the flanks at the operating point"),
-            ("misalignment_taken", "misalignment_taken_rad", "rad", "misalignment that the motion takes"),
-            ("face_load_factor", "k_h_beta", "1", "face load factor K_Hbeta at the operating point"),
-        ):
-            variables[name] = grid.rows(("loaded_pair",), (len(pairs),), of_pairs(key), _unit(unit, long_name))
+        variables |= grid.quantities(SWEPT_PAIR, ("loaded_pair",), (len(pairs),), of_pairs)
     if bearings:
         coordinates |= {"loaded_bearing": ("loaded_bearing", bearings, {}), "axis": ("axis", ["x", "y", "z"], {})}
         attributes = _unit("N", "force of the shaft on its bearing at the operating point")
@@ -342,11 +369,7 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         lines = result.document.get("sound", {}).get("lines", ())[:count]
         return [document_of(SWEPT_LINE, SweptLine(line, result.motion.housing_frequencies_hz)) for line in lines]
 
-    for name, key, unit, long_name in (
-        ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
-        ("sound_power_level_a", "total_db_a", "dB", "A-weighted sound power level of all lines re 1 pW"),
-    ):
-        variables[name] = grid.rows((), (), total(key), _unit(unit, long_name))
+    variables |= grid.quantities(_SOUND, (), (), total)
 
     def numbers(key: str) -> Callable[[PointResult], FloatArray]:
         return lambda result: _padded(np.array([row[key] for row in rows(result)], dtype=np.float64), count)
@@ -355,10 +378,9 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         return lambda result: [str(row[key]) for row in rows(result)]
 
     along, size = ("sound_line",), (count,)
+    variables |= grid.quantities([row for row in SWEPT_LINE if row.file_unit], along, size, numbers)
     for quantity in SWEPT_LINE:
-        if unit := quantity.file_unit:
-            variables[quantity.name] = grid.rows(along, size, numbers(quantity.key), _unit(unit, quantity.long_name))
-        else:
+        if not quantity.file_unit:
             variables[quantity.name] = grid.words(along, size, words(quantity.key), {"long_name": quantity.long_name})
     harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
     if not harmonics:
