@@ -115,7 +115,12 @@ class Study(StudiedMachine):
         return gears_result(solve_over_torques(analysed, self.progress, chosen), self.origin, seats)
 
     def operating_point(
-        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+        self,
+        *,
+        over_torque: bool = False,
+        sensitivity: bool = False,
+        line: str | None = None,
+        rigid_seats: bool = False,
     ) -> "Result[SolvedLoad]":
         """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
 
@@ -124,37 +129,39 @@ class Study(StudiedMachine):
         over_torque : bool
             Also solve from 10 to 150 % of the torque.
         sensitivity : bool
-            Also rank bearings, and the walls of a housing of :meth:`gearwhine.Housing.modes` (those of its box, else
-            its flat faces), by what they change in gear pairs, in the lines of sensors and, with acoustics in the
-            settings, in the sound power of the loudest lines.
+            Also rank walls and bearings by what they change in gear pairs, in the lines of sensors and, with
+            [acoustics], in the sound power of the loudest lines.
         line : str, optional
-            Line that is ranked: a sensor, or with its frequency in Hz, 'roof@1377'; or of the sound, 'sound@1377'. By
-            default the highest, and the A-weighted sum of the loudest. It implies ``sensitivity``.
+            Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'; or of the
+            sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.
+        rigid_seats : bool
+            Hold the bearings in rigid seats; leave the housing out.
 
         Raises
         ------
         gearwhine.coupling.CouplingError
-            Where nothing loads the machine, there is no such line, or a load drives a motion that nothing holds.
+            Where the parts do not make a machine, nothing loads it, there is no such line, or a load drives a motion
+            that nothing holds.
         gearwhine.coupling.EquilibriumNotFoundError
             Where no equilibrium is found.
         """
         from gearwhine.analyses.machine_results import load_result
-        from gearwhine.coupling.load_analysis.ranking import rank_parts
         from gearwhine.coupling.load_analysis.solved_load import solve_load
 
-        solved = solve_load(self.machine, self.progress, over_torque=over_torque, over_hunting_period=True)
-        if sensitivity or line is not None:
-            plan = self.settings.transient
-            ranking = rank_parts(
-                self.machine,
-                solved.point,
-                acoustics=self.settings.acoustics,
-                run=None if plan is None else plan.run,
-                line=line,
-                progress=self.progress,
-            )
-            solved = replace(solved, sensitivity=ranking)
-        return load_result(solved, self.origin)
+        self.require("load")
+        ranked = sensitivity or line is not None
+        housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
+        machine = self.on_rigid_seats() if rigid_seats else self.machine
+        solved = solve_load(
+            machine,
+            self.progress,
+            over_torque=over_torque,
+            over_hunting_period=True,
+            aligned_by_default=self.aligned_by_default,
+        )
+        if ranked:
+            solved = replace(solved, sensitivity=self.ranked_parts(machine, solved.point, line))
+        return load_result(solved, replace(self.origin, housing=housing), self.progress)
 
     def system(
         self,

@@ -13,7 +13,7 @@ from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
-from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine
 from gearwhine.coupling.analyses.modes_and_responses import (
     SolvedSystem,
     machine_warnings,
@@ -30,11 +30,10 @@ from gearwhine.coupling.analyses.operation_warnings import (
 from gearwhine.coupling.analyses.run_up import run_signature_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import mean_bearing_forces
-from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings, sensitivity_warnings
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.housing import HousingModes
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
@@ -112,21 +111,6 @@ class MachineUnderLoad:
 
         if self.load is not None:
             yield from draw_load(self.load)
-
-
-def machine_under_load(
-    machine: Machine, origin: Origin, run: Run | None = None, progress: Progress = silent
-) -> MachineUnderLoad:
-    """Find the operating point of a machine where something loads it, and assemble the machine about that.
-
-    Raises
-    ------
-    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
-        Where the loads drive a motion that nothing holds, or no equilibrium is found.
-    """
-    load, warnings = find_load(machine, progress) if machine.is_loaded else (None, [])
-    loaded = load_machine(machine, None if load is None else load.point, run, progress)
-    return MachineUnderLoad(origin, loaded, load, warnings)
 
 
 def rotors_result(
