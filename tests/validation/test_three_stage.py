@@ -23,7 +23,6 @@ from gearwhine.coupling.analyses.transient import starting_state
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
-from gearwhine.from_case.machine import pair_geometries
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes
 from gearwhine.solve.machine import plan_of
 
@@ -133,7 +132,7 @@ def test_natural_frequencies_of_the_stages(
 
 
 def test_gears_and_supports_are_as_published(case: Case, published: Callable[..., None]) -> None:
-    for pair in pair_geometries(case):
+    for pair in case.parts.pair_geometries:
         assert pair.driver.teeth == pair.driven.teeth == 36
         published(
             TEXT, f"contact ratio of {pair.driver.name} with {pair.driven.name}", 1.6, pair.contact_ratio, abs=0.05
