@@ -19,7 +19,8 @@ Sub-packages and modules, each of which imports only those before it: ``gearwhin
 ``gearwhine.housing.acoustics`` (radiated sound), ``gearwhine.housing.measured`` (surveys and their files),
 ``gearwhine.housing.correlation`` (modal assurance criterion and others), ``gearwhine.housing.updating`` (model
 updating), ``gearwhine.housing.pictures`` (rendering), ``gearwhine.housing.model_warnings``, and
-``gearwhine.housing.housing``: the whole description, and what is known of it once its modes are solved.
+``gearwhine.housing.housing``: the whole description, and what is known of it once its modes are solved. Upon these
+stand ``gearwhine.housing.mesh_refinement`` and ``gearwhine.housing.modal_test``.
 """
 
 from gearwhine.housing.correlation.comparison import compare_by_dominance as compare_by_dominance

@@ -172,7 +172,7 @@ def fit(start: dict[str, Any], place: Path) -> None:
     """Fit a box by the whole of `gearwhine update` and write it as a case."""
     case = case_of(start, place)
     solved = update_housing(case, lambda message, part=None: print(f"  {message}", flush=True), threads=1)
-    place.write_text(updated_case(case, solved), encoding="utf-8")
+    place.write_text(updated_case(solved), encoding="utf-8")
 
 
 def case_of(start: dict[str, Any], place: Path) -> Case:

@@ -180,7 +180,7 @@ def update(
     add_warnings(document, updating.noise_warnings(solved.misfit_after, solved.target.noise))
 
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
-        (place / "updated.toml").write_text(updated_case(case, solved), encoding="utf-8")
+        (place / "updated.toml").write_text(updated_case(solved), encoding="utf-8")
         return {}
 
     return Result(

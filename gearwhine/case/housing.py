@@ -312,6 +312,10 @@ def _check_frequency_key(key: object) -> str:
     raise wrong("a frequency such as '658 Hz' as a key of the damping table")
 
 
+GEOMETRIES = ("box", "cad", "mesh")
+"""Tables of which a housing has exactly one: what it is made of."""
+
+
 class Housing(Table):
     """`[housing]`: geometry (exactly one of box, cad, mesh), material, damping and the modes wanted."""
 

@@ -68,9 +68,10 @@ def refused_by_key(table: HousingTable) -> Iterator[None]:
     Raises
     ------
     CaseError
-        With every fixture that does not fit the mesh, modes that the model does not have, or too few damping ratios.
+        With every fixture that does not fit the mesh, modes that the model does not have, too few damping ratios, or an
+        accuracy that no mesh reaches.
     """
-    keys = {"count": "modes", "below_hz": "frequency_limit", "damping_ratio": "damping_ratio"}
+    keys = {"count": "modes", "below_hz": "frequency_limit", "damping_ratio": "damping_ratio", "accuracy": "accuracy"}
     try:
         yield
     except HousingError as error:
@@ -80,7 +81,7 @@ def refused_by_key(table: HousingTable) -> Iterator[None]:
             raise CaseError(fixture_problems(table, error)) from error
         problems = []
         for finding in error.findings:
-            value = f"{len(finding.value)} ratios" if isinstance(finding.value, tuple) else UNSAID
+            value = f"{len(finding.value)} ratios" if isinstance(finding.value, tuple) else finding.value or UNSAID
             problems.append(Problem(f"housing.{keys[finding.attribute]}", value, finding.expected))
         raise CaseError(problems) from error
 

@@ -68,7 +68,9 @@ def build_mesh(
                 mesh = read_mesh(table.mesh.file, unit=UNITS[table.mesh.unit])
             mesh = mesh.rotated(np.array(table.mesh.rotation))
         return _with_faces(table, _with_seats(table, mesh))
-    assert table.cad is not None
+    if table.cad is None:
+        expected = "[housing.box], [housing.cad] or [housing.mesh]: what is asked for needs the mesh of a solid"
+        raise CaseError([Problem("housing", UNSAID, expected)])
     turn = np.array(table.cad.rotation)
     with (
         _at_fault("housing.cad", "a solid that can be meshed", file=True),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from gearwhine.case import Case, applied_torques
+from gearwhine.case import Case
 from gearwhine.output.quantity import RPM
 from gearwhine.output.sections import (
     NOTHING,
@@ -129,7 +129,7 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     if case is None:
         return Section("Machine")
     try:
-        rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
+        rotors, pairs = checked_rotors(case.parts), tuple(checked_pairs(case.parts))
     except (ValueError, RuntimeError) as error:
         return Section("Machine", (Finding(f"The machine of the case cannot be built: {error}", passed=False),))
     summaries = [Summary(document) for document in documents]
@@ -168,7 +168,7 @@ def _paragraph(
 
 def _operation(case: Case) -> str:
     assert case.operation is not None
-    torques = applied_torques(case)
+    torques = case.parts.torques
     speed = f"{case.operation.speed * RPM:.5g} rpm of the first driver"
     if not torques or not case.operation.torque:
         return f"Operation: {speed}."

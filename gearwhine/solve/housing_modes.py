@@ -13,8 +13,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 import gearwhine
 from gearwhine.case import Case, Housing, Material
 from gearwhine.case.input_files import InputFiles
@@ -27,17 +25,16 @@ from gearwhine.housing import Housing as DescribedHousing
 from gearwhine.housing import HousingModes, read_modes, write_modes
 from gearwhine.housing.errors import ModeFileError
 from gearwhine.housing.housing import RESPONSE_ORDERS
+from gearwhine.housing.mesh_refinement import refined_modes
 from gearwhine.housing.model_warnings import defect_warnings
 from gearwhine.housing.storage.mesh_arrays import mesh_digest
 from gearwhine.housing.storage.mode_file import ModeRecord, with_sensors
 from gearwhine.housing.storage.netcdf import content_key
-from gearwhine.meshes import Mesh, MeshDefect, mesh_quality
-from gearwhine.meshes.lengths import length_text
+from gearwhine.meshes import Mesh, MeshDefect
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.numerics.source_digest import installed, source_digest
 from gearwhine.output.files import MODE_CACHE_FILE, texts_in, with_contents
-from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 # Keys of [housing] that change no mode: damping is laid on the modes, sensors are put on the cached mesh afresh.
 _WITHOUT_EFFECT = frozenset({"damping_ratio", "sensor"})
@@ -47,6 +44,7 @@ MODES_CODE = (
     "gearwhine.housing.errors",
     "gearwhine.housing.housing",
     "gearwhine.housing.material",
+    "gearwhine.housing.mesh_refinement",
     "gearwhine.housing.fem",
     "gearwhine.housing.model",
     "gearwhine.housing.model_warnings",
@@ -58,7 +56,6 @@ MODES_CODE = (
     "gearwhine.from_case.mesh",
     "gearwhine.from_case.mesh_health",
     "gearwhine.solve.housing_modes",
-    "gearwhine.solve.mesh_refinement",
 )
 """Code that the modes are solved by: a change of any other, such as that of figures, leaves them cached."""
 _LIBRARIES = ("gmsh", "numpy", "scipy", "scikit-fem", "rslab")
@@ -193,33 +190,18 @@ def _refined(
 ) -> HousingModes:
     """Solve the housing on finer and finer meshes, until every mode's estimated error is within the accuracy."""
     table = given.table
-    steps: list[RefinementStep] = []
-    begin = time.perf_counter()
     size = None
     if table.box is not None:
         size = box_mesh_size(table.box, given.materials[table.material], table.frequency_limit)
-    while True:
-        trial = given if size is None else replace(given, table=table.meshed_by(size))
+
+    def solve(size: float | None) -> HousingModes:
         # Without a size the mesher takes a coarse one by the walls' thickness.
-        solved = _solve_on_one_mesh(trial, progress, None, before)
-        errors = solved.modes.discretisation_errors
-        assert errors is not None
-        size = mesh_quality(solved.mesh).edge_length[1] if size is None else size
-        worst = int(np.argmax(errors))
-        steps.append(RefinementStep(size, 3 * len(solved.mesh.points), len(errors), float(errors[worst])))
-        progress(
-            f"elements of {length_text(size)}, {steps[-1].dofs} degrees of freedom: mode {worst + 1} has the largest "
-            f"estimated error, {100 * errors[worst]:.3g} %; {100 * accuracy:g} % is wanted"
-        )
-        if errors[worst] <= accuracy:
-            break
-        size = next_size(steps, accuracy)
-    seconds = {**solved.seconds, "total": time.perf_counter() - begin}
-    # What was asked for is reached: no advice on the size of elements.
-    noted = [entry for entry in solved.record.notes["warnings"] if entry["name"] != "discretisation"]
-    steps_made = [step.document for step in steps]
-    notes = {**solved.record.notes, "warnings": noted, "seconds": seconds, "refinement": steps_made}
-    return replace(solved, seconds=seconds, record=replace(solved.record, inputs=inputs, notes=notes))
+        trial = given if size is None else replace(given, table=table.meshed_by(size))
+        return _solve_on_one_mesh(trial, progress, None, before)
+
+    with refused_by_key(table):
+        solved = refined_modes(solve, accuracy, size, progress)
+    return replace(solved, record=replace(solved.record, inputs=inputs))
 
 
 def _solve_on_one_mesh(

@@ -605,7 +605,7 @@ def _as_it_stands(task: tuple[ParametricHousing, bool]) -> HousingAtParameters:
     return replace(design, known=design.surrogate()) if with_surrogate else design
 
 
-def updated_case(case: Case, solved: SolvedUpdate) -> str:
+def updated_case(solved: SolvedUpdate) -> str:
     """Return the updated case as TOML; each fitted number's old value, new value and reason stand in [provenance].
 
     The prior stays where it was: an update of the updated case begins at the fitted value, and is drawn to the old

@@ -17,9 +17,9 @@ from gearwhine.output.quantity import Quantity, document_of
 from gearwhine.results.operating_point import SWEPT_PAIR
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
+from gearwhine.sweep.grid import Solved
 from gearwhine.sweep.points import axis_name
 from gearwhine.sweep.resolution import over_with, peak_warnings
-from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
 
 if TYPE_CHECKING:
@@ -66,12 +66,17 @@ _SOUND = (
 
 
 def collected_sweep(
-    case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+    case: Case | None,
+    keys: Sequence[SweptKey],
+    swept: Sequence[Solved],
+    peaks: Sequence[MissedPeak] = (),
+    title: str = "",
 ) -> xr.Dataset:
     """Collect every point of a sweep over its swept keys; NaN where a point failed or has no such line.
 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
-    lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz.
+    lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz. The title is
+    that of the case, where there is one.
     """
     import xarray as xr
 
@@ -106,9 +111,9 @@ def collected_sweep(
             _unit("Hz", "housing natural frequency"),
         )
     attributes = {
-        "title": case.title,
+        "title": title if case is None else case.title,
         "source": f"gearwhine {__version__}",
-        "case": dump_case(case),
+        **({} if case is None else {"case": dump_case(case)}),
         "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
         "phase_convention": PHASE_CONVENTION,
         "window": ", ".join(sorted({result.motion.window for result in grid.results()})),
@@ -117,7 +122,7 @@ def collected_sweep(
 
 
 def sweep_document(
-    keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+    keys: Sequence[SweptKey], swept: Sequence[Solved], peaks: Sequence[MissedPeak] = ()
 ) -> dict[str, Any]:
     """Return a sweep as the command's JSON, with the peaks that lie between its points."""
     rows = []
@@ -130,7 +135,8 @@ def sweep_document(
             "settings": _settings(keys, swept_point),
             "resumed": swept_point.resumed,
         }
-        row["file"] = f"{POINTS}/{swept_point.point.file}"
+        if swept_point.point.file:
+            row["file"] = f"{POINTS}/{swept_point.point.file}"
         if isinstance(swept_point.outcome, PointFailure):
             row |= {"status": "failed", "failure": swept_point.outcome.message}
             if swept_point.outcome.traceback:
@@ -160,7 +166,7 @@ def sweep_document(
 class _Grid:
     """Grid of the swept keys, which is filled point by point."""
 
-    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[SweptPoint]) -> None:
+    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[Solved]) -> None:
         self.names, self.shape, self.swept = names, shape, swept
 
     def results(self) -> list[PointResult]:
@@ -443,11 +449,11 @@ def _failure(outcome: PointResult | PointFailure) -> str:
     return outcome.message if isinstance(outcome, PointFailure) else ""
 
 
-def _settings(keys: Sequence[SweptKey], swept_point: SweptPoint) -> dict[str, str]:
+def _settings(keys: Sequence[SweptKey], swept_point: Solved) -> dict[str, str]:
     return {key.key: text for key, text in zip(keys, swept_point.point.texts, strict=True)}
 
 
-def _warnings(swept: Sequence[SweptPoint]) -> list[dict[str, Any]]:
+def _warnings(swept: Sequence[Solved]) -> list[dict[str, Any]]:
     """Warnings of the points' housings, each once."""
     by_message: dict[str, dict[str, Any]] = {}
     for swept_point in swept:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from gearwhine.case.box import FACES, Box
 from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
 from gearwhine.case.fields import Patch
-from gearwhine.case.housing import Seat
+from gearwhine.case.housing import GEOMETRIES, Seat
 from gearwhine.case.model import Draft
 from gearwhine.numerics.findings import in_mm
 from gearwhine.numerics.names import one_of
@@ -107,10 +107,11 @@ def check_housing_form(draft: Draft) -> Iterator[Finding]:
     housing = draft.document.get("housing")
     if not isinstance(housing, Mapping):
         return
-    forms = [key for key in ("box", "cad", "mesh") if key in housing]
+    forms = [key for key in GEOMETRIES if key in housing]
     if len(forms) != 1:
         value = forms or NOTHING
-        expected = "exactly one of [housing.box], [housing.cad] and [housing.mesh]"
+        *others, last = (f"[housing.{key}]" for key in GEOMETRIES)
+        expected = f"exactly one of {', '.join(others)} and {last}"
         yield Finding(("housing",), expected, value)
     limits = [key for key in ("frequency_limit", "modes") if key in housing]
     if len(limits) != 1:

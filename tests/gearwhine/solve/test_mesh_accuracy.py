@@ -7,9 +7,11 @@ import pytest
 
 import gearwhine as gw
 from gearwhine.case import CaseError
+from gearwhine.housing import HousingModes, mesh_refinement
+from gearwhine.housing.mesh_refinement import refined_modes
 from gearwhine.housing.storage.netcdf import content_key
+from gearwhine.meshes import BoxGeometry, WallThickness
 from gearwhine.solve.housing_modes import given_housing, solve_housing
-from gearwhine.solve.mesh_refinement import RefinementStep, next_size
 
 CASE = """
 [material.steel]
@@ -65,24 +67,27 @@ def test_size_and_accuracy_are_given_one_of_the_two(tmp_path: Path, accuracy: st
     assert said in str(refused.value)
 
 
-def test_steps_follow_the_order_that_errors_show() -> None:
-    """h (0.85 a / e)^(1/q): q = 2 at first, then as two steps have it; never less than 0.4, never more than 0.85."""
-    first = RefinementStep(0.02, 10_000, 8, 0.02)
-    assert next_size([first], 0.01) == pytest.approx(0.02 * (0.425) ** 0.5)
-    second = RefinementStep(0.01, 60_000, 8, 0.014)
-    order = 0.5145731728  # log2(0.02 / 0.014), below the least that is believed
-    assert order < 0.7
-    assert next_size([first, second], 0.01) == pytest.approx(0.01 * (0.85 / 1.4) ** (1 / 0.7))
-    assert next_size([RefinementStep(0.02, 10_000, 8, 0.4)], 0.05) == pytest.approx(0.02 * 0.4)
+def test_a_housing_of_python_is_refined_as_that_of_a_case(tmp_path: Path) -> None:
+    """The same box from the same first size; an accuracy that no mesh reaches is refused by the case's key."""
+    expected = solve_housing(_case(tmp_path, 'accuracy = "9 %"'))
+    box = BoxGeometry((0.12, 0.1, 0.08), WallThickness.uniform(0.02))
+    steel = gw.Material(207e9, 0.3, 7850.0)
+
+    def solve(size: float | None) -> HousingModes:
+        assert size is not None
+        return gw.Housing.from_box(box, size, steel).modes(count=8)
+
+    found = refined_modes(solve, 0.09, expected.refinement[0]["mesh_size_m"])
+    assert found.refinement == expected.refinement
+    assert (found.frequencies_hz == expected.frequencies_hz).all()
 
 
-def test_what_no_mesh_reaches_is_refused_with_what_was_reached() -> None:
-    with pytest.raises(CaseError, match=r"such as '2\.2 %' of elements of 5 mm with 355914 degrees of freedom"):
-        next_size([RefinementStep(0.013, 61_071, 12, 0.035), RefinementStep(0.005, 355_914, 12, 0.022)], 0.002)
-    creeping = [RefinementStep(0.02 * 0.9**n, 1000, 8, 0.05) for n in range(8)]
-    creeping[-2] = RefinementStep(0.02, 1000, 8, 0.06)
-    with pytest.raises(CaseError, match="8 meshes do not come near"):
-        next_size(creeping, 0.04)
+def test_an_accuracy_that_no_mesh_reaches_is_refused_by_its_key(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mesh_refinement, "MOST_UNKNOWNS", 1.0)
+    with pytest.raises(CaseError, match=r"housing\.accuracy: expected an accuracy within reach, .*'9 %'"):
+        solve_housing(_case(tmp_path, 'accuracy = "9 %"'))
 
 
 def test_an_update_takes_a_size(tmp_path: Path) -> None:

@@ -5,11 +5,19 @@ accuracy a, with the order q that the last two steps show, and the first step wi
 """
 
 import math
-from dataclasses import asdict, dataclass
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from gearwhine.case import CaseError, Problem
+import numpy as np
+
+from gearwhine.housing.errors import HousingError
+from gearwhine.housing.housing import HousingModes
+from gearwhine.meshes import mesh_quality
 from gearwhine.meshes.lengths import length_text
+from gearwhine.numerics.findings import Finding, refuse
+from gearwhine.numerics.progress import Progress, silent
 
 MOST_UNKNOWNS = 1.5e6
 """Degrees of freedom beyond which no mesh is tried: their modes take tens of gigabytes of memory, and hours."""
@@ -49,12 +57,59 @@ class RefinementStep:
         return asdict(self)
 
 
+def refined_modes(
+    solve: Callable[[float | None], HousingModes],
+    accuracy: float,
+    size: float | None = None,
+    progress: Progress = silent,
+) -> HousingModes:
+    """Solve a housing on finer and finer meshes, until every mode's estimated error is within an accuracy.
+
+    Parameters
+    ----------
+    solve : callable
+        Meshes the housing by a size of elements [m] and solves its modes; None is a coarse size of the mesher's own.
+    accuracy : float
+        Largest estimated error of a natural frequency, as a part of it.
+    size : float, optional
+        Size of the first mesh's elements [m].
+    progress : callable
+
+    Raises
+    ------
+    HousingError
+        Where the accuracy needs too many unknowns, or finer meshes do not come nearer to it.
+    """
+    steps: list[RefinementStep] = []
+    begin = time.perf_counter()
+    while True:
+        solved = solve(size)
+        errors = solved.modes.discretisation_errors
+        assert errors is not None
+        size = mesh_quality(solved.mesh).edge_length[1] if size is None else size
+        worst = int(np.argmax(errors))
+        steps.append(RefinementStep(size, 3 * len(solved.mesh.points), len(errors), float(errors[worst])))
+        progress(
+            f"elements of {length_text(size)}, {steps[-1].dofs} degrees of freedom: mode {worst + 1} has the largest "
+            f"estimated error, {100 * errors[worst]:.3g} %; {100 * accuracy:g} % is wanted"
+        )
+        if errors[worst] <= accuracy:
+            break
+        size = next_size(steps, accuracy)
+    seconds = {**solved.seconds, "total": time.perf_counter() - begin}
+    # What was asked for is reached: no advice on the size of elements.
+    noted = [entry for entry in solved.record.notes["warnings"] if entry["name"] != "discretisation"]
+    steps_made = [step.document for step in steps]
+    notes = {**solved.record.notes, "warnings": noted, "seconds": seconds, "refinement": steps_made}
+    return replace(solved, seconds=seconds, record=replace(solved.record, notes=notes))
+
+
 def next_size(steps: list[RefinementStep], accuracy: float) -> float:
     """Return the size of the next mesh [m].
 
     Raises
     ------
-    CaseError
+    HousingError
         Where it needs too many unknowns, or the steps do not come nearer.
     """
     last, order = steps[-1], _ORDER
@@ -79,5 +134,5 @@ def next_size(steps: list[RefinementStep], accuracy: float) -> float:
             f"an accuracy within reach, such as '{reached:g} %' of elements of {size} with {last.dofs} degrees of "
             f"freedom; {cause}"
         )
-        raise CaseError([Problem("housing.accuracy", f"{100 * accuracy:g} %", expected)])
+        refuse([Finding(("housing", ""), "accuracy", f"{100 * accuracy:g} %", expected)], HousingError)
     return factor * last.mesh_size_m
