@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Part, Quantity, Rows, document_of
+from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Fields, Getter, Part, Quantity, Rows, document_of
 from gearwhine.output.sections import Column, Curves, Document, Picture, Section, Table, columns_of, counted, table_of
 from gearwhine.output.store import Option, kept_sentence
 from gearwhine.results.housing import STATIC_ERROR, static_error, static_error_sentence
@@ -362,7 +362,8 @@ CROSSING = (
 """Quantities of a crossing of the Campbell diagram."""
 
 
-def _diagram(name: str, of: Any, unit: str, long_name: str) -> Quantity:
+def _diagram(name: str, of: Getter, unit: str, long_name: str = "") -> Quantity:
+    """Declare a quantity of every branch over speed, for the file."""
     return Quantity("", of, f"system_campbell_{name}", ("system_speed", "system_branch"), unit, long_name=long_name)
 
 
@@ -382,14 +383,10 @@ class _Branch(NamedTuple):
 
 CAMPBELL = (
     Quantity("speeds_rpm", "diagram.speeds", "system_campbell_speed", ("system_speed",)),
-    _diagram(
-        "frequency", lambda row: row.diagram.frequencies_hz, "Hz", "damped frequency of the coupled modes over speed"
-    ),
-    _diagram(
-        "damping_ratio", lambda row: row.diagram.damping_ratios, "1", "damping ratio of the coupled modes over speed"
-    ),
-    _diagram("whirl", lambda row: row.diagram.whirl, "1", "sense of the rotor that bends most, 1 counter-clockwise"),
-    _diagram("teeth", lambda row: row.diagram.teeth, "1", "share of the gear meshes in the strain energy"),
+    _diagram("frequency", "diagram.frequencies_hz", "Hz", "damped frequency of the coupled modes over speed"),
+    _diagram("damping_ratio", "diagram.damping_ratios", "1", "damping ratio of the coupled modes over speed"),
+    _diagram("whirl", "diagram.whirl", "1", "sense of the rotor that bends most, 1 counter-clockwise"),
+    _diagram("teeth", "diagram.teeth", "1"),
     _diagram("kind", lambda row: row.diagram.kinds.astype(str), "", "kind"),
     _diagram("where", lambda row: row.diagram.where.astype(str), "", "where"),
     Rows(

@@ -21,6 +21,7 @@ from gearwhine.results import chapters_of, comparison, gears, housing, motion, r
 from gearwhine.results import steady_state as steady
 from gearwhine.results.bearing_lives import life_in_words
 from gearwhine.results.first_page import _sound_proofs, first_page, machine_section
+from gearwhine.results.summaries import Summary
 
 VOID = {"meta", "img"}
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAQAAAC1HAwCAAAAC0lEQVR42mNk+A8AAQUBAScY42YAAAAASUVORK5CYII=")
@@ -353,7 +354,7 @@ def test_a_run_without_sound_is_not_held_against_the_keys_of_sound(
 @pytest.mark.parametrize(("error", "passed"), [(0.2, True), (0.36, None), (1.2, False)])
 def test_a_known_source_a_third_off_is_no_tick(error: float, passed: bool | None) -> None:
     sound = {"known_source_error": error, "known_source_rms": 0.05}
-    (finding,) = _sound_proofs({"sound": sound})
+    (finding,) = _sound_proofs(Summary({"sound": sound}))
     assert "(bound: 25.9 %, 2 dB)" in finding.text
     assert finding.passed is passed
 
