@@ -4,10 +4,10 @@ import json
 from dataclasses import replace
 
 import pytest
+from case_housings import described_housing
 
 import gearwhine as gw
 from gearwhine.coupling import CouplingError
-from gearwhine.solve.housing_modes import bearing_places, describe_housing
 
 RANKED = ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without")
 
@@ -41,8 +41,7 @@ def test_faces_lines_and_sound_of_a_machine_in_a_housing_of_python_are_those_of_
     assert solved is not None
     assert case.housing is not None
     assert isinstance(case.housing.damping_ratio, float)
-    described = replace(describe_housing(case, solved.mesh), damping_ratio=case.housing.damping_ratio)
-    modes = described.modes(below_hz=case.housing.frequency_limit, bearings=bearing_places(case))
+    modes = described_housing(case, solved.mesh).modes(below_hz=case.housing.frequency_limit, bearings=solved.bearings)
     machine = replace(study.machine, housing=modes)
     found = gw.Study(machine, study.settings).operating_point(sensitivity=True).document
     expected = study.operating_point(sensitivity=True).document
