@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from gearwhine.rotors import RotorError as RotorError
     from gearwhine.rotors import Segment as Segment
     from gearwhine.rotors import ShaftMaterial as ShaftMaterial
-    from gearwhine.study import Settings as Settings
+    from gearwhine.studied_machine import Settings as Settings
     from gearwhine.study import Study as Study
 
 try:
@@ -80,7 +80,8 @@ _HOMES = {
     "gearwhine.case": ("Case", "CaseError"),
     "gearwhine.case.units": ("rpm", "to_rpm"),
     "gearwhine.case_study": ("CaseStudy", "build", "load"),
-    "gearwhine.study": ("Settings", "Study"),
+    "gearwhine.studied_machine": ("Settings",),
+    "gearwhine.study": ("Study",),
     "gearwhine.housing": (
         "Housing",
         "HousingError",

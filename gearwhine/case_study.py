@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from gearwhine.numerics.findings import Number
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
-from gearwhine.study import Settings, Study
+from gearwhine.studied_machine import Settings
+from gearwhine.study import Study
 from gearwhine.view_names import View
 
 if TYPE_CHECKING:

@@ -1,42 +1,30 @@
-"""Study: a machine, what its analyses take beside it, and the analyses, each a call that returns a labelled result.
+"""Study: the analyses of a machine, each a call that returns a labelled result.
 
-The command line is made from the same methods: their parameters are its options, their first lines its help.
+The command line is made from the same methods: their parameters are its options, their docstrings its help.
 """
 
-import math
 import os
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from gearwhine.numerics.findings import Finding, Instance, Number, Numbers, Rule, attribute_findings, refuse
-from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.findings import Finding, Number, refuse
+from gearwhine.studied_machine import StudiedMachine
 
 if TYPE_CHECKING:
-    from gearwhine.analyses.machine_results import MachineUnderLoad
-    from gearwhine.analyses.origin import Origin
     from gearwhine.analyses.result import Result
     from gearwhine.analyses.run_solution import RunSolution
-    from gearwhine.coupling import Machine
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.modes_and_responses import SolvedSystem
-    from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
-    from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.analyses.steady_state import SolvedSteady
-    from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
-    from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
-    from gearwhine.housing import HousingModes
-    from gearwhine.housing.correlation.comparison import Comparison
-    from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 
 
@@ -45,62 +33,7 @@ HARMONICS = Number(at_least=1, at_most=50, whole=True)
 POINTS = Number(at_least=2, at_most=2000, whole=True)
 
 
-@dataclass(frozen=True)
-class Settings:
-    """What analyses of a machine take beside it.
-
-    Attributes
-    ----------
-    title : str
-        Title of the results.
-    transient : TransientPlan, optional
-        Stretch of the motion over time; without one ``run`` has no motion.
-    tracking : OrderTracking, optional
-        Windows of the orders along a run.
-    speeds : sequence of float
-        Signed speeds of the first driver's shaft for analyses over speed [rad/s].
-    acoustics : Acoustics, optional
-        Method and medium, floor and microphones of the sound.
-    sound_in_run : bool, optional
-        Whether ``run`` finds the sound of its motion with these acoustics; by default unless they are boundary
-        elements, which take minutes.
-    """
-
-    title: str = ""
-    transient: "TransientPlan | None" = None
-    tracking: "OrderTracking | None" = None
-    speeds: Sequence[float] = ()
-    acoustics: "Acoustics | None" = None
-    sound_in_run: bool | None = None
-
-    def __post_init__(self) -> None:
-        """Keep own copies, and check each of them."""
-        from gearwhine.coupling.analyses.recording import TransientPlan
-        from gearwhine.coupling.analyses.run_up import OrderTracking
-        from gearwhine.coupling.errors import CouplingError
-        from gearwhine.coupling.sound import Acoustics
-        from gearwhine.numerics.own_copies import keep_tuples
-
-        keep_tuples(self, "speeds")
-        rules: dict[str, Rule] = {
-            "title": Instance(str, "a text"),
-            "transient": Instance(TransientPlan, "a TransientPlan, or None", optional=True),
-            "tracking": Instance(OrderTracking, "an OrderTracking, or None", optional=True),
-            "speeds": Numbers(each=Number(unit="rad/s")),
-            "acoustics": Instance(Acoustics, "an Acoustics, or None", optional=True),
-            "sound_in_run": Instance(bool, "a truth value, or None", optional=True),
-        }
-        refuse(attribute_findings(("settings", self.title), self, **rules), CouplingError)
-
-    @property
-    def is_sound_in_run(self) -> bool:
-        """Whether ``run`` finds the sound of its motion."""
-        if self.acoustics is None:
-            return False
-        return self.acoustics.method != "boundary-elements" if self.sound_in_run is None else self.sound_in_run
-
-
-class Study:
+class Study(StudiedMachine):
     """A machine, what its analyses take beside it, and the analyses: each a call that returns a labelled result.
 
     The results are those of the same machine in a case: the same numbers, warnings, figures and files.
@@ -126,35 +59,6 @@ class Study:
     >>> modes.dataset["system_frequency"].attrs["units"]
     'Hz'
     """
-
-    def __init__(self, machine: "Machine", settings: Settings | None = None, progress: Progress = silent) -> None:
-        from gearwhine.coupling import CouplingError
-        from gearwhine.coupling import Machine as Described
-
-        if not isinstance(machine, Described):
-            raise CouplingError(f"a study is of a gearwhine.Machine, got {machine!r}; gearwhine.load reads a case")
-        self._machine = machine
-        self._settings = settings or Settings()
-        self._start(progress)
-
-    def _start(self, progress: Progress) -> None:
-        self.progress = progress
-        self._at_constant_speed: MachineUnderLoad | None = None
-        self._lock = threading.RLock()
-
-    def __repr__(self) -> str:
-        """Return the machine's own words."""
-        return f"<Study of {self.machine!r}>"
-
-    @property
-    def machine(self) -> "Machine":
-        """The shafts, gears, bearings and gear pairs as one object, with all that loads it."""
-        return self._machine
-
-    @property
-    def settings(self) -> Settings:
-        """Title, stretch of the transient, and speeds of analyses over speed."""
-        return self._settings
 
     def rotors(self, **settings: Any) -> "Result[tuple[SolvedRotor, ...]]":
         """Lateral and torsional modes, whirl and critical speeds of each rotor.
@@ -401,7 +305,7 @@ class Study:
 
         The motion is that of the settings' transient; without one there is none.
         """
-        from gearwhine.analyses.run import WholeRun
+        from gearwhine.whole_run import WholeRun
 
         return WholeRun(self, self.settings.transient).result()
 
@@ -420,134 +324,11 @@ class Study:
         gearwhine.housing.errors.RendererUnavailableError
             Where modes are to be drawn and no renderer is available.
         """
-        from gearwhine.analyses.run import WholeRun
+        from gearwhine.whole_run import WholeRun
 
         with ExitStack() as until_written:
             run = WholeRun(self, self.settings.transient, Path(folder), until_written, pictures=pictures)
             return run.result().stored(Path(folder), pictures=pictures, progress=self.progress)
-
-    # What follows is for the analyses: what the study is of, and what a study of a case does otherwise.
-
-    @property
-    def origin(self) -> "Origin":
-        """What the results are of."""
-        from gearwhine.analyses.origin import Origin
-
-        return Origin(self.settings.title, self.machine.speed)
-
-    @property
-    def fresh(self) -> bool:
-        """Whether to solve again what a results folder holds."""
-        return False
-
-    @property
-    def has_housing(self) -> bool:
-        """Whether a housing is solved for the results, with its modes among them."""
-        return False
-
-    @property
-    def has_machine(self) -> bool:
-        """Whether the parts are those of a machine."""
-        return True
-
-    def require(self, command: str) -> None:
-        """Refuse a command that the study does not allow, before anything is solved."""
-        from gearwhine.coupling import CouplingError
-
-        if command == "steady" and self.machine.speed == 0.0:
-            raise CouplingError("steady: expected a speed: what stands still has no motion that repeats")
-        if command == "simulate" and self.settings.transient is None:
-            example = "study.simulate(revolutions=40, discard=20), or Settings(transient=TransientPlan(...))"
-            raise CouplingError(f"simulate: expected how far to integrate, such as {example}")
-
-    def solved_rotors(self, **settings: Any) -> "tuple[SolvedRotor, ...]":
-        """Solve each rotor, alone in its bearings on rigid seats."""
-        from gearwhine.coupling.analyses.shafts_alone import solve_shafts
-
-        return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
-
-    def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
-        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
-
-        Modes that a ``folder`` keeps are read in place of solving.
-        """
-        return None
-
-    def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
-        """Compare the modes of the housing with measured ones; None without such."""
-        return None
-
-    def under_load(self, plan: "TransientPlan | None" = None) -> "MachineUnderLoad":
-        """Return the machine about its operating point, assembled for a plan; at constant speed it is made once."""
-        if plan is not None and plan.run is not None:
-            return self._put_under_load(plan.run)
-        with self._lock:
-            if self._at_constant_speed is None:
-                self._at_constant_speed = self._put_under_load(None)
-            return self._at_constant_speed
-
-    def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
-        from gearwhine.analyses.machine_results import machine_under_load
-
-        return machine_under_load(self.machine, self.origin, run, self.progress)
-
-    def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
-        """Analyse each gear pair as it stands in the machine under load."""
-        from gearwhine.coupling.analyses.gear_pairs import analyse_machine
-
-        if machine is None:
-            return ()
-        point = None if machine.load is None else machine.load.point
-        return analyse_machine(self.machine, point, self.progress, pairs=machine.loaded.pairs)
-
-    def motion(
-        self,
-        machine: "MachineUnderLoad",
-        plan: "TransientPlan",
-        modes: "CoupledModes",
-        keep: Callable[[str], Any] | None = None,
-    ) -> "MachineMotion":
-        """Integrate the motion of the machine under load; ``keep`` stores its blocks."""
-        from gearwhine.coupling.analyses.motion import solve_motion
-        from gearwhine.coupling.analyses.run_up import OrderTracking
-
-        tracking = self.settings.tracking or OrderTracking()
-        return solve_motion(machine.loaded, plan, tracking, modes, self.progress, keep=keep)
-
-    def left_out_of_sound(self, plan: "TransientPlan | None") -> "list[ResultWarning]":
-        """Return the warning that the sound of the motion's lines is left out, and why; none where it is not."""
-        from gearwhine.coupling.sound.motion_lines import left_out_warnings
-
-        speed_changes = plan is not None and plan.run is not None
-        return left_out_warnings(base_moves=self.machine.base is not None, speed_changes=speed_changes)
-
-    def _assumed_mesh_damping(self) -> tuple[str, ...]:
-        """Return the gear pairs whose mesh damping nobody gave."""
-        return ()
-
-    def _diagram_speeds(self) -> tuple[float, ...]:
-        """Return the signed speeds of a diagram of the machine [rad/s], ascending in size."""
-        from gearwhine.numerics.speed_ranges import campbell_speeds
-
-        chosen = sorted(self.settings.speeds, key=abs)
-        return tuple(chosen) or campbell_speeds(self.machine.speed, self._held_speeds())
-
-    def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        """Return the signed speeds from which and to which a motion is followed [rad/s]."""
-        from gearwhine.numerics.speed_ranges import BEYOND_OPERATION, SLOWEST_OF_BRANCH
-
-        low, high = self._held_speeds()
-        speeds = sorted(self.settings.speeds, key=abs)
-        if not speeds:
-            sense, size = math.copysign(1.0, self.machine.speed), abs(self.machine.speed)
-            speeds = [sense * max(SLOWEST_OF_BRANCH * size, low), sense * min(BEYOND_OPERATION * size, high)]
-        return (speeds[-1], speeds[0]) if down else (speeds[0], speeds[-1])
-
-    def _held_speeds(self) -> tuple[float, float]:
-        """Return the range of speeds of the first shaft, without sense, that the bearings' tables hold [rad/s]."""
-        from gearwhine.coupling.analyses.shafts_alone import held_speeds
-
-        return held_speeds(self.machine)
 
 
 def _require_numbers(verb: str, **given: tuple[object, Number]) -> None:

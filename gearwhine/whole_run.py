@@ -32,7 +32,7 @@ from gearwhine.solve.housing_modes import write_mode_cache
 from gearwhine.solve.operating_shapes import highest_lines
 
 if TYPE_CHECKING:
-    from gearwhine.study import Study
+    from gearwhine.studied_machine import StudiedMachine
 
 _DRAWN_LINES = 6  # operating shapes of a run
 
@@ -42,7 +42,7 @@ class WholeRun:
 
     Parameters
     ----------
-    study : Study
+    study : StudiedMachine
     plan : TransientPlan or None
         Stretch of the motion over time; None for no motion.
     folder : path, optional
@@ -56,7 +56,7 @@ class WholeRun:
 
     def __init__(
         self,
-        study: Study,
+        study: StudiedMachine,
         plan: TransientPlan | None,
         folder: Path | None = None,
         until_written: ExitStack | None = None,
