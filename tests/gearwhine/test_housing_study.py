@@ -11,6 +11,7 @@ from case_housings import described_housing
 import gearwhine as gw
 from gearwhine.housing import HousingModes
 from gearwhine.housing.measured import MeasuredModes
+from gearwhine.housing.modal_test import ModalTest
 from gearwhine.meshes import Bore, BoxGeometry, WallThickness
 from gearwhine.solve.comparison import modal_test_of
 
@@ -71,11 +72,11 @@ def test_a_test_that_does_not_fit_the_housing_is_refused(modes: HousingModes) ->
         gw.HousingStudy("box")  # type: ignore[arg-type]
     alone = MeasuredModes(np.array([1e3]))
     with pytest.raises(gw.HousingError, match="modal test: pairing is 'shapes'; expected another one of frequencies"):
-        gw.ModalTest(alone, pairing="shapes")
+        ModalTest(alone, pairing="shapes")
     with pytest.raises(gw.HousingError, match="align is 'walls'; expected 'surface', a mapping"):
-        gw.ModalTest(alone, align="walls")  # type: ignore[arg-type]
+        ModalTest(alone, align="walls")  # type: ignore[arg-type]
     with pytest.raises(gw.HousingError, match=r"modal test: modes is .*; expected MeasuredModes"):
-        gw.ModalTest([1e3])  # type: ignore[arg-type]
+        ModalTest([1e3])  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
