@@ -88,7 +88,7 @@ def test_a_shear_modulus_of_its_own_is_that_of_shafts_alone() -> None:
     ratio = stiffer.modal.torsional.frequencies[1] / rotor.modal.torsional.frequencies[1]
     assert ratio == pytest.approx((90.0 / 70.0) ** 0.5, rel=1e-9)
     with pytest.raises(CaseError, match="in a housing, whose solids are isotropic"):
-        material_of(load_case("small-gearbox", changes[:1]).case, "steel")
+        material_of(load_case("small-gearbox", changes[:1]).case.material, "steel")
     with pytest.raises(CaseError, match="of a material of this Young's modulus"):
         load_case("spur-pair", ["material.steel.shear_modulus=7 GPa"])
 
