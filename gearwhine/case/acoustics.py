@@ -77,11 +77,6 @@ class Acoustics(Table):
     """Whether `run` finds the sound of its motion, too; the command `sound` always finds that of the steady motion.
     Default: `true` for `rayleigh` and `erp`, `false` for `boundary-elements`, which take minutes."""
 
-    @property
-    def is_in_run(self) -> bool:
-        """Whether `run` finds the sound of its motion."""
-        return self.method != "boundary-elements" if self.in_run is None else self.in_run
-
     def build(self) -> BuiltAcoustics:
         """Build the settings of the sound.
 

@@ -17,11 +17,6 @@ from gearwhine.numerics.result_warnings import ResultWarning
 _LENGTHS = ("mesh_size", "floor", "microphone_box", "position")
 
 
-def is_in_run(case: Case) -> bool:
-    """Whether `run` finds the sound of a case's motion."""
-    return case.housing is not None and case.acoustics is not None and case.acoustics.is_in_run
-
-
 def acoustics_of(case: Case) -> AcousticsSettings:
     """Return the settings of a case's sound; without `[acoustics]` boundary elements in free air."""
     return (case.acoustics or Acoustics()).build()
