@@ -10,7 +10,6 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.housing import measured
 from gearwhine.meshes.gmsh_meshing import gmsh_session
 from gearwhine.rotors import write_ross
@@ -97,7 +96,7 @@ def _tables(made: Path) -> Iterator[tuple[str, Files, str, list[str]]]:
     files = {"stiffness.csv": table.encode(), "case.toml": text.encode()}
     yield "stiffness table", files, "stiffness.csv", ["gears", "case.toml", "-q"]
     case = load_case("friswell-rotor").case
-    write_ross(made / "shaft.toml", build_rotor(case, case.rotor[0]), build_bearings(case, case.rotor[0].name))
+    write_ross(made / "shaft.toml", case.parts.rotors[0], case.parts.bearings_on(case.rotor[0].name))
     yield "ROSS", {"shaft.toml": (made / "shaft.toml").read_bytes()}, "shaft.toml", ["rotors", "shaft.toml", "-q"]
 
 

@@ -20,7 +20,8 @@ from gearwhine.coupling import periodic_response, response_curve
 from gearwhine.coupling.analyses.steady_state import CURVE_TOLERANCE
 from gearwhine.coupling.analyses.transient import solve_transient
 from gearwhine.coupling.periodic.continuation import ResponseCurve
-from gearwhine.solve.machine import described_machine, plan_of
+from gearwhine.from_case.machine import describe_machine
+from gearwhine.solve.machine import plan_of
 
 RPM = 2.0 * np.pi / 60.0
 BALANCED = "rotor.input.unbalance="
@@ -35,7 +36,7 @@ def processor_seconds(work: Callable[[], Result]) -> tuple[float, Result]:
 
 def curve_of(case: Case, low: float, high: float, points: int) -> ResponseCurve:
     """The branch between two speeds [rpm]."""
-    built = described_machine(case, None).assembled
+    built = describe_machine(case).assembled
     return response_curve(
         lambda speed: built.at_speed(speed).system, low * RPM, high * RPM, points=points, tolerance=CURVE_TOLERANCE
     )
@@ -54,7 +55,7 @@ def main() -> None:
     common = [f"operation.torque={given.torque}", f"gear_pair.0.damping_ratio={given.damping}"]
     for name, changes in (("as it is", common), ("balanced", [*common, BALANCED])):
         case = load_case("spur-pair", changes).case
-        built = described_machine(case, None).assembled
+        built = describe_machine(case).assembled
         print(f"\n{name}, {built.system.size} coordinates")
         transients = {}
         for method in ("newmark", "exact"):

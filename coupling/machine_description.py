@@ -20,6 +20,7 @@ from gearwhine.coupling.assembly import CoupledMachine, assemble_machine
 from gearwhine.coupling.description.arrangement import (
     BACKLASH_OF_A_BRAKE,
     POWER_FROM_THE_DRIVER,
+    gravity_findings,
     output_elsewhere,
     table_findings_of_speeds,
 )
@@ -230,6 +231,8 @@ class Machine:
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
         for place, force in enumerate(self.forces):
             yield from force_findings(force, self.shaft(force.rotor).rotor, place)
+        if self.gravity is not None:
+            yield from gravity_findings(self.gravity)
         for mounted in self.gears:
             yield from mounted.gear.findings
         for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
@@ -325,11 +328,8 @@ class Machine:
     @cached_property
     def axial_locations(self) -> tuple[AxialLocation, ...]:
         """Axial location of each shaft by its bearings."""
-        speeds = self.speeds
         return tuple(
-            AxialLocation(
-                shaft.name, [axial_support(bearing, speeds[shaft.name]) for bearing in self._bearings_on(shaft.name)]
-            )
+            AxialLocation(shaft.name, [axial_support(bearing) for bearing in self._bearings_on(shaft.name)])
             for shaft in self.shafts
         )
 

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
-    from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
@@ -219,23 +218,23 @@ class CaseStudy(Study):
 
         It stands in the solved housing of the case.
         """
-        from gearwhine.solve.machine import described_machine
+        from gearwhine.from_case.machine import describe_machine
 
         with self._lock:
             if self._described is None:
-                self._described = described_machine(self.case, self.housing)
+                self._described = describe_machine(self.case, self.housing)
             return self._described
 
     @property
     def settings(self) -> Settings:
         """Title, transient and speeds of the case: `gw.Study(study.machine, study.settings)` analyses its machine."""
-        from gearwhine.case.speeds_and_torques import with_sense_of_operation
+        from gearwhine.case.analysis_speeds import with_sense_of
         from gearwhine.solve.acoustics import acoustics_of
         from gearwhine.solve.machine import plan_of, tracking_of
 
         case = self.case
         plan = None if case.transient is None else plan_of(case)
-        speeds = () if case.sweep is None else with_sense_of_operation(case, case.sweep.speeds)
+        speeds = () if case.sweep is None else with_sense_of(case.operation, case.sweep.speeds)
         acoustics, in_run = None, None
         if case.acoustics is not None:
             acoustics, in_run = acoustics_of(case), case.acoustics.in_run
@@ -509,88 +508,10 @@ class CaseStudy(Study):
         if aims_at_sensor(case):
             return self.housing
         if self._kept.solved is None:
-            if case.housing.sensor or any(case.finds_misalignment(pair) for pair in case.gear_pair):
+            if case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair):
                 return kept_housing(case, self.folder, self.progress)
             return None
         return self._kept.solved
-
-    def operating_point(
-        self,
-        *,
-        over_torque: bool = False,
-        sensitivity: bool = False,
-        line: str | None = None,
-        rigid_seats: bool = False,
-    ) -> "Result[SolvedLoad]":
-        """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
-
-        Parameters
-        ----------
-        over_torque : bool
-            Also solve from 10 to 150 % of the torque.
-        sensitivity : bool
-            Also rank walls and bearings by what they change in gear pairs, in the lines of sensors and, with
-            [acoustics], in the sound power of the loudest lines.
-        line : str, optional
-            Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'; or of the
-            sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.
-        rigid_seats : bool
-            Hold the bearings in rigid seats; leave the housing out.
-
-        Raises
-        ------
-        CaseError, gearwhine.coupling.CouplingError
-            Where the parts do not make a machine, nothing loads it, or a load drives a motion that nothing holds.
-        gearwhine.coupling.EquilibriumNotFoundError
-            Where no equilibrium is found.
-        """
-        from gearwhine.analyses.machine_results import load_result
-        from gearwhine.coupling.load_analysis.solved_load import solve_load
-        from gearwhine.from_case.gear_pairs import aligned_by_default
-        from gearwhine.solve.machine import described_machine
-
-        self.require("load")
-        ranked = sensitivity or line is not None
-        housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
-        machine = described_machine(self.case, None) if rigid_seats else self.machine
-        solved = solve_load(
-            machine,
-            self.progress,
-            over_torque=over_torque,
-            over_hunting_period=True,
-            aligned_by_default=aligned_by_default(self.case),
-        )
-        if ranked:
-            solved = replace(solved, sensitivity=self._ranking(machine, solved.point, housing, line))
-        return load_result(solved, replace(self.origin, housing=housing), self.progress)
-
-    def _ranking(
-        self, machine: "Machine", point: "OperatingPoint", housing: "HousingModes | None", line: str | None
-    ) -> "LoadSensitivity":
-        """Rank the parts of the machine; a line that there is not is refused by its option."""
-        from gearwhine.case import CaseError, Problem
-        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
-        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
-        from gearwhine.solve.machine import run_of
-        from gearwhine.solve.sensitivity.housing_changes import housing_changes
-
-        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
-        acoustics = acoustics_of(self.case)
-        try:
-            with refused_by_key(acoustics):
-                return solve_load_sensitivity(
-                    machine,
-                    point,
-                    housing,
-                    changes,
-                    acoustics=None if self.case.acoustics is None else acoustics,
-                    run=run_of(self.case),
-                    line=line,
-                    note=note,
-                    progress=self.progress,
-                )
-        except UnknownLineError as error:
-            raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
@@ -613,7 +534,7 @@ class CaseStudy(Study):
             Where the power through the surface and in the far field differ by more than 10 %, or a known source inside
             is lost at a vertex of the surface.
         """
-        from gearwhine.analyses.machine_results import RadiatingHousing, sound_result
+        from gearwhine.analyses.machine_results import sound_result
         from gearwhine.coupling.sound import Acoustics
 
         # The checks of the surface are for this analysis alone.
@@ -631,11 +552,10 @@ class CaseStudy(Study):
         if self.has_machine:
             warnings = self.left_out_of_sound(None)
             machine = None if warnings else self.under_load()
-        origin = replace(self.origin, housing=housing)
         with refused_by_key(chosen):
-            return sound_result(RadiatingHousing(origin, field, chosen, housing.up), machine, warnings, self.progress)
+            return sound_result(housing, chosen, self.origin, machine, warnings, self.progress)
 
-    def sweep(
+    def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
         self,
         over: Sequence[str] = (),
         *,
@@ -780,22 +700,59 @@ class CaseStudy(Study):
         measured = self.case.measured
         return None if measured is None else compare_measured(measured, housing, self.progress).comparison
 
-    def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
-        from gearwhine.analyses.machine_results import MachineUnderLoad
-        from gearwhine.coupling.analyses.loaded_machine import load_machine
+    def found_load(self) -> "tuple[SolvedLoad | None, Sequence[ResultWarning]]":
+        """Find the operating point; where the case does not need one that is not found, a warning gives the reason."""
         from gearwhine.solve.machine import load_of_case
 
-        load, warnings = load_of_case(self.case, self.machine, self.progress)
-        loaded = load_machine(self.machine, None if load is None else load.point, run, self.progress)
-        return MachineUnderLoad(replace(self.origin, housing=self.housing), loaded, load, warnings)
+        return load_of_case(self.case, self.machine, self.progress)
+
+    @property
+    def aligned_by_default(self) -> "Sequence[str]":
+        """Labels of the pairs whose misalignment the case leaves out, and no operating point has."""
+        from gearwhine.from_case.machine import aligned_by_default
+
+        return aligned_by_default(self.case.parts)
+
+    def on_rigid_seats(self) -> "Machine":
+        """Return the machine without its housing, which is not solved for it."""
+        from gearwhine.from_case.machine import describe_machine
+
+        return describe_machine(self.case)
+
+    def ranked_parts(self, machine: "Machine", point: "OperatingPoint", line: str | None) -> "LoadSensitivity":
+        """Rank the parts of the machine; a line that there is not is refused by its option."""
+        from gearwhine.case import CaseError, Problem
+        from gearwhine.coupling.load_analysis.ranking import UnknownLineError, solve_load_sensitivity
+        from gearwhine.solve.acoustics import acoustics_of, refused_by_key
+        from gearwhine.solve.machine import run_of
+        from gearwhine.solve.sensitivity.housing_changes import housing_changes
+
+        housing = self.housing if machine.housing is not None else None
+        changes, note = ((), None) if housing is None else housing_changes(self.case, housing.mesh)
+        acoustics = acoustics_of(self.case)
+        try:
+            with refused_by_key(acoustics):
+                return solve_load_sensitivity(
+                    machine,
+                    point,
+                    housing,
+                    changes,
+                    acoustics=None if self.case.acoustics is None else acoustics,
+                    run=run_of(self.case),
+                    line=line,
+                    note=note,
+                    progress=self.progress,
+                )
+        except UnknownLineError as error:
+            raise CaseError([Problem("--line", error.line, error.expected)]) from error
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load, or alone."""
-        from gearwhine.from_case.gear_pairs import solve_gears
+        from gearwhine.from_case.machine import solve_gears
         from gearwhine.solve.gear_pairs import analyse_pairs
 
         if machine is None:
-            return analyse_pairs(self.case, solve_gears(self.case, self.progress)) if self.case.gear_pair else ()
+            return analyse_pairs(self.case, solve_gears(self.case.parts, self.progress)) if self.case.gear_pair else ()
         return analyse_pairs(self.case, machine.loaded.pairs, None if machine.load is None else machine.load.point)
 
     def motion(
@@ -820,17 +777,17 @@ class CaseStudy(Study):
     def _assumed_mesh_damping(self) -> tuple[str, ...]:
         from gearwhine.solve.damping import assumed_mesh_damping
 
-        return assumed_mesh_damping(self.case)
+        return assumed_mesh_damping(self.case.gear_pair)
 
     def _diagram_speeds(self) -> tuple[float, ...]:
-        from gearwhine.case.speeds_and_torques import diagram_speeds
+        from gearwhine.case.analysis_speeds import diagram_speeds
 
-        return diagram_speeds(self.case)
+        return diagram_speeds(self.machine.speed, self.case.sweep, self._held_speeds())
 
     def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        from gearwhine.case.speeds_and_torques import branch_speeds
+        from gearwhine.case.analysis_speeds import branch_speeds
 
-        return branch_speeds(self.case, downwards=down)
+        return branch_speeds(self.machine.speed, self.case.sweep, self._held_speeds(), downwards=down)
 
 
 def _texts(changes: Mapping[str, object] | Sequence[str]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ A study of a case answers some of it otherwise, see :mod:`gearwhine.case_study`.
 import math
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from gearwhine.coupling.analyses.run_up import OrderTracking
     from gearwhine.coupling.description.excitation import Run
     from gearwhine.coupling.linear.complex_modes import CoupledModes
+    from gearwhine.coupling.load_analysis.influences import LoadSensitivity
+    from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
+    from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.numerics.result_warnings import ResultWarning
@@ -139,8 +142,8 @@ class StudiedMachine:
 
     @property
     def has_housing(self) -> bool:
-        """Whether a housing is solved for the results, with its modes among them."""
-        return False
+        """Whether the machine stands in a housing that is meshed, whose modes are among the results."""
+        return self.solved_housing() is not None
 
     @property
     def has_machine(self) -> bool:
@@ -164,11 +167,20 @@ class StudiedMachine:
         return solve_shafts(self.machine, self.settings.speeds, self.progress, **settings)
 
     def solved_housing(self, folder: Path | None = None, *, with_sound: bool = False) -> "HousingModes | None":
-        """Return the housing that is solved for the results; ``with_sound`` refuses acoustics that do not fit it.
+        """Return the housing that the machine stands in, where that is meshed and solved.
 
-        Modes that a ``folder`` keeps are read in place of solving.
+        ``with_sound`` refuses acoustics that do not fit it; modes that a ``folder`` keeps are read in place of solving.
         """
-        return None
+        from gearwhine.coupling.sound.acoustics_checks import require_acoustics
+        from gearwhine.housing import HousingModes
+
+        housing, acoustics = self.machine.housing, self.settings.acoustics
+        if not isinstance(housing, HousingModes):
+            return None
+        if with_sound and acoustics is not None:
+            field = housing.displacement_field
+            require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
+        return housing
 
     def compared_modes(self, housing: "HousingModes") -> "Comparison | None":
         """Compare the modes of the housing with measured ones; None without such."""
@@ -184,9 +196,37 @@ class StudiedMachine:
             return self._at_constant_speed
 
     def _put_under_load(self, run: "Run | None") -> "MachineUnderLoad":
-        from gearwhine.analyses.machine_results import machine_under_load
+        from gearwhine.analyses.machine_results import MachineUnderLoad
+        from gearwhine.coupling.analyses.loaded_machine import load_machine
 
-        return machine_under_load(self.machine, self.origin, run, self.progress)
+        load, warnings = self.found_load()
+        loaded = load_machine(self.machine, None if load is None else load.point, run, self.progress)
+        return MachineUnderLoad(replace(self.origin, housing=self.solved_housing()), loaded, load, warnings)
+
+    def found_load(self) -> "tuple[SolvedLoad | None, Sequence[ResultWarning]]":
+        """Find the operating point of the machine where something loads it, and its warnings."""
+        from gearwhine.coupling.load_analysis.load_warnings import find_load
+
+        return find_load(self.machine, self.progress) if self.machine.is_loaded else (None, ())
+
+    @property
+    def aligned_by_default(self) -> "Sequence[str]":
+        """Labels of the pairs that are aligned because nothing is said of their misalignment."""
+        return ()
+
+    def on_rigid_seats(self) -> "Machine":
+        """Return the machine without its housing, each bearing in a rigid seat."""
+        bearings = [replace(bearing, seat=None) for bearing in self.machine.bearings]
+        return replace(self.machine, bearings=bearings, housing=None)
+
+    def ranked_parts(self, machine: "Machine", point: "OperatingPoint", line: str | None) -> "LoadSensitivity":
+        """Rank the parts of the machine by what they change in gear pairs and in a line."""
+        from gearwhine.coupling.load_analysis.ranking import rank_parts
+
+        plan = self.settings.transient
+        run = None if plan is None else plan.run
+        acoustics = self.settings.acoustics
+        return rank_parts(machine, point, acoustics=acoustics, run=run, line=line, progress=self.progress)
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load."""

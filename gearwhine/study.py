@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from gearwhine.numerics.findings import Finding, Number, refuse
+from gearwhine.numerics.result_warnings import warning
 from gearwhine.studied_machine import StudiedMachine
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
+    from gearwhine.sweep.machine_sweep import SweptSpeed
 
 
 SIDEBANDS = Number(at_least=0, at_most=20, whole=True)
@@ -113,7 +115,12 @@ class Study(StudiedMachine):
         return gears_result(solve_over_torques(analysed, self.progress, chosen), self.origin, seats)
 
     def operating_point(
-        self, *, over_torque: bool = False, sensitivity: bool = False, line: str | None = None
+        self,
+        *,
+        over_torque: bool = False,
+        sensitivity: bool = False,
+        line: str | None = None,
+        rigid_seats: bool = False,
     ) -> "Result[SolvedLoad]":
         """Load on the whole machine at rest: bearing loads, deflections, misalignment and load of the gear faces.
 
@@ -122,37 +129,39 @@ class Study(StudiedMachine):
         over_torque : bool
             Also solve from 10 to 150 % of the torque.
         sensitivity : bool
-            Also rank bearings, and the flat faces of a housing of :meth:`gearwhine.Housing.modes`, by what they change
-            in gear pairs, in the lines of sensors and, with acoustics in the settings, in the sound power of the
-            loudest lines.
+            Also rank walls and bearings by what they change in gear pairs, in the lines of sensors and, with
+            [acoustics], in the sound power of the loudest lines.
         line : str, optional
-            Line that is ranked: a sensor, or with its frequency in Hz, 'roof@1377'; or of the sound, 'sound@1377'. By
-            default the highest, and the A-weighted sum of the loudest. It implies ``sensitivity``.
+            Line that --sensitivity ranks and draws: a sensor, or with its frequency in Hz, 'roof@1377'; or of the
+            sound, 'sound@1377'. By default the highest, and the A-weighted sum of the loudest.
+        rigid_seats : bool
+            Hold the bearings in rigid seats; leave the housing out.
 
         Raises
         ------
         gearwhine.coupling.CouplingError
-            Where nothing loads the machine, there is no such line, or a load drives a motion that nothing holds.
+            Where the parts do not make a machine, nothing loads it, there is no such line, or a load drives a motion
+            that nothing holds.
         gearwhine.coupling.EquilibriumNotFoundError
             Where no equilibrium is found.
         """
         from gearwhine.analyses.machine_results import load_result
-        from gearwhine.coupling.load_analysis.ranking import rank_parts
         from gearwhine.coupling.load_analysis.solved_load import solve_load
 
-        solved = solve_load(self.machine, self.progress, over_torque=over_torque, over_hunting_period=True)
-        if sensitivity or line is not None:
-            plan = self.settings.transient
-            ranking = rank_parts(
-                self.machine,
-                solved.point,
-                acoustics=self.settings.acoustics,
-                run=None if plan is None else plan.run,
-                line=line,
-                progress=self.progress,
-            )
-            solved = replace(solved, sensitivity=ranking)
-        return load_result(solved, self.origin)
+        self.require("load")
+        ranked = sensitivity or line is not None
+        housing = None if rigid_seats else self.solved_housing(with_sound=ranked)
+        machine = self.on_rigid_seats() if rigid_seats else self.machine
+        solved = solve_load(
+            machine,
+            self.progress,
+            over_torque=over_torque,
+            over_hunting_period=True,
+            aligned_by_default=self.aligned_by_default,
+        )
+        if ranked:
+            solved = replace(solved, sensitivity=self.ranked_parts(machine, solved.point, line))
+        return load_result(solved, replace(self.origin, housing=housing), self.progress)
 
     def system(
         self,
@@ -270,6 +279,39 @@ class Study(StudiedMachine):
         modes = coupled_modes(machine.coupled.system, mean_contact(machine.coupled.system))
         return motion_result(machine, self.motion(machine, plan, modes), modes)
 
+    def sweep(
+        self, speeds: Sequence[float] = (), plan: "TransientPlan | None" = None
+    ) -> "Result[Sequence[SweptSpeed]]":
+        """Integrate the motion over time at each of several speeds, one after the other.
+
+        The sound of the motions is no part of it; :meth:`sound` finds that at one speed.
+
+        Parameters
+        ----------
+        speeds : sequence of float
+            Signed speeds of the first driver's shaft [rad/s]; by default those of the settings.
+        plan : TransientPlan, optional
+            Stretch of the motion, by default that of the settings.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where there is no plan or no speed, or a speed is 0. A speed at which no motion is found has its failure in
+            the result.
+        """
+        from gearwhine.analyses.sweep_result import solve_speed_sweep
+        from gearwhine.numerics.result_warnings import warning
+
+        if plan is None:
+            self.require("simulate")
+            plan = self.settings.transient
+        assert plan is not None
+        message = "the sound is left out of a sweep of a machine of Python; study.sound() finds it at one speed"
+        warnings = [] if self.settings.acoustics is None else [warning("sound_of_sweep", message)]
+        return solve_speed_sweep(
+            self.machine, tuple(speeds) or self.settings.speeds, plan, self.origin, warnings, self.progress
+        )
+
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
 
@@ -296,9 +338,11 @@ class Study(StudiedMachine):
         if acoustics is None:
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
-        housing = radiating_housing(self.machine, acoustics, self.origin)
-        warnings = self.left_out_of_sound(None)
-        return sound_result(housing, None if warnings else self.under_load(), warnings, self.progress)
+        housing = radiating_housing(self.machine, acoustics)
+        left_out = self.left_out_of_sound(None)
+        unlikely = [warning("acoustics", str(finding)) for finding in acoustics.findings]
+        machine = None if left_out else self.under_load()
+        return sound_result(housing, acoustics, self.origin, machine, [*left_out, *unlikely], self.progress)
 
     def run(self) -> "Result[RunSolution]":
         """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.

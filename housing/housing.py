@@ -132,6 +132,8 @@ class Housing:
         survey are spread; by default those of the mesh.
     up : tuple of float
         Unit vector that points upwards in pictures.
+    box : gearwhine.meshes.BoxGeometry, optional
+        Dimensions of the box that is meshed, whose walls are parameters then.
 
     Raises
     ------
@@ -150,6 +152,7 @@ class Housing:
     mesh_size: float | None = None
     outer_faces: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
     up: tuple[float, float, float] = _UPWARDS
+    box: BoxGeometry | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies; check unique names, volumes of the materials, and the damping ratios."""
@@ -168,6 +171,7 @@ class Housing:
             "material": Instance(Material, "a material"),
             "mesh_size": Number(above=0.0, optional=True, unit="m"),
             "up": Numbers(3),
+            "box": Instance(BoxGeometry, "the dimensions of a box, or None", optional=True),
         }
         if isinstance(self.damping_ratio, Mapping):
             for frequency, value in self.damping_ratio.items():
@@ -315,7 +319,7 @@ class Housing:
         fixtures = [*fixtures, *cover_joints(box, material)]
         x, y, z = box.size
         faces = ((-0.5 * x, 0.0, -0.5 * z), (0.5 * x, y, 0.5 * z))
-        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio, mesh_size, faces)
+        return cls(mesh, material, {}, fixtures, seats, sensors, damping_ratio, mesh_size, faces, box=box)
 
     def free_matrices(self) -> Matrices:
         """Stiffness and mass of the solid alone, without its fixtures."""

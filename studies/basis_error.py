@@ -18,8 +18,9 @@ from gearwhine import coupling
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.linear.frequency_response import BasisError, mesh_error_response
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 
 HERTZ = 2.0 * np.pi
 LIMITS = (2400.0, 3200.0)
@@ -31,7 +32,7 @@ def machine_of(mesh_size: str, limit: float, *, told: bool) -> tuple[coupling.Co
     changes = [f'housing.box.mesh_size="{mesh_size} mm"', f"housing.frequency_limit={limit}"]
     case = load_case("nasa-gear-noise-rig", changes).case
     housing = reduce_housing(case, solve_housing(case))
-    machine = described_machine(case, housing)
+    machine = describe_machine(case, housing)
     loaded = load_machine(machine, machine.operating_point())
     return loaded.coupled, loaded.basis_error if told else None
 

@@ -76,7 +76,7 @@ class RunSignature:
         """Peak amplitude of each signal at each named order, by the windows' speeds: (signals, orders, windows)."""
         return np.array([[table.order_slice(order) for order in self.named.values()] for table in self.orders.values()])
 
-    def highest(self) -> list[dict[str, Any]]:
+    def highest(self) -> list["OrderPeak"]:
         """Return the peak of each named order of each signal along the run, where the model is complete."""
         rows = []
         for (name, orders), courses in zip(self.orders.items(), self.followed(), strict=True):
@@ -84,38 +84,84 @@ class RunSignature:
                 if np.isnan(along).all():
                     continue
                 place = int(np.nanargmax(along))
-                rows.append(
-                    {
-                        "signal": name,
-                        "unit": self.units[name],
-                        "name": order_name,
-                        "order": order,
-                        "highest_amplitude": float(along[place]),
-                        "level_db": float(decibels(along[place])),
-                        "at_rpm": float(60.0 * orders.speeds[place]),
-                        "frequency_hz": float(order * abs(orders.speeds[place])),
-                    }
-                )
+                speed_rpm = float(60.0 * orders.speeds[place])
+                hertz = float(order * abs(orders.speeds[place]))
+                rows.append(OrderPeak(name, self.units[name], order_name, order, float(along[place]), speed_rpm, hertz))
         return rows
 
-    def loudest(self) -> list[dict[str, Any]]:
+    def loudest(self) -> list["OverallPeak"]:
         """Return the highest overall level of each signal along the run."""
         return [
-            {
-                "signal": name,
-                "unit": self.units[name],
-                "highest_rms": float(overall.max()),
-                "level_db": float(decibels(peak_of_rms(overall.max()))),
-                "at_rpm": float(self.speeds_rpm[int(np.argmax(overall))]),
-            }
+            OverallPeak(name, self.units[name], float(overall.max()), float(self.speeds_rpm[int(np.argmax(overall))]))
             for name, overall in self.overall.items()
         ]
 
-    def highest_of(self, signal: str) -> list[dict[str, Any]]:
+    def highest_of(self, signal: str) -> list["OrderPeak"]:
         """Return the rows of :meth:`highest` of one signal, the highest order first."""
-        return sorted(
-            (row for row in self.highest() if row["signal"] == signal), key=lambda row: -row["highest_amplitude"]
-        )
+        return sorted((row for row in self.highest() if row.signal == signal), key=lambda row: -row.highest_amplitude)
+
+
+@dataclass(frozen=True)
+class OrderPeak:
+    """Highest amplitude of an order of a signal along a run.
+
+    Attributes
+    ----------
+    signal : str
+        Sensor or contact.
+    unit : str
+        Unit of its amplitudes.
+    name : str
+        Name of the order.
+    order : float
+        Cycles each turn of the leading shaft.
+    highest_amplitude : float
+        Peak amplitude, in the unit of the signal.
+    at_rpm : float
+        Speed of the leading shaft there [rpm].
+    frequency_hz : float
+        Frequency there [Hz].
+    """
+
+    signal: str
+    unit: str
+    name: str
+    order: float
+    highest_amplitude: float
+    at_rpm: float
+    frequency_hz: float
+
+    @property
+    def level_db(self) -> float:
+        """Level of the amplitude [dB]."""
+        return float(decibels(self.highest_amplitude))
+
+
+@dataclass(frozen=True)
+class OverallPeak:
+    """Highest root mean square of a signal along a run.
+
+    Attributes
+    ----------
+    signal : str
+        Sensor or contact.
+    unit : str
+        Unit of its amplitudes.
+    highest_rms : float
+        Root mean square, in the unit of the signal.
+    at_rpm : float
+        Speed of the leading shaft there [rpm].
+    """
+
+    signal: str
+    unit: str
+    highest_rms: float
+    at_rpm: float
+
+    @property
+    def level_db(self) -> float:
+        """Level of the root mean square [dB]."""
+        return float(decibels(peak_of_rms(self.highest_rms)))
 
 
 @dataclass(frozen=True)

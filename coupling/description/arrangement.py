@@ -86,6 +86,18 @@ BACKLASH_OF_A_BRAKE = (
 )
 
 
+_FREE_FALLS = (0.1, 30.0)
+"""Accelerations of free fall, from small moons to Jupiter [m/s²]."""
+
+
+def gravity_findings(gravity: Sequence[float]) -> Iterator[Finding]:
+    """Yield an acceleration of free fall [m/s²] that no place has."""
+    size = math.hypot(*gravity)
+    if size and not _FREE_FALLS[0] <= size <= _FREE_FALLS[1]:
+        expected = "a free fall of 0.1 to 30 m/s^2 (on earth 9.81)"
+        yield Finding(("machine", ""), "gravity", tuple(gravity), expected, "warning")
+
+
 def output_elsewhere(first: str) -> str:
     """Return what is expected of an output on the rotor of the first driver."""
     return f'a rotor other than "{first}", where the torque comes in'

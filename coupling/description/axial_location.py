@@ -68,12 +68,12 @@ class AxialSupport:
         return 0.0 if self.rolling is None else self.rolling.axial_preload
 
 
-def axial_support(mounted: MountedBearing, speed: float) -> AxialSupport:
-    """Axial support by a mounted bearing at its shaft's speed [rad/s]: by its elements, else by its stiffness k_zz."""
+def axial_support(mounted: MountedBearing) -> AxialSupport:
+    """Axial support by a mounted bearing: by its elements, else by its stiffness k_zz, at all speeds of its table."""
     elements, bearing = mounted.elements, mounted.bearing
     if elements is not None:
         return AxialSupport(bearing.name, bearing.at, elements.thrust_senses, elements)
-    has_stiffness = bearing.at_speed(speed).spatial_stiffness[2, 2] > 0.0
+    has_stiffness = bearing.stiffness.shape[-1] == 5 and bool((bearing.stiffness[..., 2, 2] > 0.0).all())
     return AxialSupport(bearing.name, bearing.at, _BOTH if has_stiffness else frozenset())
 
 

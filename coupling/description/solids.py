@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 from gearwhine.coupling.description.parts import Shaft, ShaftGear
 from gearwhine.coupling.gears import Gear
+from gearwhine.coupling.machine.bearing_laws import GapLaw
 from gearwhine.coupling.machine.loads import ShaftForce
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.numerics.findings import Finding, Part, in_mm
@@ -377,6 +378,8 @@ def machine_findings(
         yield from fit_findings(mounted.gear, shaft.rotor, mounted.at)
     for held in bearings:
         shaft, bearing = by_name[held.rotor], held.bearing
+        if held.elements is None and held.law is None:
+            yield from bearing.findings
         if seat_diameters is None:
             continue
         seat = seat_diameters.get(held.seat) if held.seat is not None else None
@@ -384,7 +387,9 @@ def machine_findings(
     radial = [
         held.bearing.name
         for held in bearings
-        if held.elements is not None or (held.bearing.stiffness[..., :2, :2] > 0.0).any()
+        # A stop stands around the shaft beside what carries it.
+        if held.elements is not None
+        or (not isinstance(held.law, GapLaw) and (held.bearing.stiffness[..., :2, :2] > 0.0).any())
     ]
     stand_ins = [mounted.name for mounted in gears if mounted.inertia is not None]
     yield from overlap_findings(placed_solids(shafts, gears, bearings), meshing, radial, stand_ins)

@@ -8,18 +8,18 @@ from scipy import sparse
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import Adjoint
-from gearwhine.housing import HousingModes
+from gearwhine.housing import Housing, HousingModes
 from gearwhine.housing.material import element_constants
 from gearwhine.housing.model.seats import bearing_port
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity
 
 
-def bearing_ports(housing: HousingModes, machine: Machine) -> dict[str, sparse.csr_array]:
+def bearing_ports(housing: Housing, machine: Machine) -> dict[str, sparse.csr_array]:
     """Motions of the places where a machine bears on the housing from the nodes', shape (5, 3 n_nodes) each."""
-    centers = {seat.name: seat.center[2] for seat in housing.housing.seats}
+    ports, centers = housing.seat_ports(), {seat.name: seat.center[2] for seat in housing.seats}
     return {
         one.bearing.name: bearing_port(
-            housing.seat_ports[one.seat], machine.shaft(one.rotor).start + one.bearing.at - centers[one.seat]
+            ports[one.seat], machine.shaft(one.rotor).start + one.bearing.at - centers[one.seat]
         )
         for one in machine.bearings
         if one.seat is not None

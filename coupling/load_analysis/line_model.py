@@ -181,7 +181,7 @@ def solve_lines(
     """
     if housing is None or not machine.gear_pairs or machine.speed == 0.0:
         return None
-    loaded = bearing_ports(housing, machine)
+    loaded = bearing_ports(housing.housing, machine)
     if not loaded or not (housing.sensors or acoustics):
         return None
     progress("residual modes of the sensors")

@@ -17,21 +17,25 @@ from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import Line, LineModel
+from gearwhine.coupling.load_analysis.box_walls import wall_changes
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.load_analysis.influences import Influence, LoadSensitivity, sound_weights
 from gearwhine.coupling.load_analysis.line_model import SolvedLines, solve_lines
 from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, Adjoint, adjoint, pair_adjoints
-from gearwhine.housing import HousingModes
+from gearwhine.housing import Housing, HousingModes
 from gearwhine.housing.updating.housing_change import HousingChange, by_changes, face_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import StaticSensitivity, harmonic_surface_density
+from gearwhine.meshes.box.morph import MorphError
 from gearwhine.numerics.progress import Progress, silent
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
 
 FloatArray = npt.NDArray[np.float64]
+
+FACES_IN_PLACE_OF_WALLS = "the mesh of the box does not follow its walls, so that flat faces stand in their place"
 
 _LENGTH_STEP = 1e-3  # step of the parameters that are lengths [m]
 _RELATIVE_STEP = 0.1  # step of the others, relative to their value
@@ -333,14 +337,17 @@ def rank_parts(
     line: str | None = None,
     progress: Progress = silent,
 ) -> LoadSensitivity:
-    """Rank the bearings of a machine, and the flat faces of its housing where that has a finite-element model.
+    """Rank the bearings of a machine, and the walls of its housing where that has a finite-element model.
+
+    Walls are those of a box of :meth:`gearwhine.housing.Housing.from_box`; of any other housing they are the flat faces
+    of its surface.
 
     The parameters, and what is raised, are those of :func:`solve_load_sensitivity`.
     """
     housing, changes, note = None, tuple[HousingChange, ...](), None
     if isinstance(machine.housing, HousingModes):
         housing = machine.housing
-        changes = face_changes(housing.mesh, [seat.name for seat in housing.housing.seats])
+        changes, note = _walls(housing.housing, machine)
     elif machine.housing is not None:
         note = (
             "walls are not ranked, nor are lines of sensors and sound looked at: the machine has a reduced housing, "
@@ -349,6 +356,17 @@ def rank_parts(
     return solve_load_sensitivity(
         machine, point, housing, changes, acoustics=acoustics, run=run, line=line, note=note, progress=progress
     )
+
+
+def _walls(housing: Housing, machine: Machine) -> tuple[tuple[HousingChange, ...], str | None]:
+    """Differentiate a housing by its walls, or by its flat faces, and say why where these stand in their place."""
+    note = None
+    if housing.box is not None:
+        try:
+            return wall_changes(housing, housing.box, machine), None
+        except MorphError as error:
+            note = f"{FACES_IN_PLACE_OF_WALLS}: {error}"
+    return face_changes(housing.mesh, [seat.name for seat in housing.seats]), note
 
 
 class UnknownLineError(CouplingError):

@@ -35,6 +35,10 @@ MOST_LINES = 400
 _PART: Part = ("acoustics", "")
 _OF_THE_BOX = re.compile("box [1-9]")  # names of microphones
 _TRIANGLES_PER_WAVELENGTH = 6.0
+_GASES = (0.05, 20.0)
+"""Densities of gases around a housing [kg/m³]: a fluid as heavy as a liquid loads the housing, which is left out."""
+_SOUND = (100.0, 1400.0)
+"""Speeds of sound in gases [m/s]."""
 _HOLES = 1.1  # diameter of holes that are closed by default, over that of the widest seat
 
 
@@ -139,6 +143,16 @@ class Acoustics:
         refuse(attribute_findings(_PART, self, **rules), AcousticsError)
         refuse(kind_findings(_PART, self, still=str, faces=str, microphone=Microphone), AcousticsError)
         refuse(self._choice_findings(), AcousticsError)
+
+    @property
+    def findings(self) -> Iterator[Finding]:
+        """Density and speed of sound that no gas has."""
+        if not _GASES[0] <= self.density <= _GASES[1]:
+            expected = "a density of 0.05 to 20 kg/m^3, of a gas (air: 1.204): a liquid's mass on the walls is left out"
+            yield Finding(_PART, "density", self.density, expected, "warning")
+        if not _SOUND[0] <= self.speed_of_sound <= _SOUND[1]:
+            expected = "a speed of sound of 100 to 1400 m/s, of a gas (air: 343)"
+            yield Finding(_PART, "speed_of_sound", self.speed_of_sound, expected, "warning")
 
     @property
     def medium(self) -> Medium:

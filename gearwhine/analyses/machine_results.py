@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
@@ -15,7 +13,7 @@ from gearwhine.analyses.run_solution import RunSolution
 from gearwhine.coupling import CoupledMachine, CouplingError, Machine
 from gearwhine.coupling import stability as coupled_stability
 from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
-from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
+from gearwhine.coupling.analyses.loaded_machine import LoadedMachine
 from gearwhine.coupling.analyses.modes_and_responses import (
     SolvedSystem,
     machine_warnings,
@@ -32,12 +30,12 @@ from gearwhine.coupling.analyses.operation_warnings import (
 from gearwhine.coupling.analyses.run_up import run_signature_warnings
 from gearwhine.coupling.analyses.steady_state import SolvedSteady, solve_steady
 from gearwhine.coupling.analyses.transient import mean_bearing_forces
-from gearwhine.coupling.description.excitation import Run
 from gearwhine.coupling.errors import AcousticsError
 from gearwhine.coupling.gears.loaded.optimal_relief import ReliefAim
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.load_analysis.load_warnings import find_load, load_warnings, sensitivity_warnings
+from gearwhine.coupling.load_analysis.load_warnings import load_warnings, sensitivity_warnings
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
+from gearwhine.housing import HousingModes
 from gearwhine.mode_pictures import draw_load_pictures, draw_sound_pictures
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
@@ -52,7 +50,7 @@ from gearwhine.results.steady_state import STEADY, STEADY_OPTIONS, STEADY_SAME, 
 from gearwhine.results.system import SYSTEM, SYSTEM_OPTIONS, SYSTEM_SAME, system_document
 from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
-from gearwhine.solve.damping import damping_document, damping_warnings
+from gearwhine.solve.damping import damping_document, damping_warnings, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
@@ -61,7 +59,6 @@ if TYPE_CHECKING:
     from gearwhine.coupling.sound.acoustics import Acoustics
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.figures.rotors.assembly import RotorAssembly
-    from gearwhine.housing.modes.housing_field import HousingField
 
 
 @dataclass(frozen=True)
@@ -99,8 +96,9 @@ class MachineUnderLoad:
     def add_parts_to(self, document: dict[str, Any]) -> None:
         """Add the damping, the bodies of the gears, the operating point and its warnings to a document."""
         if self.origin.case is not None:
-            document["damping"] = damping_document(self.origin.case)
-            add_warnings(document, damping_warnings(self.origin.case))
+            dampings = part_dampings(self.origin.case)
+            document["damping"] = damping_document(dampings)
+            add_warnings(document, damping_warnings(dampings))
         if bodies := gear_body_document(self.loaded.machine):
             document["gear_bodies"] = bodies
         if self.load is not None:
@@ -113,21 +111,6 @@ class MachineUnderLoad:
 
         if self.load is not None:
             yield from draw_load(self.load)
-
-
-def machine_under_load(
-    machine: Machine, origin: Origin, run: Run | None = None, progress: Progress = silent
-) -> MachineUnderLoad:
-    """Find the operating point of a machine where something loads it, and assemble the machine about that.
-
-    Raises
-    ------
-    gearwhine.coupling.CouplingError, gearwhine.coupling.EquilibriumNotFoundError
-        Where the loads drive a motion that nothing holds, or no equilibrium is found.
-    """
-    load, warnings = find_load(machine, progress) if machine.is_loaded else (None, [])
-    loaded = load_machine(machine, None if load is None else load.point, run, progress)
-    return MachineUnderLoad(origin, loaded, load, warnings)
 
 
 def rotors_result(
@@ -281,27 +264,8 @@ def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: Coupl
     return solved.result("simulate", machine.origin, document)
 
 
-@dataclass(frozen=True)
-class RadiatingHousing:
-    """A housing whose sound is sought, with what the results say beside their own numbers.
-
-    Attributes
-    ----------
-    origin : Origin
-    field : HousingField
-    acoustics : Acoustics
-    up : sequence of float
-        Unit vector that points upwards in pictures.
-    """
-
-    origin: Origin
-    field: HousingField
-    acoustics: Acoustics
-    up: Sequence[float]
-
-
-def radiating_housing(machine: Machine, acoustics: Acoustics, origin: Origin) -> RadiatingHousing:
-    """Return the housing of a machine of Python, checked for its sound.
+def radiating_housing(machine: Machine, acoustics: Acoustics) -> HousingModes:
+    """Return the housing of a machine, checked for its sound.
 
     Raises
     ------
@@ -310,22 +274,22 @@ def radiating_housing(machine: Machine, acoustics: Acoustics, origin: Origin) ->
     """
     from gearwhine.coupling.sound.acoustics_checks import require_acoustics
 
-    component = machine.housing_component
-    field = None if component is None else component.displacement_field
-    if field is None:
-        has = "no housing" if component is None else "a reduced housing, of motions at its seats and sensors alone"
+    housing = machine.housing
+    if not isinstance(housing, HousingModes):
+        has = "no housing" if housing is None else "a reduced housing, of motions at its seats and sensors alone"
         raise AcousticsError(
             "the sound of a machine: expected a housing with its mesh and the mode shapes on it, as "
             f"gearwhine.Housing.modes() gives; the machine has {has}"
         )
+    field = housing.displacement_field
     require_acoustics(acoustics, field.mesh, field.widest_bore, acoustics.limit_hz(field))
-    weight = np.zeros(3) if machine.gravity is None else np.array(machine.gravity)
-    up = -weight / np.linalg.norm(weight) if weight.any() else np.array([0.0, 1.0, 0.0])
-    return RadiatingHousing(origin, field, acoustics, tuple(up.tolist()))
+    return housing
 
 
 def sound_result(
-    housing: RadiatingHousing,
+    housing: HousingModes,
+    acoustics: Acoustics,
+    origin: Origin,
     machine: MachineUnderLoad | None,
     warnings: Sequence[ResultWarning] = (),
     progress: Progress = silent,
@@ -334,7 +298,9 @@ def sound_result(
 
     Parameters
     ----------
-    housing : RadiatingHousing
+    housing : HousingModes
+    acoustics : Acoustics
+    origin : Origin
     machine : MachineUnderLoad or None
         None where the sound is that of the modes alone.
     warnings : sequence of dict
@@ -354,13 +320,13 @@ def sound_result(
     from gearwhine.coupling.sound.motion_lines import lines_of_steady
     from gearwhine.coupling.sound.solution import solve_sound
 
-    field, acoustics, coupled, motion = housing.field, housing.acoustics, None, None
+    field, coupled, motion = housing.displacement_field, None, None
     if machine is not None:
         coupled = machine.coupled
         motion = lines_of_steady(solve_steady(coupled, progress), acoustics.estimated_below_hz(field))
         warnings = [*warnings, *machine.warnings]
     solved = solve_sound(acoustics, field, motion, coupled, progress)
-    title = housing.origin.title
+    title = origin.title
     document = {"title": title} | sound_document(solved)
     add_warnings(document, [*solved.warnings(), *warnings])
 
@@ -373,4 +339,5 @@ def sound_result(
     def files(place: Path, *, pictures: bool) -> dict[str, Any]:
         return {"warnings": draw_sound_pictures(solved, place, progress, housing.up)} if pictures else {}
 
-    return housing.origin.result("sound", solved, document, (SOUND, solved), figures=figures, files=files)
+    origin = replace(origin, housing=housing)
+    return origin.result("sound", solved, document, (SOUND, solved), figures=figures, files=files)

@@ -1,18 +1,25 @@
-"""Result of a sweep: the transients of its points in parallel, collected over the swept keys, with their sound."""
+"""Result of a sweep: the transients of its points, collected over the swept keys, with their sound."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from gearwhine.analyses.origin import Origin
 from gearwhine.analyses.result import Result
 from gearwhine.case import Case, CaseSource, SweptKey
+from gearwhine.coupling import Machine
+from gearwhine.coupling.analyses.recording import TransientPlan
+from gearwhine.coupling.sweep.missed_peaks import RadiatedLevel
 from gearwhine.numerics.progress import Progress, silent
+from gearwhine.numerics.result_warnings import ResultWarning
 from gearwhine.output.quantity import add_warnings
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.sweep import collected_sweep, missed_peaks, run_sweep, sweep_document, sweep_points
+from gearwhine.sweep.grid import Solved
+from gearwhine.sweep.machine_sweep import SweptSpeed, sweep_speeds
 from gearwhine.workers import default_workers
 
 if TYPE_CHECKING:
@@ -69,26 +76,62 @@ def solve_sweep(
         sound_warnings, housing, radiated = add_sound(
             sounding, keys, swept, solve_housing(sounding, progress, folder=folder), progress
         )
+    origin = Origin(case.title, case=case, housing=housing)
+    return _result(origin, keys, swept, start, radiated, sound_warnings, count if scheduler is None else None)
+
+
+def solve_speed_sweep(
+    machine: Machine,
+    speeds: Sequence[float],
+    plan: TransientPlan,
+    origin: Origin,
+    warnings: Sequence[ResultWarning] = (),
+    progress: Progress = silent,
+) -> Result[Sequence[SweptSpeed]]:
+    """Integrate the motion of a machine of Python at each of several speeds, in this process.
+
+    ``warnings`` are those of what is left out; the other parameters are those of
+    :func:`gearwhine.sweep.machine_sweep.sweep_speeds`.
+    """
+    start = time.perf_counter()
+    keys, swept = sweep_speeds(machine, speeds, plan, progress)
+    return _result(origin, keys, swept, start, warnings=warnings)
+
+
+AnySolved = TypeVar("AnySolved", bound=Solved)
+
+
+def _result(
+    origin: Origin,
+    keys: Sequence[SweptKey],
+    swept: Sequence[AnySolved],
+    start: float,
+    radiated: RadiatedLevel | None = None,
+    warnings: Sequence[ResultWarning] = (),
+    workers: int | None = None,
+) -> Result[Sequence[AnySolved]]:
+    """Return the result of solved points, with the peaks between them."""
     peaks = missed_peaks(keys, swept, radiated)
-    dataset = collected_sweep(case, keys, swept, peaks)
-    document = {"title": case.title} | sweep_document(keys, swept, peaks)
-    add_warnings(document, sound_warnings)
-    document["workers"] = count if scheduler is None else None
+    dataset = collected_sweep(origin.case, keys, swept, peaks, origin.title)
+    document = {"title": origin.title} | sweep_document(keys, swept, peaks)
+    add_warnings(document, warnings)
+    document["workers"] = workers
     document["seconds"] = {"total": time.perf_counter() - start}
 
     def figures(progress: Progress) -> Iterator[tuple[str, Figure]]:
         from gearwhine.figures import draw_sweep
 
-        return draw_sweep(case.title, dataset)
+        return draw_sweep(origin.title, dataset)
 
     return Result(
         "sweep",
-        case,
+        origin.case,
         swept,
         document,
         _arrays=lambda: dataset,
         _figures=figures,
         _data_file="sweep.nc",
-        _housing=housing,
+        _housing=origin.housing,
         _started=start,
+        _title=origin.title,
     )

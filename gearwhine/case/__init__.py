@@ -11,9 +11,9 @@ Public names:
   :class:`Gear`, :class:`GearPair`, :class:`Operation`, :class:`Transient`, :class:`Sweep`, :class:`RotorAnalysis`,
   :class:`Measured`, :class:`Update`. The tables within these stand in the modules of their topics.
 - :func:`dump_case` -- the resolved case as TOML that loads back equal.
-- :func:`rotor_speeds`, :func:`mesh_frequencies`, :func:`applied_torques`, :func:`pair_torques`,
-  :func:`force_origins` -- quantities that follow without a solution.
-- :func:`whirl_speeds`, :func:`campbell_speeds`, :func:`response_speeds` -- speeds at which a rotor is analysed.
+- :attr:`Case.parts` -- the library's objects of the tables, and what follows from them without a solution: gear train,
+  speeds, torques.
+- :func:`rotor_speeds` -- speeds at which a rotor is analysed.
 - :func:`swept_keys` -- the keys of a sweep, each a :class:`SweptKey` with its values.
 - :func:`require` -- the error for tables that a command needs and a case lacks.
 - :func:`bundled_cases` -- the examples that ship with the package.
@@ -21,6 +21,7 @@ Public names:
 Inside, lengths are in m, masses in kg, forces in N, angles in rad, speeds in rad/s; frequencies are in Hz.
 """
 
+from gearwhine.case.analysis_speeds import rotor_speeds
 from gearwhine.case.bearings import Bearing, MatrixDamping, RollingStiffness, StopStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.errors import CaseError, Problem
@@ -40,18 +41,6 @@ from gearwhine.case.measured import Measured, Update, UpdateParameter
 from gearwhine.case.model import Case, case_document, dump_case, require
 from gearwhine.case.operation import Operation, OrderTracking, Sweep, TorqueLine, Transient
 from gearwhine.case.rotors import CouplingSegment, Probe, Rotor, RotorAnalysis, Segment, TorsionalAnalysis, TorsionProbe
-from gearwhine.case.speeds_and_torques import (
-    applied_torques,
-    campbell_speeds,
-    force_origins,
-    mesh_frequencies,
-    pair_torques,
-    response_speeds,
-    rotor_speeds,
-    speed_ratios,
-    table_range,
-    whirl_speeds,
-)
 from gearwhine.case.swept_keys import SPEED_KEY, SweptKey, swept_keys
 
 __all__ = [
@@ -95,24 +84,15 @@ __all__ = [
     "Update",
     "UpdateParameter",
     "amounts",
-    "applied_torques",
     "bundled_case",
     "bundled_cases",
     "bundled_files",
-    "campbell_speeds",
     "case_document",
     "dump_case",
-    "force_origins",
     "load_case",
-    "mesh_frequencies",
-    "pair_torques",
     "parse_case",
     "require",
-    "response_speeds",
     "rotor_speeds",
     "shaft_of",
-    "speed_ratios",
     "swept_keys",
-    "table_range",
-    "whirl_speeds",
 ]

@@ -789,8 +789,8 @@ class Bearing(Table):
 def operation_loads(bearing: Bearing, bearings: Iterable[Bearing], loaded_rotors: Container[str]) -> bool:
     """Whether the static equilibrium of a case with an operation has the load of a bearing, which is not given.
 
-    It does where gears, a force or weight load its rotor (:func:`gearwhine.case.model.loaded_rotors`), or where one of
-    the case's ``bearings`` is set against this one.
+    It does where gears, a force or weight load its rotor, see :meth:`gearwhine.case.operation.Operation.loaded_rotors`,
+    or where one of the case's ``bearings`` is set against this one.
     """
     opposed = any(one.is_offset and one.rotor == bearing.rotor for one in bearings)
     return bearing.lacks_load and (bearing.rotor in loaded_rotors or opposed)

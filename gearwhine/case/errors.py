@@ -125,7 +125,7 @@ LOOK_UP = _Nothing()
 
 @dataclass(frozen=True)
 class Finding:
-    """An error at a location, before it is written as a `Problem`.
+    """An error at a location, before it is written as a `Problem`, or a doubt.
 
     Attributes
     ----------
@@ -135,12 +135,15 @@ class Finding:
         Expected value.
     note : str
         Dimension of the value, where it is not obvious.
+    warns : bool
+        Whether the value is unlikely rather than wrong.
     """
 
     location: Location
     expected: str
     value: object = field(default=LOOK_UP, hash=False)
     note: str = ""
+    warns: bool = False
 
 
 def look_up(document: object, location: Location) -> object:

@@ -253,12 +253,9 @@ class Joint(Bushing):
         from gearwhine.housing import Joint as BuiltJoint
         from gearwhine.housing import Patch as BuiltPatch
 
-        if self.surfaces is not None:
-            first, second = (BuiltPatch(surface) for surface in self.surfaces)
+        if self.diameter is None or self.center is None or self.axis is None:
+            first, second = (BuiltPatch(surface) for surface in self.surfaces or ())
         else:
-            assert self.center is not None
-            assert self.axis is not None
-            assert self.diameter is not None
             x, y, z = unit_vector(self.axis)
             first = BuiltPatch(circle=(self.center, (x, y, z), self.diameter))
             second = BuiltPatch(circle=(self.center, (-x, -y, -z), self.diameter))

@@ -219,11 +219,9 @@ class Fault(Table):
         for key, field in type(self).model_fields.items():
             if key not in ("kind", *needed, *optional) and getattr(self, key) != field.default:
                 raise wrong(f"no '{key}' of a fault of kind {self.kind!r}", key)
-        if self.kind == "spall":
-            assert self.start_roll_angle is not None
-            assert self.end_roll_angle is not None
-            if self.end_roll_angle <= self.start_roll_angle:
-                raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
+        start, end = self.start_roll_angle, self.end_roll_angle
+        if start is not None and end is not None and end <= start:
+            raise wrong("a roll angle beyond start_roll_angle", "end_roll_angle")
         return self
 
     def build(self) -> BuiltFault:
@@ -573,6 +571,11 @@ class GearPair(Table):
 def shaft_of(gear: Gear) -> str:
     """Return the name of a gear's shaft: its rotor, or the gear itself in a case without rotors."""
     return gear.rotor if gear.rotor is not None else gear.name
+
+
+def distance_of_axes(first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Return the distance of two axes along z [m]."""
+    return math.hypot(second[0] - first[0], second[1] - first[1])
 
 
 def readable_pairs(gears: Iterable[Gear], pairs: Iterable[tuple[int, GearPair]]) -> list[tuple[int, Gear, Gear]]:

@@ -324,7 +324,7 @@ def parse_case(
         draft = draft_of_document(document, broken, context)
     findings += check(draft)
     if not findings:
-        findings += [finding.as_error() for finding in library_findings(case) if not finding.warns]
+        findings += [finding for finding in library_findings(case) if not finding.warns]
     if findings:
         raise CaseError(_in_words(findings, document, source, sources or {}))
     return case

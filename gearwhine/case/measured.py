@@ -7,6 +7,7 @@ are fitted, and the modes that they are fitted to.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
@@ -153,7 +154,7 @@ class Measured(Table):
             return self._ascending()._with_a_pairing()
         if self.damping_ratios is not None:
             raise wrong("no damping ratios beside a file, which holds its own", "damping_ratios")
-        return self._read(files_of(info))._with_a_pairing()
+        return self._read(self.file, files_of(info))._with_a_pairing()
 
     def _with_a_pairing(self) -> Measured:
         # The defaults as a table are what older resolved cases state of frequencies alone.
@@ -173,13 +174,12 @@ class Measured(Table):
             raise wrong(f"a ratio for each of the {len(frequencies)} frequencies", "damping_ratios")
         return self
 
-    def _read(self, files: InputFiles) -> Measured:
+    def _read(self, file: Path, files: InputFiles) -> Measured:
         from gearwhine.housing import HousingError
         from gearwhine.housing.measured import read_survey
 
-        assert self.file is not None
         try:
-            survey = files.read(self.file, read_survey, unit=self.unit, shape_frame=self.shape_frame)
+            survey = files.read(file, read_survey, unit=self.unit, shape_frame=self.shape_frame)
         except HousingError as error:
             raise wrong(f"a file of measured modes; {error}", "file") from None
         except ChangedFileError as error:

@@ -7,7 +7,6 @@ resolved case: defaults included, every quantity with its unit.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +16,7 @@ import tomli_w
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
 from gearwhine.case.acoustics import Acoustics
-from gearwhine.case.bearings import Bearing, RollingStiffness, operation_loads
+from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.box import Box
 from gearwhine.case.errors import NOTHING, CaseError, Problem, look_up
 from gearwhine.case.fields import MOST_ENTRIES, Name, Table
@@ -30,6 +29,7 @@ from gearwhine.case.operation import Operation, Sweep, Transient
 from gearwhine.case.rotors import Rotor, RotorAnalysis
 
 if TYPE_CHECKING:
+    from gearwhine.case.parts import Parts
     from gearwhine.coupling.description.gear_train import GearTrain
 
 Text = Annotated[str, Field(max_length=10_000)]
@@ -115,49 +115,28 @@ class Case(Table):
         """Return the gear of this name; KeyError where there is none."""
         return _named(self.gear, name)
 
-    def centre_distance(self, pair: GearPair) -> float | None:
-        """Return the distance of a pair's shafts [m]: of the rotors' axes, else as given; None: without backlash."""
-        rotors = self.gear_named(pair.driver).rotor, self.gear_named(pair.driven).rotor
-        if rotors[0] is None or rotors[1] is None:
-            return pair.centre_distance
-        first, second = (self.rotor_named(name).axis for name in rotors if name is not None)
-        return math.hypot(second[0] - first[0], second[1] - first[1])
+    @cached_property
+    def parts(self) -> Parts:
+        """The library's objects of the tables, each made once."""
+        from gearwhine.case.parts import Parts  # it brings the library
 
-    def axial_offset(self, pair: GearPair) -> float:
-        """Return the place of the driven gear along z from the driver [m]; 0 where a gear has no rotor."""
-        gears = self.gear_named(pair.driver), self.gear_named(pair.driven)
-        if any(gear.rotor is None or gear.at is None for gear in gears):
-            return 0.0
-        first, second = (self.rotor_named(gear.rotor).start + gear.at for gear in gears)  # type: ignore[arg-type,operator]
-        return second - first
+        limit = None if self.housing is None else self.housing.frequency_limit
+        return Parts(
+            self.material,
+            self.rotor,
+            self.bearing,
+            self.gear,
+            self.gear_pair,
+            self.operation,
+            self.input_files,
+            limit or 0.0,
+        )
 
-    def finds_load(self, bearing: Bearing) -> bool:
-        """Whether the load of a rolling bearing follows from the machine's operating point."""
-        if self.operation is None:
-            return False
-        names = [rotor.name for rotor in self.rotor]
-        return operation_loads(bearing, self.bearing, loaded_rotors(names, self.operation, geared=bool(self.gear_pair)))
-
-    @property
-    def needs_operating_point(self) -> bool:
-        """Whether there is no machine without its operating point: bearings or flanks are left to it explicitly.
-
-        A misalignment that is left out does not count: where no equilibrium is found, it is taken as 0.
-        """
-        unaligned = any(pair.misalignment == "found" for pair in self.gear_pair)
-        return unaligned or any(self.finds_load(bearing) for bearing in self.bearing)
-
-    def finds_misalignment(self, pair: GearPair) -> bool:
-        """Whether the misalignment of a gear pair follows from the machine's operating point.
-
-        By default it does if a torque loads the flanks of gears with a face on shafts in bearings; else it is 0.
-        """
-        if pair.misalignment is None:
-            loaded = self.operation is not None and self.operation.torque != 0.0
-            gears = self.gear_named(pair.driver), self.gear_named(pair.driven)
-            have_faces = all(gear.rotor is not None and gear.face_width is not None for gear in gears)
-            return loaded and have_faces and bool(self.bearing)
-        return pair.misalignment == "found"
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
+        """Return a copy with other values of some tables, whose parts are made anew."""
+        copied = super().model_copy(update=update, deep=deep)
+        copied.__dict__.pop("parts", None)
+        return copied
 
     @property
     def is_loaded(self) -> bool:
@@ -171,21 +150,6 @@ class Case(Table):
         preloaded = any(entry.pressed or entry.mounting is not None for entry in rolling)
         preloaded = preloaded or any(bearing.is_offset for bearing in self.bearing)
         return operation.torque != 0.0 or bool(operation.force) or operation.gravity is not None or preloaded
-
-    def material_of_gear(self, gear: Gear) -> Material | None:
-        """Return a gear's material: its own, else its rotor's, without a rotor the case's only one; or None."""
-        if gear.rotor is not None and gear.at is not None:
-            return self.rotor_named(gear.rotor).material_of(gear.material, gear.at, self.material)
-        if gear.material is None and len(self.material) == 1:
-            return next(iter(self.material.values()))
-        return self.material[gear.material] if gear.material is not None else None
-
-
-def loaded_rotors(names: Iterable[str], operation: Operation, *, geared: bool) -> frozenset[str]:
-    """Return the rotors that gear pairs, weight or forces of the operation load across their axis or along it."""
-    if geared or (operation.gravity is not None and any(operation.gravity)):
-        return frozenset(names)
-    return frozenset(force.rotor for force in operation.force if force.x or force.y or force.z)
 
 
 AnyTable = TypeVar("AnyTable", bound=Table)
@@ -352,9 +316,13 @@ def require(case: Case, *tables: str, command: str) -> None:
     CaseError
         With a problem for each table that is missing.
     """
-    missing = [table for table in tables if not getattr(case, table)]
-    if missing:
-        raise CaseError(_lacking(table, command) for table in missing)
+    if any(not getattr(case, table) for table in tables):
+        raise lacking(case, *tables, command=command)
+
+
+def lacking(case: Case, *tables: str, command: str) -> CaseError:
+    """Return the error of a case that lacks some of the tables that a command needs."""
+    return CaseError(_lacking(table, command) for table in tables if not getattr(case, table))
 
 
 def housing_table(case: Case, command: str) -> Housing:

@@ -7,6 +7,7 @@ the ground. Attributes are named as the keys and are in SI: speeds in rad/s, fre
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -33,8 +34,9 @@ if TYPE_CHECKING:
     from gearwhine.coupling import BaseMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
     from gearwhine.coupling.analyses.run_up import OrderTracking as BuiltTracking
+    from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.description.gear_train import Output as BuiltOutput
-    from gearwhine.coupling.machine.loads import Ripple, TorqueOverTime
+    from gearwhine.coupling.machine.loads import Ripple, Torque, TorqueOverTime
     from gearwhine.coupling.machine.loads import ShaftForce as BuiltForce
     from gearwhine.coupling.machine.speed_profile import FreeRun, SpeedRun
     from gearwhine.coupling.machine.speed_profile import TorqueLine as BuiltLine
@@ -379,6 +381,25 @@ class Operation(Table):
     other share the power equally."""
     force: tuple[ShaftForce, ...] = Field(default=(), max_length=1000)
     """Constant forces on the shafts, such as the pull of a belt."""
+
+    def applied_torques(self, train: GearTrain, lengths: Mapping[str, float]) -> tuple[Torque, ...]:
+        """Return the torques from outside: the input first, then the outputs. They balance through the gears.
+
+        Parameters
+        ----------
+        train : GearTrain
+        lengths : mapping of str to float
+            Length of each shaft [m]: the default station of an output; 0 for shafts that are not there.
+        """
+        outputs = [output.build() for output in self.output]
+        ends = dict.fromkeys(train.ratios, 0.0) | dict(lengths)
+        return train.applied_torques(self.torque, self.speed, outputs, self.at or 0.0, ends=ends)
+
+    def loaded_rotors(self, names: Iterable[str], *, geared: bool) -> frozenset[str]:
+        """Return the rotors that gear pairs, weight or forces load across their axis or along it."""
+        if geared or (self.gravity is not None and any(self.gravity)):
+            return frozenset(names)
+        return frozenset(force.rotor for force in self.force if force.x or force.y or force.z)
 
 
 def _half_the_run(data: dict[str, Any]) -> float:

@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
+from typing import Any
 
 from gearwhine.case import units
+from gearwhine.case.analysis_speeds import with_sense_of
 from gearwhine.case.errors import NOTHING, CaseError, Problem, key_of
 from gearwhine.case.fields import MOST_ENTRIES
 from gearwhine.case.model import Case, case_document
 from gearwhine.case.overrides import matching_places, parse_key_path
-from gearwhine.case.speeds_and_torques import with_sense_of_operation
 
 SPEED_KEY = "operation.speed"
 
@@ -89,10 +90,10 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             keys.append(parse_over(text))
         except CaseError as error:
             problems += error.problems
-    paths = list[tuple[str, ...]]()
+    paths, document = list[tuple[str, ...]](), case_document(case)
     of_table = parse_key_path(SPEED_KEY) or ()
     for key in keys:
-        key_paths = [path for path_text in key.keys for path in _paths(case, path_text)]
+        key_paths = [path for path_text in key.keys for path in _paths(document, path_text)]
         if not key_paths:
             problems.append(Problem("--over", key.key, "a path with * that some entries of the case have"))
         if len(set(key_paths)) < len(key_paths) or set(key_paths) & set(paths):
@@ -104,7 +105,7 @@ def swept_keys(case: Case, over: Sequence[str]) -> tuple[SweptKey, ...]:
             problems.append(Problem("--over", key.key, expected))
         paths += key_paths
     if case.sweep is not None and of_table not in paths:
-        keys.insert(0, _speeds(with_sense_of_operation(case, case.sweep.speeds)))
+        keys.insert(0, _speeds(with_sense_of(case.operation, case.sweep.speeds)))
     if not keys and not problems:
         expected = "speeds such as speed = { from = '1500 rpm', to = '6000 rpm', step = '250 rpm' }, or --over: "
         problems.append(Problem("sweep", NOTHING, f"{expected}{_EXPECTED}"))
@@ -122,9 +123,9 @@ def _holds(path: tuple[str, ...], other: tuple[str, ...]) -> bool:
     return len(path) != len(other) and path[:common] == other[:common]
 
 
-def _paths(case: Case, key: str) -> list[tuple[str, ...]]:
+def _paths(document: Mapping[str, Any], key: str) -> list[tuple[str, ...]]:
     """Return the paths that a key stands for; entries of lists that have names are given by their numbers."""
-    document, steps = case_document(case), parse_key_path(key) or ()
+    steps = parse_key_path(key) or ()
     paths = [parse_key_path(key_of(place)) or () for place in matching_places(document, steps)]
     return paths if paths or "*" in steps else [steps]
 

@@ -214,12 +214,19 @@ def _parse_unit(text: str) -> _Unit | None:
     return _Unit(factor, tuple(sorted((key, power) for key, power in powers.items() if power)))
 
 
+def _unit_of(text: str) -> _Unit:
+    """Return the unit of a text that is known to be one; ValueError where it is none."""
+    unit = _parse_unit(text)
+    if unit is None:
+        raise ValueError(f"expected a unit, got {text!r}")
+    return unit
+
+
 def _matches(unit: _Unit, dimension: Dimension) -> bool:
     """Whether a unit measures this dimension; radians count only for angles, speeds and frequencies."""
     if dimension is RATIO:
         return unit.powers == ()
-    required = _parse_unit(dimension.unit)
-    assert required is not None, dimension.unit
+    required = _unit_of(dimension.unit)
     if dimension is SPEED and ("cycle", 1) in unit.powers:
         return unit.powers == (("cycle", 1), ("second", -1))
     if dimension in (ANGLE, SPEED, FREQUENCY):
@@ -365,8 +372,7 @@ def format_quantity(number: float, dimension: Dimension) -> str | float:
     if not dimension.unit:
         return number
     if dimension.display:
-        unit = _parse_unit(dimension.display)
-        assert unit is not None, dimension.display
+        unit = _unit_of(dimension.display)
         customary = float(Decimal(repr(number)) / unit.factor)
         text = f"{customary:.12g} {dimension.display}"
         if math.isfinite(customary) and parse_quantity(text, dimension) == number:

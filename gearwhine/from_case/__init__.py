@@ -6,7 +6,5 @@ are raised as problems of the keys that cause them.
 - :mod:`~gearwhine.from_case.mesh`, :mod:`~gearwhine.from_case.mesh_health`: the housing's mesh and its checks.
 - :mod:`~gearwhine.from_case.fixtures`: supports, mounts, joints, masses and sensors on that mesh.
 - :mod:`~gearwhine.from_case.parametric_housing`: the housing at any values of the fitted parameters.
-- :mod:`~gearwhine.from_case.rotors`: rotors, and bearings linearised under their load.
-- :mod:`~gearwhine.from_case.gear_pairs`: gear pairs with their contact law.
-- :mod:`~gearwhine.from_case.machine`: the description of the machine that these form, with all that loads it.
+- :mod:`~gearwhine.from_case.machine`: the machine in its housing; its parts are made by :mod:`gearwhine.case.parts`.
 """

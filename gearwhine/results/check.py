@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gearwhine.case import Case, CouplingSegment, amounts, applied_torques, campbell_speeds, response_speeds
+from gearwhine.case import Case, CouplingSegment, amounts, rotor_speeds
 from gearwhine.coupling.description.axial_location import ARRANGEMENTS
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output.quantity import ABSENT, HERTZ, RPM, Part, Quantity, Rows, document_of
@@ -17,7 +17,7 @@ from gearwhine.results.mesh import BORE, bore_line, bores, kinds_of_elements
 from gearwhine.results.motion import damping_lines, gear_body_lines
 from gearwhine.results.operating_point import misalignment_words, share_words
 from gearwhine.solve.case_summary import check_case
-from gearwhine.solve.damping import damping_document
+from gearwhine.solve.damping import damping_document, part_dampings
 from gearwhine.solve.gear_bodies import gear_body_document
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class _Analysis(NamedTuple):
 
 def _response_speeds(row: _Analysis) -> Sequence[float]:
     case, rotor = row
-    return response_speeds(case, rotor.name) if rotor.unbalance or rotor.bow else ()
+    return rotor_speeds(case, rotor.name).response if rotor.unbalance or rotor.bow else ()
 
 
 def _swinging_torques(row: _Analysis) -> int:
@@ -143,7 +143,7 @@ def _swinging_torques(row: _Analysis) -> int:
 
 ANALYSIS = (
     Quantity("rotor", "rotor.name"),
-    Quantity("campbell_rpm", lambda row: _span(campbell_speeds(row.case, row.rotor.name))),
+    Quantity("campbell_rpm", lambda row: _span(rotor_speeds(row.case, row.rotor.name).campbell)),
     Quantity("response_rpm", lambda row: _span(_response_speeds(row))),
     Quantity("torques", _swinging_torques),
 )
@@ -220,7 +220,7 @@ OPERATION = (
     Quantity("torque_n_m", "operation.torque"),
     Rows(
         "torques",
-        lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in applied_torques(case)],
+        lambda case: [_AppliedTorque(torque, torque.at if case.rotor else None) for torque in case.parts.torques],
         (
             Quantity("rotor", "torque.rotor"),
             Quantity("at_m"),
@@ -346,7 +346,7 @@ CHECK = (
     Quantity(
         "gear_bodies", lambda checked: (checked.machine and gear_body_document(checked.machine)) or None, optional=True
     ),
-    Quantity("damping", lambda checked: damping_document(checked.case) or None, optional=True),
+    Quantity("damping", lambda checked: damping_document(part_dampings(checked.case)) or None, optional=True),
     Quantity("warnings", lambda checked: checked.warnings or None, optional=True),
 )
 """Quantities of a checked case."""

@@ -1,10 +1,10 @@
 """First page of the report: the machine, its proofs, the highest and the loudest lines, and measured modes."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from gearwhine.case import Case, applied_torques
+from gearwhine.case import Case
 from gearwhine.output.quantity import RPM
 from gearwhine.output.sections import (
     NOTHING,
@@ -34,6 +34,7 @@ from gearwhine.results.motion import (
 )
 from gearwhine.results.run import SPECTRUM
 from gearwhine.results.sound import LOUDEST_COLUMNS, loudest_lines, total_sentence
+from gearwhine.results.summaries import Summary
 from gearwhine.solve.case_summary import checked_pairs, checked_rotors
 
 if TYPE_CHECKING:
@@ -111,13 +112,14 @@ def first_page(case: Case | None, documents: Sequence[Document], stale: Sequence
     stale : sequence of str
         Sentences on results that do not fit the case any more.
     """
+    summaries = [Summary(document) for document in documents]
     sections = (
         machine_section(case, documents),
-        Section("Are the results sound?", _findings(documents, stale)),
-        Section("Highest lines", _lines(documents)),
-        Section("Loudest lines", _sound(documents)),
+        Section("Are the results sound?", _findings(summaries, stale)),
+        Section("Highest lines", _lines(summaries)),
+        Section("Loudest lines", _sound(summaries)),
         Section("", pictures=_PICTURES),
-        Section("Measured and modelled", _compared(documents)),
+        Section("Measured and modelled", _compared(summaries)),
     )
     return tuple(section for section in sections if section.content or section.pictures)
 
@@ -127,20 +129,21 @@ def machine_section(case: Case | None, documents: Sequence[Document] = ()) -> Se
     if case is None:
         return Section("Machine")
     try:
-        rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
+        rotors, pairs = checked_rotors(case.parts), tuple(checked_pairs(case.parts))
     except (ValueError, RuntimeError) as error:
         return Section("Machine", (Finding(f"The machine of the case cannot be built: {error}", passed=False),))
-    content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, documents)]
+    summaries = [Summary(document) for document in documents]
+    content: list[str | Finding | Table] = [_paragraph(case, rotors, pairs, summaries)]
     if case.operation is not None and case.rotor:
         content.append(_operation(case))
-    content += _under_load(documents)
+    content += _under_load(summaries)
     content += table_of(SHAFT_COLUMNS, [_shaft(case, rotor) for rotor in rotors], "Shafts")
     content += table_of(PAIR_COLUMNS, [_pair(pair) for pair in pairs], "Gear pairs")
     return Section("Machine", tuple(content))
 
 
 def _paragraph(
-    case: Case, rotors: Sequence["CheckedRotor"], pairs: Sequence["CheckedPair"], documents: Sequence[Document]
+    case: Case, rotors: Sequence["CheckedRotor"], pairs: Sequence["CheckedPair"], summaries: Sequence[Summary]
 ) -> str:
     """Return the components of the machine in a sentence or two."""
     parts = [
@@ -151,7 +154,7 @@ def _paragraph(
     machine = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1] if parts else ""
     if case.housing is None:
         return f"{machine}; no housing.".capitalize()
-    solved = next((modes for document in documents if (modes := _modes_of(document))), {})
+    solved = next((summary.housing for summary in summaries if summary.housing), {})
     kind = "box" if case.housing.box is not None else "housing from CAD" if case.housing.cad else "meshed housing"
     size = case.housing.box.size if case.housing.box is not None else solved.get("size_m")
     of_size = "" if size is None else f" of {' × '.join(f'{_MM * side:.4g}' for side in size)} mm"
@@ -163,15 +166,9 @@ def _paragraph(
     return f"{inside}{kind}{of_size}{mass}, of {case.housing.material}{on}{sensors}."
 
 
-def _modes_of(document: Document) -> Document:
-    """Return the housing's part of a document; documents of commands on the housing alone are one themselves."""
-    housing = document.get("housing", document if "certificate" in document and "mesh" in document else {})
-    return housing if isinstance(housing, dict) else {}
-
-
 def _operation(case: Case) -> str:
     assert case.operation is not None
-    torques = applied_torques(case)
+    torques = case.parts.torques
     speed = f"{case.operation.speed * RPM:.5g} rpm of the first driver"
     if not torques or not case.operation.torque:
         return f"Operation: {speed}."
@@ -181,9 +178,9 @@ def _operation(case: Case) -> str:
     return f"Operation: {speed}, {applied}; {power / 1e3:.4g} kW."
 
 
-def _under_load(documents: Sequence[Document]) -> list[str]:
+def _under_load(summaries: Sequence[Summary]) -> list[str]:
     """Return the largest face load factor, and the shortest bearing life of the newest operating point."""
-    load = next((point for document in documents if (point := _load_of(document))), {})
+    load = next((summary.load for summary in summaries if summary.load), {})
     clauses = []
     if pairs := [pair for pair in load.get("gear_pairs", ()) if pair.get("k_h_beta") is not None]:
         most_uneven = max(pairs, key=lambda pair: float(pair["k_h_beta"]))
@@ -199,12 +196,6 @@ def _under_load(documents: Sequence[Document]) -> list[str]:
         hours = ("over " if shortest["life_h"] > LONGEST_LIFE else "") + f"{life:,.0f}".replace(",", " ")
         clauses.append(f"shortest bearing life L10 {hours} h, of {shortest['name']}")
     return [f"Under load: {'; '.join(clauses)}."] if clauses else []
-
-
-def _load_of(document: Document) -> Document:
-    """Return the operating point of a document; the document of ``load`` is one itself."""
-    load = document.get("load", document if "gear_pairs" in document and "seats" in document else {})
-    return load if isinstance(load, dict) else {}
 
 
 SHAFT_COLUMNS = (
@@ -249,9 +240,9 @@ def _pair(pair: "CheckedPair") -> Document:
     }
 
 
-def _findings(documents: Sequence[Document], stale: Sequence[str]) -> tuple[str | Finding, ...]:
+def _findings(summaries: Sequence[Summary], stale: Sequence[str]) -> tuple[str | Finding, ...]:
     """Return the verdict in a sentence, and the findings that it counts."""
-    findings = tuple(_distinct_findings(documents, stale))
+    findings = tuple(_distinct_findings(summaries, stale))
     passed, failed, warned = (sum(finding.passed is kind for finding in findings) for kind in (True, False, None))
     if not findings:
         return ()
@@ -259,19 +250,19 @@ def _findings(documents: Sequence[Document], stale: Sequence[str]) -> tuple[str 
     return (f"{verdict}; {counted(warned, 'warning') if warned else 'no warnings'}.", *findings)
 
 
-def _distinct_findings(documents: Sequence[Document], stale: Sequence[str]) -> Iterator[Finding]:
+def _distinct_findings(summaries: Sequence[Summary], stale: Sequence[str]) -> Iterator[Finding]:
     """Yield the proofs of all results without repetition, then the stale results, then the warnings."""
     seen: set[str] = set()
-    for document in documents:
-        for finding in _proofs(document):
+    for summary in summaries:
+        for finding in _proofs(summary):
             if finding.text not in seen:
                 seen.add(finding.text)
                 yield finding
     for sentence in stale:
         yield Finding(sentence, passed=False)
-    for document in documents:
-        for warning in document.get("warnings", ()):
-            if isinstance(warning, Mapping) and (text := str(warning.get("message", warning))) not in seen:
+    for summary in summaries:
+        for warning in summary.warnings:
+            if (text := str(warning.get("message", warning))) not in seen:
                 seen.add(text)
                 yield Finding(_sentence(text), passed=None, link=(*_chapter(warning.get("name")), "section Warnings"))
 
@@ -284,8 +275,8 @@ def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "!", "?")) else ".")
 
 
-def _proofs(document: Document) -> Iterator[Finding]:
-    if certificate := _modes_of(document).get("certificate"):
+def _proofs(summary: Summary) -> Iterator[Finding]:
+    if certificate := summary.housing.get("certificate"):
         yield Finding(
             f"Housing: {certificate['found']} modes found below {certificate['limit_hz']:.5g} Hz, "
             f"{certificate['expected']} counted by the matrix's inertia; residuals up to "
@@ -293,40 +284,38 @@ def _proofs(document: Document) -> Iterator[Finding]:
             passed=bool(certificate["complete"]),
             link=("section Housing modes",),
         )
-    rotors = [rotor for rotor in document.get("rotors", ()) if rotor.get("certificate")]
-    if rotors:
-        missing = [rotor["name"] for rotor in rotors if not rotor["certificate"]["complete"]]
+    if summary.rotors:
+        missing = [rotor["name"] for rotor in summary.rotors if not rotor["certificate"]["complete"]]
         statement = (
             f"modes are missing of {', '.join(missing)}" if missing else "all bending modes below a limit are found"
         )
         yield Finding(f"Shafts at rest: {statement}.", passed=not missing, link=("section Rotors",))
-    system = document.get("system", document if "stability" in document else {})
-    if certificate := system.get("certificate"):
+    if certificate := summary.system.get("certificate"):
         yield Finding(
             f"Coupled system: {certificate['found']} of {certificate['expected']} eigenvalues found, residuals up to "
             f"{certificate['max_residual']:.0e}.",
             passed=bool(certificate["complete"]),
             link=("section Coupled system",),
         )
-    if stability := system.get("stability"):
+    if stability := summary.system.get("stability"):
         growing = len(stability["growing"])
         statement = "no mode grows" if stability["stable"] else f"{counted(growing, 'mode')} grow{'s' * (growing == 1)}"
         yield Finding(f"Stability: {statement}.", passed=bool(stability["stable"]), link=("section Coupled system",))
-    if (residual := _load_of(document).get("residual")) is not None:
+    if (residual := summary.load.get("residual")) is not None:
         yield Finding(
             f"Operating point: forces balance to {residual:.0e} of the largest load (bound: {_LARGEST_RESIDUAL:.0e}).",
             passed=residual < _LARGEST_RESIDUAL,
             link=("section Operating point",),
         )
-    if (error := document.get("energy_error")) is not None:
+    if (error := summary.energy_error) is not None:
         yield Finding(
-            f"Motion: the energy balance closes {closing(error)} over {document['steps']} steps (bound: "
+            f"Motion: the energy balance closes {closing(error)} over {summary.steps} steps (bound: "
             f"{percent(_MOST_ERROR)}).",
             passed=error < _MOST_ERROR,
             link=("section Motion",),
         )
-    yield from _point_proofs(document)
-    for motion in document.get("motions", ()):
+    yield from _point_proofs(summary)
+    for motion in summary.motions:
         if (error := motion.get("error")) is not None and motion.get("residual") is not None:
             yield Finding(
                 f"Steady state: the motion closes {closing(motion['residual'])} and changes by {error:.0e} with "
@@ -334,13 +323,13 @@ def _proofs(document: Document) -> Iterator[Finding]:
                 passed=max(error, motion["residual"]) < _PERIODIC and bool(motion["stable"]),
                 link=("section Steady state",),
             )
-    yield from _sound_proofs(document)
-    yield from _basis(document)
+    yield from _sound_proofs(summary)
+    yield from _basis(summary)
 
 
-def _point_proofs(document: Document) -> Iterator[Finding]:
+def _point_proofs(summary: Summary) -> Iterator[Finding]:
     """Yield the energy balance of a sweep's points and the balance of their forces, each at its worst point."""
-    points = document.get("points", ()) if document.get("command") == "sweep" else ()
+    points = summary.points
     balances = [(point["energy_error"], point) for point in points if point.get("energy_error") is not None]
     if balances:
         largest, worst = max(balances, key=lambda balance: float(balance[0]))
@@ -365,10 +354,9 @@ def _settings(point: Document) -> str:
     return ", ".join(f"{key}={text}" for key, text in point["settings"].items())
 
 
-def _sound_proofs(document: Document) -> Iterator[Finding]:
+def _sound_proofs(summary: Summary) -> Iterator[Finding]:
     """Yield the power balance, the pressure inside the surface and the error of a known source, each at its worst."""
-    points = document["points"] if document.get("command") == "sweep" else ()
-    sounds = [_sound_of(document), *(point.get("sound", {}) for point in points)]
+    sounds = [summary.sound, *(point.get("sound", {}) for point in summary.points)]
     balances = [abs(sound["power_balance_db"]) for sound in sounds if sound.get("power_balance_db") is not None]
     leaks = [sound["interior_pressure"] for sound in sounds if sound.get("interior_pressure") is not None]
     if balances:
@@ -398,9 +386,9 @@ def _sound_proofs(document: Document) -> Iterator[Finding]:
         )
 
 
-def _basis(document: Document) -> Iterator[Finding]:
+def _basis(summary: Summary) -> Iterator[Finding]:
     """Yield the largest error that the modal basis may leave in the lines that the page lists."""
-    lines = leading_lines(document.get("sensors", ()), "peaks", _LINES)
+    lines = leading_lines(summary.sensors, "peaks", _LINES)
     errors = [line["uncertainty"] for line in lines if "uncertainty" in line]
     if errors and math.isfinite(largest := max(errors)):
         yield Finding(
@@ -411,10 +399,10 @@ def _basis(document: Document) -> Iterator[Finding]:
         )
 
 
-def _lines(documents: Sequence[Document]) -> tuple[str | Table, ...]:
+def _lines(summaries: Sequence[Summary]) -> tuple[str | Table, ...]:
     """Return the highest lines of each sensor of the newest motion, with their cause."""
-    for document in documents:
-        for sensors, key in _of_motion(document):
+    for summary in summaries:
+        for sensors, key in summary.lines:
             if rows := leading_lines(sensors, key, _LINES):
                 return (*_highest(rows), *table_of(_CAUSES, rows))
     return ()
@@ -436,26 +424,13 @@ def _highest(rows: Sequence[Document]) -> list[str]:
     ]
 
 
-def _sound_of(document: Document) -> Document:
-    """Return the sound's part of a document; the document of ``sound`` is one itself."""
-    sound = document.get("sound", document if "total_db_a" in document else {})
-    return sound if isinstance(sound, dict) else {}
-
-
-def _sound(documents: Sequence[Document]) -> tuple[str | Table, ...]:
+def _sound(summaries: Sequence[Summary]) -> tuple[str | Table, ...]:
     """Return the sound power level of the newest sound with lines, and its loudest lines with their cause."""
-    for document in documents:
-        if (sound := _sound_of(document)) and sound["lines"]:
+    for summary in summaries:
+        if (sound := summary.sound) and sound["lines"]:
             rows = loudest_lines(sound)[:_LOUDEST]
             return (f"{total_sentence(sound)}.", *table_of(LOUDEST_COLUMNS, rows))
     return ()
-
-
-def _of_motion(document: Document) -> Iterator[tuple[Iterable[Document], str]]:
-    if document.get("run") is None:  # a spectrum over a run has no lines
-        yield document.get("sensors", ()), "peaks"
-    for motion in document.get("motions", ()):
-        yield motion["sensors"], "lines"
 
 
 def _paths_of(row: Document) -> tuple[str, ...]:
@@ -497,10 +472,10 @@ _CAUSES = (
 )
 
 
-def _compared(documents: Sequence[Document]) -> tuple[str | Table, ...]:
+def _compared(summaries: Sequence[Summary]) -> tuple[str | Table, ...]:
     """Return the pairs of measured modes and the model's, and their errors, of the newest comparison."""
-    for document in documents:
-        compared = document.get("compare", document if "pairing" in document else {})
+    for summary in summaries:
+        compared = summary.compared
         if pairs := compared.get("pairs"):
             sentence = (
                 f"Errors of the frequencies: {compared['rms_error_percent']:.2f} % root mean square, "

@@ -19,10 +19,27 @@ if TYPE_CHECKING:
 
 
 class _Mode(NamedTuple):
-    """Mode of the housing: its number from 1, and its own quantities."""
+    """Mode of the housing.
+
+    Attributes
+    ----------
+    number : int
+        Number of the housing mode.
+    frequency_hz : float
+        Housing natural frequency [Hz].
+    damping_ratio : float
+        Housing modal damping ratio.
+    discretisation_error : float or None
+        Estimate of the natural frequency's relative error by the mesh.
+    strength : float or None
+        Lateral acceleration strength [1/kg].
+    effective_mass : array_like
+    survey_shape : ndarray, shape (n_points, 3)
+        Mass-normalised mode shapes at the survey points [1/√kg].
+    """
 
     number: int
-    frequency: float
+    frequency_hz: float
     damping_ratio: float
     discretisation_error: float | None
     strength: float | None
@@ -52,53 +69,20 @@ def _modes(solved: "HousingModes") -> list[_Mode]:
 
 
 MODE = (
-    Quantity(
-        "number", "number", "housing_mode", unit="1", long_name="number of the housing mode", heading="mode", shown="d"
-    ),
-    Quantity(
-        "frequency_hz",
-        lambda mode: mode.frequency,
-        "housing_frequency",
-        long_name="housing natural frequency",
-        heading="frequency [Hz]",
-        shown=".2f",
-    ),
-    Quantity(
-        "damping_ratio",
-        "damping_ratio",
-        "housing_damping_ratio",
-        unit="1",
-        long_name="housing modal damping ratio",
-        heading="damping ratio",
-        shown=".4f",
-    ),
+    Quantity("number", "number", "housing_mode", unit="1", heading="mode", shown="d"),
+    Quantity("frequency_hz", "frequency_hz", "housing_frequency", heading="frequency [Hz]", shown=".2f"),
+    Quantity("damping_ratio", "damping_ratio", "housing_damping_ratio", unit="1", heading="damping ratio", shown=".4f"),
     Quantity(
         "discretisation_error",
         "discretisation_error",
         "housing_discretisation_error",
         unit="1",
-        long_name="estimate of the natural frequency's relative error by the mesh",
         heading="mesh error [%]",
         shown=".2g",
     ),
-    Quantity(
-        "strength",
-        "strength",
-        "housing_strength",
-        unit="kg-1",
-        long_name="lateral acceleration strength",
-        heading="strength [1/kg]",
-        shown=".4g",
-    ),
+    Quantity("strength", "strength", "housing_strength", unit="kg-1", heading="strength [1/kg]", shown=".4g"),
     Quantity("effective_mass"),
-    Quantity(
-        "",
-        "survey_shape",
-        "survey_shape",
-        ("survey_point", "component"),
-        "kg-0.5",
-        long_name="mass-normalised mode shapes at the survey points",
-    ),
+    Quantity("", "survey_shape", "survey_shape", ("survey_point", "component"), "kg-0.5"),
 )
 """Quantities of one mode."""
 

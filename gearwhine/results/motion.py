@@ -27,6 +27,21 @@ class MeshFigures(NamedTuple):
     figures: "TransientFigures | PeriodicResponse | SuperposedResponse"
     contact: int
 
+    @property
+    def mean_force(self) -> float:
+        """Mean force of the flanks [N]."""
+        return float(self.figures.mean_force[self.contact])
+
+    @property
+    def peak_force(self) -> float:
+        """Largest force of the flanks [N]."""
+        return float(self.figures.peak_force[self.contact])
+
+    @property
+    def contact_loss_fraction(self) -> float:
+        """Part of the time that the flanks are apart."""
+        return float(self.figures.contact_loss[self.contact])
+
 
 class NamedParts(NamedTuple):
     """Bearing or gear: its name, and the mean and alternating parts of its signals."""
@@ -38,18 +53,9 @@ class NamedParts(NamedTuple):
 MESH = (
     Quantity("driver", "mesh.driver.name", heading="driver"),
     Quantity("driven", "mesh.driven.name", heading="driven"),
-    Quantity(
-        "mean_force_n", lambda row: float(row.figures.mean_force[row.contact]), heading="mean force [N]", shown=".0f"
-    ),
-    Quantity(
-        "peak_force_n", lambda row: float(row.figures.peak_force[row.contact]), heading="largest force [N]", shown=".0f"
-    ),
-    Quantity(
-        "contact_loss_fraction",
-        lambda row: float(row.figures.contact_loss[row.contact]),
-        heading="apart [%]",
-        shown=".2f",
-    ),
+    Quantity("mean_force_n", heading="mean force [N]", shown=".0f"),
+    Quantity("peak_force_n", heading="largest force [N]", shown=".0f"),
+    Quantity("contact_loss_fraction", heading="apart [%]", shown=".2f"),
 )
 """Quantities of a gear mesh in motion; a row is a :class:`MeshFigures`."""
 

@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.description.gear_train import EQUAL_MESHES
 from gearwhine.coupling.statics.operating_point import CAUSES, PairLoad
 from gearwhine.housing.acoustics.sound_levels import power_level
@@ -186,8 +188,9 @@ PAIR = (
 )
 """Quantities of a gear pair at the operating point; a row is a :class:`PairLoad`."""
 
+_TAKEN_ANGLE = Quantity("misalignment_taken_rad", "misalignment.taken", "misalignment_taken")
 TAKEN = (
-    Quantity("misalignment_taken_rad", "misalignment.taken", "misalignment_taken"),
+    _TAKEN_ANGLE,
     Quantity("misalignment_taken_from", "misalignment.origin", "misalignment_taken_from"),
     Part(
         "transmission_error_over_hunting_period_m",
@@ -196,6 +199,13 @@ TAKEN = (
     ),
 )
 """Misalignment that the motion takes of a gear pair, and its static transmission error over the hunting period."""
+
+SWEPT_PAIR = (
+    replace(_MISALIGNMENT, long_name=meaning_of(PairLoad, "misalignment")),
+    replace(_TAKEN_ANGLE, long_name=meaning_of(TakenMisalignment, "taken")),
+    replace(_K_H_BETA, long_name=meaning_of(PairLoad, "k_h_beta")),
+)
+"""Quantities of a pair that a sweep has of every point."""
 
 _PAIR_COLUMNS = (
     *columns_of(field for field in PAIR if field is not _MISALIGNMENT),

@@ -239,14 +239,7 @@ class _BearingLoad(NamedTuple):
 
 STATIC = (
     Quantity("gravity_m_per_s2", "weight.deflection.gravity"),
-    Rows(
-        "forces",
-        "weight.forces",
-        (
-            Quantity("at_m"),
-            Quantity("force_n", lambda force: [force.x, force.y, force.z]),
-        ),
-    ),
+    Rows("forces", "weight.forces", (Quantity("at_m"), Quantity("force_n", lambda force: [force.x, force.y, force.z]))),
     Quantity("bearings_at_rpm", lambda solved: None if solved.rest_speed is None else solved.weight.speed * RPM),
     Rows(
         "bearings",
@@ -279,26 +272,17 @@ class _Probe(NamedTuple):
 
 
 PROBE = (
-    Quantity("", lambda row: f"{row.reading.rotor}: {row.reading.probe.name}", "probe"),
+    Quantity("", "reading.label", "probe"),
     Quantity("", "reading.speeds", "response_speed", _PROBE, "rpm"),
     Quantity("name", "reading.probe.name"),
     Quantity("at_m", "reading.probe.at"),
     Quantity("angle_deg", "reading.probe.angle"),
-    Quantity(
-        "",
-        lambda row: np.abs(row.reading.amplitude),
-        "probe_amplitude",
-        _PROBE,
-        "m",
-        long_name="reading of the probe, zero to peak",
-    ),
+    Quantity("", "reading.size", "probe_amplitude", _PROBE, "m"),
     Quantity("", "reading.phase_lag", "probe_phase_lag", _PROBE, "rad"),
     Quantity("", "reading.major_axis", "orbit_major_axis", _PROBE, "m"),
     Quantity("largest_amplitude_m", "reading.largest.0"),
     Quantity("largest_at_rpm", "reading.largest.1"),
-    Quantity(
-        "operation_amplitude_m", lambda row: None if row.at_operation is None else np.abs(row.at_operation.amplitude[0])
-    ),
+    Quantity("operation_amplitude_m", "at_operation.size.0"),
     Quantity("operation_phase_lag_deg", "at_operation.phase_lag.0"),
 )
 """Quantities of a probe."""
@@ -310,20 +294,24 @@ def _readings(solved: "SolvedResponse") -> list[_Probe]:
 
 
 class _BearingForce(NamedTuple):
-    """Response, the name of a bearing, and the amplitudes of the force on it along x and y, shape (2, b) [N]."""
+    """Force on a bearing by unbalance and bow.
+
+    Attributes
+    ----------
+    solved : SolvedResponse
+    name : str
+    force : ndarray, shape (2, b)
+        Force on the bearing along x and y, zero to peak [N].
+    """
 
     solved: "SolvedResponse"
     name: str
     force: "npt.NDArray[np.float64]"
 
 
-def _range(unit: str, of: Any) -> tuple[Quantity, Quantity]:
-    """Declare the ends of the abscissa of a response's curves."""
-    return Quantity(f"from_{unit}", lambda solved: of(solved)[0]), Quantity(f"to_{unit}", lambda solved: of(solved)[-1])
-
-
 RESPONSE = (
-    *_range("rpm", lambda solved: solved.response.speeds * RPM),
+    Quantity("from_rpm", "response.speeds.0"),
+    Quantity("to_rpm", lambda solved: solved.response.speeds[-1] * RPM),
     Quantity("amplitude_convention", lambda solved: "zero to peak"),
     Rows("probes", _readings, PROBE, "probe"),
     Rows(
@@ -336,14 +324,7 @@ RESPONSE = (
             Quantity("", "name", "unbalance_bearing"),
             Quantity("name"),
             Quantity("largest_force_n", lambda row: row.force.max(axis=1)),
-            Quantity(
-                "",
-                "force",
-                "unbalance_bearing_force",
-                ("plane", *_PROBE),
-                "N",
-                long_name="force on the bearing along x and y, zero to peak",
-            ),
+            Quantity("", "force", "unbalance_bearing_force", ("plane", *_PROBE), "N"),
             Quantity(
                 "", "solved.response.speeds", "unbalance_bearing_speed", _PROBE, "rpm", long_name="speed of the rotor"
             ),
@@ -356,37 +337,14 @@ RESPONSE = (
 
 _TORSION = ("torsion_step",)
 TORSION_PROBE = (
-    Quantity("", lambda reading: f"{reading.rotor}: {reading.probe.name}", "torsion_probe"),
-    Quantity("", "frequencies", "torsion_frequency", _TORSION, "Hz", long_name="frequency of the torques"),
+    Quantity("", "label", "torsion_probe"),
+    Quantity("", "frequencies", "torsion_frequency", _TORSION, "Hz"),
     Quantity("name", "probe.name"),
     Quantity("at_m", "probe.at"),
-    Quantity(
-        "", lambda reading: np.abs(reading.angle), "torsion_angle", _TORSION, "rad", long_name="angle, zero to peak"
-    ),
-    Quantity(
-        "",
-        lambda reading: np.angle(reading.angle),
-        "torsion_angle_phase",
-        _TORSION,
-        "rad",
-        long_name="phase of the angle",
-    ),
-    Quantity(
-        "",
-        lambda reading: np.abs(reading.torque),
-        "torsion_torque",
-        _TORSION,
-        "N m",
-        long_name="torque in the shaft, zero to peak",
-    ),
-    Quantity(
-        "",
-        lambda reading: np.angle(reading.torque),
-        "torsion_torque_phase",
-        _TORSION,
-        "rad",
-        long_name="phase of that torque",
-    ),
+    Quantity("", "angle_size", "torsion_angle", _TORSION, "rad"),
+    Quantity("", "angle_phase", "torsion_angle_phase", _TORSION, "rad"),
+    Quantity("", "torque_size", "torsion_torque", _TORSION, "N m"),
+    Quantity("", "torque_phase", "torsion_torque_phase", _TORSION, "rad"),
     Quantity("largest_angle_rad", "largest_angle.0"),
     Quantity("largest_angle_at_hz", "largest_angle.1"),
     Quantity("largest_torque_n_m", "largest_torque.0"),
@@ -395,7 +353,8 @@ TORSION_PROBE = (
 """Angle and torque at a probe over frequency."""
 
 TORSION = (
-    *_range("hz", lambda solved: solved.response.frequencies / HERTZ),
+    Quantity("from_hz", "response.frequencies.0"),
+    Quantity("to_hz", lambda solved: solved.response.frequencies[-1] / HERTZ),
     Quantity("damping_ratio", "response.damping_ratio"),
     Quantity("amplitude_convention", lambda solved: "zero to peak"),
     Rows("probes", "readings", TORSION_PROBE, "torsion_probe"),
@@ -449,13 +408,8 @@ ROTOR = (
     Quantity("length_m", "rotor.length"),
     Quantity("bearings", lambda solved: [bearing.name for bearing in solved.bearings]),
     Quantity("", "rest.frequencies", "rotor_rest_frequency", ("rest_mode",), "Hz"),
-    Quantity(
-        "lateral_hz",
-        lambda solved: solved.rest.frequencies[solved.lateral_at_rest] / HERTZ,
-        heading="bending at rest [Hz]",
-        shown=".1f",
-    ),
-    Quantity("lateral_axial_share", lambda solved: solved.rest.axial_share[solved.lateral_at_rest]),
+    Quantity("lateral_hz", "bending_frequencies", heading="bending at rest [Hz]", shown=".1f"),
+    Quantity("lateral_axial_share", "bending_axial_share"),
     Quantity(
         "torsional_hz",
         "torsional.frequencies",
@@ -466,22 +420,8 @@ ROTOR = (
     ),
     Quantity("axial_hz", heading="along the axis [Hz]", shown=".1f"),
     Quantity("", "places", "rotor_place", ("place",), "m"),
-    Quantity(
-        "",
-        lambda solved: solved.lateral.evaluate(solved.places)[0],
-        "rotor_lateral_shape",
-        ("lateral_mode", "place"),
-        "kg-0.5",
-        long_name="orthonormal lateral mode shapes",
-    ),
-    Quantity(
-        "",
-        lambda solved: solved.torsional.evaluate(solved.places),
-        "rotor_torsional_shape",
-        ("torsional_mode", "place"),
-        "kg-0.5 m-1",
-        long_name="orthonormal torsional mode shapes",
-    ),
+    Quantity("", "lateral_shapes", "rotor_lateral_shape", ("lateral_mode", "place"), "kg-0.5"),
+    Quantity("", "torsional_shapes", "rotor_torsional_shape", ("torsional_mode", "place"), "kg-0.5 m-1"),
     _rest_strain("segment", 0),
     _rest_strain("bearing", 1),
     Quantity("rest_bearings_at_rpm", "rest_speed"),

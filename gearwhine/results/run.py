@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -39,14 +38,13 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gearwhine.coupling.analyses.recording import Signals
-    from gearwhine.coupling.analyses.run_up import RunSignature
+    from gearwhine.coupling.analyses.run_up import OrderPeak, RunSignature
     from gearwhine.coupling.analyses.signature import ShaftSidebands, SolvedSignature, TracedLine
     from gearwhine.coupling.analyses.transient import SolvedTransient
     from gearwhine.coupling.linear.complex_modes import CoupledModes
     from gearwhine.coupling.signals import LineName
     from gearwhine.coupling.signals.sidebands import Sideband
     from gearwhine.coupling.signals.spectrum import Spectrum
-    from gearwhine.coupling.time.transient import TransientFigures
 
 MODAL_COORDINATE = "modal coordinate by unit modal mass; of torsion by unit modal inertia [rad kg0.5 m]"
 _HERTZ_LONG = ("Hz", "frequency")
@@ -60,77 +58,100 @@ class TracedTransient(NamedTuple):
     orders: "RunSignature | None" = None
 
 
-class _NamedPeak(NamedTuple):
-    """Peak of a spectrum with the name of its line and the coupled modes; of a sensor also the traced line."""
+class _Peak(NamedTuple):
+    """Peak of a spectrum: with the name of its line and the coupled modes, or, over a run, as what it stands.
+
+    Attributes
+    ----------
+    peak : Peak
+        Over a run with orders the highest amplitude of one, at the frequency that it has there.
+    named : LineName or None
+        Name of the line; None where lines are not traced.
+    modes : CoupledModes or None
+        Coupled modes that the name refers to.
+    line : TracedLine or None
+        The traced line of a sensor.
+    over_run : bool
+        Whether the speed varies, so that the peak is no line at a constant speed.
+    order : OrderPeak or None
+        Order of a run of which it is the highest amplitude; None where it is a mean over the run.
+    """
 
     peak: "Peak"
-    named: "LineName"
-    modes: "CoupledModes"
+    named: "LineName | None" = None
+    modes: "CoupledModes | None" = None
     line: "TracedLine | None" = None
-
-
-class _UnnamedPeak(NamedTuple):
-    """Peak of a spectrum whose lines are not traced; over a run it is a mean."""
-
-    peak: "Peak"
     over_run: bool = False
+    order: "OrderPeak | None" = None
+
+    @property
+    def frequency_hz(self) -> float:
+        """Frequency of the peak [Hz]."""
+        return self.peak.frequency
+
+    @property
+    def traced(self) -> "_Peak | None":
+        """The peak where its line has a name."""
+        return None if self.named is None else self
+
+    @property
+    def of_run(self) -> "_Peak | None":
+        """The peak where it is one over a run."""
+        return self if self.over_run else None
+
+    @property
+    def over_run_kind(self) -> str:
+        """What a peak over a run is."""
+        return MEAN_PEAK if self.order is None else ORDER_PEAK
+
+    @property
+    def near_mode(self) -> "_NearMode | None":
+        """The coupled mode that the line is near to."""
+        if self.named is None or self.modes is None or self.named.mode is None:
+            return None
+        return _NearMode(self.modes, self.named.mode)
 
 
-class _OrderPeak(NamedTuple):
-    """Highest amplitude of an order along a run, as a peak at the frequency that it has there, and its row."""
+class _NearMode(NamedTuple):
+    """Coupled modes, and the number of one of them from 0."""
 
-    peak: "Peak"
-    row: dict[str, Any]
-
-
-_AnyPeaks = list[_NamedPeak] | list[_UnnamedPeak] | list[_OrderPeak]
+    modes: "CoupledModes"
+    mode: int
 
 
-def _if_named(row: Any) -> _NamedPeak | None:
-    return row if isinstance(row, _NamedPeak) else None
-
-
-def _if_over_run(row: Any) -> Any:
-    return row if isinstance(row, _OrderPeak) or (isinstance(row, _UnnamedPeak) and row.over_run) else None
-
-
-def _unnamed(row: "_Sensor | _Pair", signal: str, peaks: "list[Peak]") -> _AnyPeaks:
+def _unnamed(row: "_Sensor | _Pair", signal: str, peaks: "list[Peak]") -> list[_Peak]:
     """Peaks without a signature: over a run the highest of its orders; without them the means over the run."""
-    if row.orders is not None:
-        return [
-            _OrderPeak(Peak(order["frequency_hz"], order["highest_amplitude"]), order)
-            for order in row.orders.highest_of(signal)
-        ]
-    return [_UnnamedPeak(peak, row.transient.speed_profile is not None) for peak in peaks]
+    if row.orders is None:
+        return [_Peak(peak, over_run=row.transient.speed_profile is not None) for peak in peaks]
+    return [
+        _Peak(Peak(order.frequency_hz, order.highest_amplitude), over_run=True, order=order)
+        for order in row.orders.highest_of(signal)
+    ]
 
 
 ORDER_PEAK, MEAN_PEAK = "highest of an order along the run", "mean over the run"
 OVER_RUN = (
-    Quantity("kind", lambda row: ORDER_PEAK if isinstance(row, _OrderPeak) else MEAN_PEAK),
-    Quantity("name", lambda row: row.row["name"] if isinstance(row, _OrderPeak) else ABSENT),
-    Quantity("order", lambda row: row.row["order"] if isinstance(row, _OrderPeak) else ABSENT),
-    Quantity("at_rpm", lambda row: row.row["at_rpm"] if isinstance(row, _OrderPeak) else ABSENT),
+    Quantity("kind", "over_run_kind"),
+    Quantity("name", "order.name", optional=True),
+    Quantity("order", "order.order", optional=True),
+    Quantity("at_rpm", "order.at_rpm", optional=True),
 )
 """Quantities of a peak over a run, which say what it is: no line at a constant speed."""
-
-
-def _near_mode(row: _NamedPeak) -> dict[str, Any] | None:
-    mode, modes = row.named.mode, row.modes
-    if mode is None:
-        return None
-    return {
-        "number": mode + 1,
-        "kind": modes.kinds[mode],
-        "where": modes.where[mode],
-        "frequency_hz": modes.frequencies_hz[mode],
-    }
-
 
 NAMED = (
     Quantity("name", "named.name"),
     Quantity("kind", "named.kind"),
     Quantity("order", "named.order"),
-    Quantity("near_mode", _near_mode),
+    Part(
+        "near_mode",
+        "near_mode",
+        (
+            Quantity("number", lambda near: near.mode + 1),
+            Quantity("kind", lambda near: near.modes.kinds[near.mode]),
+            Quantity("where", lambda near: near.modes.where[near.mode]),
+            Quantity("frequency_hz", lambda near: near.modes.frequencies_hz[near.mode]),
+        ),
+    ),
 )
 """Quantities of a named peak."""
 
@@ -157,8 +178,14 @@ TRACED = (
 """Quantities of a traced peak."""
 
 
-def _peak(key: str) -> tuple[Quantity, Quantity]:
-    return Quantity("frequency_hz", lambda row: row.peak.frequency), Quantity(key, lambda row: row.peak.amplitude)
+def _peaks(key: str, named: Fields) -> Fields:
+    """Declare the quantities of a peak, with its amplitude under a key."""
+    return (
+        Quantity("frequency_hz", "frequency_hz"),
+        Quantity(key, "peak.amplitude"),
+        Part("", "traced", named),
+        Part("", "of_run", OVER_RUN),
+    )
 
 
 class _Sidebands(NamedTuple):
@@ -176,9 +203,9 @@ def _sidebands(unit: str) -> tuple[Quantity, ...]:
         Quantity("carrier_hz", lambda row: row.pair.carrier),
         Quantity("number", "pair.number"),
         Quantity("distance_hz", lambda row: row.pair.distance),
-        Quantity(f"carrier_amplitude_{unit}", lambda row: row.pair.carrier_amplitude),
-        Quantity(f"lower_amplitude_{unit}", lambda row: row.pair.lower),
-        Quantity(f"upper_amplitude_{unit}", lambda row: row.pair.upper),
+        Quantity(f"carrier_amplitude_{unit}", "pair.carrier_amplitude"),
+        Quantity(f"lower_amplitude_{unit}", "pair.lower"),
+        Quantity(f"upper_amplitude_{unit}", "pair.upper"),
         Quantity("amplitude_modulation", "pair.amplitude_modulation"),
         Quantity("phase_modulation_rad", "pair.phase_modulation"),
     )
@@ -193,12 +220,12 @@ class _Sensor(NamedTuple):
     name: str
 
 
-def _sensor_peaks(row: _Sensor) -> _AnyPeaks:
+def _sensor_peaks(row: _Sensor) -> list[_Peak]:
     peaks, signature = row.transient.sensor_peaks(row.name).rows, row.signature
     if signature is None:
         return _unnamed(row, row.name, peaks)
     lines = zip(peaks, signature.lines[row.name], strict=True)
-    return [_NamedPeak(peak, line.named, signature.modes, line) for peak, line in lines]
+    return [_Peak(peak, line.named, signature.modes, line) for peak, line in lines]
 
 
 def _sensor_sidebands(row: _Sensor) -> Any:
@@ -214,11 +241,7 @@ def _clear(signature: "SolvedSignature", sidebands: "tuple[ShaftSidebands, ...]"
 SENSOR = (
     Quantity("name"),
     Quantity("rms_m_per_s2", lambda row: row.transient.sensor_rms(row.name)),
-    Rows(
-        "peaks",
-        _sensor_peaks,
-        (*_peak("amplitude_m_per_s2"), Part("", _if_named, TRACED), Part("", _if_over_run, OVER_RUN)),
-    ),
+    Rows("peaks", _sensor_peaks, _peaks("amplitude_m_per_s2", TRACED)),
     Rows("sidebands", _sensor_sidebands, _sidebands("m_per_s2")),
 )
 """Quantities of a sensor."""
@@ -239,34 +262,37 @@ def _mesh_figures(row: _Pair) -> MeshFigures:
 
 
 class _OtherFlanks(NamedTuple):
-    """Figures of a motion, and the contacts of the flanks of a pair that the mean load presses and of the others."""
+    """Figures of the flanks of a pair that the mean load presses, and of the others."""
 
-    figures: "TransientFigures"
-    pressed: int
-    other: int
+    pressed: MeshFigures
+    other: MeshFigures
+
+    @property
+    def net_mean_force(self) -> float:
+        """Mean force of both together [N]."""
+        return self.pressed.mean_force - self.other.mean_force
+
+    @property
+    def both_apart_fraction(self) -> float:
+        """Part of the time that both are apart: the backlash lies between them, so that they never touch at once."""
+        return max(self.pressed.contact_loss_fraction + self.other.contact_loss_fraction - 1.0, 0.0)
 
 
 def _other_flanks(row: _Pair) -> _OtherFlanks | None:
     """Return the flanks that the mean load does not press, where they touched."""
-    back, figures = row.transient.back_flanks(row.number), row.transient.result
+    back, pressed = row.transient.back_flanks(row.number), _mesh_figures(row)
     if back is None:
         return None
-    other = back if row.contact == row.number else row.number
-    return _OtherFlanks(figures, row.contact, other) if figures.peak_force[other] > 0.0 else None
+    other = pressed._replace(contact=back if row.contact == row.number else row.number)
+    return _OtherFlanks(pressed, other) if other.peak_force > 0.0 else None
 
 
 OTHER_FLANKS = (
-    Quantity("mean_force_n", lambda row: float(row.figures.mean_force[row.other])),
-    Quantity("peak_force_n", lambda row: float(row.figures.peak_force[row.other])),
-    Quantity("contact_loss_fraction", lambda row: float(row.figures.contact_loss[row.other])),
-    Quantity(
-        "net_mean_force_n", lambda row: float(row.figures.mean_force[row.pressed] - row.figures.mean_force[row.other])
-    ),
-    # The backlash lies between them: they never touch at once.
-    Quantity(
-        "both_apart_fraction",
-        lambda row: float(max(row.figures.contact_loss[row.pressed] + row.figures.contact_loss[row.other] - 1.0, 0.0)),
-    ),
+    Quantity("mean_force_n", "other.mean_force"),
+    Quantity("peak_force_n", "other.peak_force"),
+    Quantity("contact_loss_fraction", "other.contact_loss_fraction"),
+    Quantity("net_mean_force_n"),
+    Quantity("both_apart_fraction"),
 )
 """Quantities of the flanks that the mean load does not press; a row is an :class:`_OtherFlanks`."""
 
@@ -281,12 +307,12 @@ def _contact(row: _Pair) -> str:
     return str(row.transient.machine.system.contacts[row.contact].name)
 
 
-def _force_peaks(row: _Pair) -> _AnyPeaks:
+def _force_peaks(row: _Pair) -> list[_Peak]:
     peaks, signature = row.transient.force_peaks(_contact(row)).rows, row.signature
     if signature is None:
         return _unnamed(row, _contact(row), peaks)
     names = list(signature.force_lines.values())[row.number]
-    return [_NamedPeak(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
+    return [_Peak(peak, named, signature.modes) for peak, named in zip(peaks, names, strict=True)]
 
 
 def _force_sidebands(row: _Pair) -> Any:
@@ -309,11 +335,7 @@ PAIR = (
     ),
     Quantity("back_flank_peak_force_n", lambda row: row.transient.back_flank_peak(row.number)),
     Part("other_flanks", _other_flanks, OTHER_FLANKS),
-    Rows(
-        "force_peaks",
-        _force_peaks,
-        (*_peak("amplitude_n"), Part("", _if_named, NAMED), Part("", _if_over_run, OVER_RUN)),
-    ),
+    Rows("force_peaks", _force_peaks, _peaks("amplitude_n", NAMED)),
     Rows("sidebands", _force_sidebands, _sidebands("n")),
 )
 """Quantities of a gear pair."""
@@ -385,7 +407,7 @@ RECORD = (
 )
 """Length and fineness of the record, and of the stretches that the spectra were taken over."""
 
-ENERGY = tuple(Quantity(key, attrgetter(key)) for key in ("change", "loads", "lost", "teeth", "friction"))
+ENERGY = tuple(Quantity(key) for key in ("change", "loads", "lost", "teeth", "friction"))
 
 
 def _trusted(row: TracedTransient) -> dict[str, Any]:
@@ -603,23 +625,25 @@ def transient_document(
 
 
 ORDER = (
-    Quantity("signal", lambda row: row["signal"], heading="signal"),
-    Quantity("name", lambda row: row["name"], heading="order"),
-    Quantity("order", lambda row: row["order"]),
-    Quantity("highest_amplitude", lambda row: row["highest_amplitude"], heading="highest [peak]", shown=".3g"),
-    Quantity("unit", lambda row: row["unit"], heading="unit"),
-    Quantity("level_db", lambda row: row["level_db"], heading="level [dB]", shown=".1f"),
-    Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
-    Quantity("frequency_hz", lambda row: row["frequency_hz"], heading="that is [Hz]", shown=".0f"),
+    Quantity("signal", heading="signal"),
+    Quantity("name", heading="order"),
+    Quantity("order"),
+    Quantity("highest_amplitude", heading="highest [peak]", shown=".3g"),
+    Quantity("unit", heading="unit"),
+    Quantity("level_db", "level_db", heading="level [dB]", shown=".1f"),
+    Quantity("at_rpm", "at_rpm", heading="at [rpm]", shown=".0f"),
+    Quantity("frequency_hz", "frequency_hz", heading="that is [Hz]", shown=".0f"),
 )
+"""Quantities of the highest amplitude of an order along a run."""
 
 OVERALL = (
-    Quantity("signal", lambda row: row["signal"], heading="signal"),
-    Quantity("highest_rms", lambda row: row["highest_rms"], heading="highest [rms]", shown=".3g"),
-    Quantity("unit", lambda row: row["unit"], heading="unit"),
-    Quantity("level_db", lambda row: row["level_db"], heading="level [dB]", shown=".1f"),
-    Quantity("at_rpm", lambda row: row["at_rpm"], heading="at [rpm]", shown=".0f"),
+    Quantity("signal", heading="signal"),
+    Quantity("highest_rms", heading="highest [rms]", shown=".3g"),
+    Quantity("unit", heading="unit"),
+    Quantity("level_db", "level_db", heading="level [dB]", shown=".1f"),
+    Quantity("at_rpm", "at_rpm", heading="at [rpm]", shown=".0f"),
 )
+"""Quantities of the highest overall level of a signal along a run."""
 _LEVELS = "Levels are of rms values, in dB re 1 µm/s² and 1 µN."
 
 _EACH_UNIT = "see run_unit"  # signals differ in their unit
@@ -654,8 +678,8 @@ RUN_SIGNATURE = (
     Quantity("stretches", lambda signature: len(signature.speeds_rpm)),
     Quantity("window_turns", "turns"),
     Quantity("trusted_below_hz", lambda signature: signature.limit),
-    Quantity("orders", lambda signature: signature.highest()),
-    Quantity("overall", lambda signature: signature.loudest()),
+    Rows("orders", lambda signature: signature.highest(), ORDER),
+    Rows("overall", lambda signature: signature.loudest(), OVERALL),
     Quantity("", lambda signature: list(signature.spectra), "run_signal", ("run_signal",)),
     Quantity("", "speeds_rpm", "run_speed", ("run_speed",), "rpm"),
     Quantity(

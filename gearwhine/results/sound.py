@@ -24,7 +24,6 @@ from gearwhine.results.line_columns import MECHANISMS, line_frequency
 
 if TYPE_CHECKING:
     from gearwhine.coupling.sound.solution import SolvedSound, SoundLine
-    from gearwhine.housing.acoustics.known_source import SourceError
 
 _METHODS = {
     "boundary-elements": "boundary elements over the whole surface",
@@ -38,14 +37,6 @@ _LEAST_LEFT_OUT = 1e-3  # part of the power from which lines left out are mentio
 _MODE_NAME = "housing mode "
 _LOCAL = "local compliance"
 _LEAST_SHARE = 0.02  # share of a power from which a mode, bearing or face is listed
-
-
-def _largest_error(error: "SourceError | None") -> float | None:
-    return None if error is None else error.largest
-
-
-def _rms_error(error: "SourceError | None") -> float | None:
-    return None if error is None else error.rms
 
 
 SURFACE = (
@@ -84,12 +75,12 @@ MODE = (
     Quantity("interior_pressure"),
     Quantity(
         "known_source_error",
-        lambda mode: _largest_error(mode.known_source),
+        "known_source.largest",
         "sound_mode_known_source_error",
         unit="1",
         long_name="largest error of a known source's pressure on the surface at the natural frequency",
     ),
-    Quantity("known_source_rms", lambda mode: _rms_error(mode.known_source)),
+    Quantity("known_source_rms", "known_source.rms"),
 )
 """Quantities of the sound of one housing mode."""
 
@@ -169,8 +160,8 @@ ENTRY = (
     Quantity("surface_power_db", lambda row: float(power_level(row.line.sound.surface_power))),
     Quantity("power_balance_db", "line.power_balance_db"),
     Quantity("interior_pressure", "line.interior_pressure"),
-    Quantity("known_source_error", lambda row: _largest_error(row.line.known_source)),
-    Quantity("known_source_rms", lambda row: _rms_error(row.line.known_source)),
+    Quantity("known_source_error", "line.known_source.largest"),
+    Quantity("known_source_rms", "line.known_source.rms"),
     Quantity("contributions", _contributions),
     Quantity(
         "microphones_db",
@@ -422,8 +413,8 @@ SOUND = (
     Quantity("total_db_a", lambda solved: solved.total_db_a if solved.lines else None),
     Quantity("power_balance_db", "power_balance_db"),
     Quantity("interior_pressure"),
-    Quantity("known_source_error", lambda solved: _largest_error(solved.known_source)),
-    Quantity("known_source_rms", lambda solved: _rms_error(solved.known_source)),
+    Quantity("known_source_error", "known_source.largest"),
+    Quantity("known_source_rms", "known_source.rms"),
     Quantity("third_octaves", _bands),
     Quantity("faces_w", "by_face"),
     Rows("modes", "modes", MODE, "sound_mode"),

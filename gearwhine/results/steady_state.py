@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from gearwhine.results.motion import (
     CAUSE_COLUMNS,
     MESH,
     SENSOR_COLUMNS,
+    MeshFigures,
     NamedParts,
     closing,
     damping_sentence,
@@ -51,26 +52,43 @@ PROOF = (
 
 
 class _Pair(NamedTuple):
-    """Row of ``MESH`` with the lines of the mesh's force, and whether figures are of superposed motions."""
+    """Figures of a gear mesh, the lines of its force, and the figures where they are of superposed motions."""
 
-    mesh: "GearMesh"
-    figures: "PeriodicResponse | SuperposedResponse"
-    contact: int
+    flanks: MeshFigures
     lines: list[dict[str, Any]]
-    superposed: bool
+    superposed: "SuperposedResponse | None"
+
+    @property
+    def mean_compression(self) -> float:
+        """Mean compression of the mesh [m]."""
+        return float(self._compressed.mean_compression[self.flanks.contact])
+
+    @property
+    def rms_compression(self) -> float:
+        """Root mean square of the compression of the mesh about its mean [m]."""
+        return float(self._compressed.rms_compression[self.flanks.contact])
+
+    @property
+    def neglected_force(self) -> float | None:
+        """Part of the force that superposition leaves out, root mean square [N]."""
+        return None if self.superposed is None else float(self.superposed.neglected_force[self.flanks.contact])
+
+    @property
+    def neglected_part(self) -> float | None:
+        """That force as a part of the varying force."""
+        return None if self.superposed is None else float(self.superposed.neglected_part[self.flanks.contact])
+
+    @property
+    def _compressed(self) -> "PeriodicResponse | SuperposedResponse":
+        return cast("PeriodicResponse | SuperposedResponse", self.flanks.figures)
 
 
 PAIR = (
-    *MESH,
-    Quantity("mean_compression_m", lambda row: row.figures.mean_compression[row.contact]),
-    Quantity(
-        "rms_compression_m",
-        lambda row: row.figures.rms_compression[row.contact],
-        heading="a.c. compression [µm rms]",
-        shown=".3g",
-    ),
-    Quantity("neglected_force_n", lambda row: row.figures.neglected_force[row.contact] if row.superposed else ABSENT),
-    Quantity("neglected_part", lambda row: row.figures.neglected_part[row.contact] if row.superposed else ABSENT),
+    Part("", "flanks", MESH),
+    Quantity("mean_compression_m"),
+    Quantity("rms_compression_m", heading="a.c. compression [µm rms]", shown=".3g"),
+    Quantity("neglected_force_n", optional=True),
+    Quantity("neglected_part", optional=True),
     Quantity("force_lines", "lines"),
 )
 """Quantities of a gear mesh."""
@@ -86,7 +104,7 @@ def _pairs(solved: "SolvedSteady", motion: "SteadyMotion | None") -> list[_Pair]
         name = solved.machine.system.contacts[number].name
         forces = [motion.histories.mesh_force[name] for motion in motions]
         lines = _lines(solved.machine, motions, forces, "amplitude_n")
-        rows.append(_Pair(mesh, figures, number, lines, motion is None))
+        rows.append(_Pair(MeshFigures(mesh, figures, number), lines, solved.superposed if motion is None else None))
     return rows
 
 
@@ -437,7 +455,7 @@ def report(document: Document) -> Section:
     """Chapter of the report: as on the terminal, with the meshes, lines and events as tables."""
     tables: tuple[Table, ...] = ()
     for motion in document["motions"]:
-        tables += table_of(columns_of(PAIR), motion["gear_pairs"])
+        tables += table_of(columns_of((*MESH, *PAIR)), motion["gear_pairs"])
         tables += table_of(columns_of(BEARING), motion.get("bearings", ()), "Bearings")
         tables += line_table(motion["sensors"], "lines")
     tables += table_of(columns_of(EVENT), document.get("curve", {}).get("bifurcations", ()), "Over speed")

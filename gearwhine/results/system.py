@@ -32,6 +32,59 @@ class _Mode(NamedTuple):
     system: "SolvedSystem"
     mode: int
 
+    @property
+    def number(self) -> int:
+        """Number of the coupled mode."""
+        return self.mode + 1
+
+    @property
+    def frequency_hz(self) -> float:
+        """Coupled natural frequency [Hz]."""
+        return float(self.system.modes.frequencies_hz[self.mode])
+
+    @property
+    def damping_ratio(self) -> float:
+        """Coupled damping ratio."""
+        return float(self.system.modes.damping_ratios[self.mode])
+
+    @property
+    def damped_frequency(self) -> float:
+        """Frequency of the damped motion [rad/s]."""
+        return abs(float(self.system.modes.eigenvalues[self.mode].imag))
+
+    @property
+    def kind(self) -> str:
+        """What moves most."""
+        return self.system.modes.kinds[self.mode]
+
+    @property
+    def where(self) -> str:
+        """Where it moves most."""
+        return self.system.modes.where[self.mode]
+
+    @property
+    def energy(self) -> Any:
+        """Shares of the kinetic energy by kind, and of the teeth in the strain energy."""
+        return self.system.modes.energy[self.mode]
+
+    @property
+    def strained_most(self) -> dict[str, Any] | None:
+        """Part with the most strain energy; None in a rigid mode, which strains nothing."""
+        if self.kind == "rigid":
+            return None
+        shares = self.system.modes.shares
+        part, share = max(zip(shares.parts, shares.strain[self.mode].tolist(), strict=True), key=lambda pair: pair[1])
+        return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
+
+    @property
+    def whirl(self) -> float | None:
+        """Circularity of the rotor that the mode bends; None of a mode of something else."""
+        names = [component.name for component in self.system.machine.system.components]
+        if self.kind != "rotor" or self.where not in names:
+            return None
+        whirl = float(self.system.modes.whirl[self.mode][names.index(self.where)])
+        return None if np.isnan(whirl) else whirl
+
 
 def _of_components(name: str, long_name: str, of: Any) -> Quantity:
     """Declare a quantity of every component in a mode, for the file; ``of`` takes the values of all modes."""
@@ -55,58 +108,16 @@ def _of_parts(name: str, long_name: str, of: Any) -> Quantity:
     return Quantity("", values, f"system_{name}", ("machine_part",), "1", long_name=long_name)
 
 
-def _strained_most(row: _Mode) -> Any:
-    """Return the part with the most strain energy in a mode; none in a rigid one, which strains nothing."""
-    modes, mode = row.system.modes, row.mode
-    if modes.kinds[mode] == "rigid":
-        return None
-    shares = modes.shares
-    part, share = max(zip(shares.parts, shares.strain[mode].tolist(), strict=True), key=lambda pair: pair[1])
-    return {"kind": _GROUPS[part.kind], "name": part.name, "share": share}
-
-
-def _sense(row: _Mode) -> Any:
-    """Return the circularity of the rotor that a mode bends; absent from a mode of something else."""
-    modes, mode = row.system.modes, row.mode
-    names = [component.name for component in row.system.machine.system.components]
-    if modes.kinds[mode] != "rotor" or modes.where[mode] not in names:
-        return ABSENT
-    whirl = float(modes.whirl[mode][names.index(modes.where[mode])])
-    return ABSENT if np.isnan(whirl) else whirl
-
-
 MODE = (
-    Quantity("", lambda row: row.mode + 1, "system_mode", unit="1", long_name="number of the coupled mode"),
-    Quantity(
-        "frequency_hz",
-        lambda row: row.system.modes.frequencies_hz[row.mode],
-        "system_frequency",
-        long_name="coupled natural frequency",
-        heading="frequency [Hz]",
-        shown="z.2f",
-    ),
-    Quantity(
-        "damping_ratio",
-        lambda row: row.system.modes.damping_ratios[row.mode],
-        "system_damping_ratio",
-        unit="1",
-        long_name="coupled damping ratio",
-        heading="damping ratio",
-        shown="z.4f",
-    ),
-    Quantity("damped_frequency_hz", lambda row: abs(row.system.modes.eigenvalues[row.mode].imag) / HERTZ),
-    Quantity(
-        "kind",
-        lambda row: row.system.modes.kinds[row.mode],
-        "system_kind",
-        long_name="what moves most",
-        heading="kind",
-        shown=lambda row: _named(row),
-    ),
-    Quantity("where", lambda row: row.system.modes.where[row.mode], "system_where", long_name="where it moves most"),
-    Quantity("energy", lambda row: row.system.modes.energy[row.mode]),
-    Quantity("strained_most", _strained_most),
-    Quantity("whirl", _sense),
+    Quantity("", "number", "system_mode", unit="1"),
+    Quantity("frequency_hz", "frequency_hz", "system_frequency", heading="frequency [Hz]", shown="z.2f"),
+    Quantity("damping_ratio", "damping_ratio", "system_damping_ratio", unit="1", heading="damping ratio", shown="z.4f"),
+    Quantity("damped_frequency_hz"),
+    Quantity("kind", "kind", "system_kind", heading="kind", shown=lambda row: _named(row)),
+    Quantity("where", "where", "system_where"),
+    Quantity("energy"),
+    Quantity("strained_most"),
+    Quantity("whirl", optional=True),
     _of_components("kinetic_share", "share of the kinetic energy", lambda modes: modes.shares.kinetic),
     _of_parts("strain_share", "share of the strain energy", lambda shares: shares.strain),
     _of_parts("damping_share", "part of the damping ratio", lambda shares: shares.damping),

@@ -4,31 +4,24 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from gearwhine.case import Case, GearPair, Housing, Rotor, force_origins, mesh_frequencies, pair_torques, rotor_speeds
-from gearwhine.case.checks.whole_case import axial_locations
+from gearwhine.case import Case, GearPair, Housing, Rotor
+from gearwhine.case.parts import Parts
 from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment, geometry_warnings
 from gearwhine.coupling.analyses.operation_warnings import operation_warnings
 from gearwhine.coupling.description.axial_location import AxialLocation
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.from_case import mesh_health
-from gearwhine.from_case.gear_pairs import (
-    build_pair,
-    misalignments_of_case,
-    pair_geometries,
-)
-from gearwhine.from_case.machine import require_machine
+from gearwhine.from_case.machine import misalignments_of_case
 from gearwhine.from_case.mesh import build_mesh, material_of
 from gearwhine.from_case.mesh_health import MeshPreview
 from gearwhine.from_case.parametric_housing import fitted_case
-from gearwhine.from_case.rotors import build_bearings, build_rotor
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.rotors import Rotor as BuiltRotor
 from gearwhine.rotors.rolling_bearings.speed_factor import centrifugal_warnings
 from gearwhine.solve.acoustics import acoustics_of, check_before_modes
 from gearwhine.solve.comparison import require_comparable
-from gearwhine.solve.machine import described_machine
 from gearwhine.solve.part_fits import fit_warnings
 
 
@@ -64,7 +57,7 @@ class CheckedPair:
     torque : float or None
         Torque on the driver [N m]; None without an operation.
     force_origin : str
-        See :func:`gearwhine.case.force_origins`.
+        See :attr:`gearwhine.coupling.description.gear_train.GearTrain.force_origins`.
     """
 
     given: GearPair
@@ -116,11 +109,10 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
     CaseError
         Where a part of it cannot be built, or its housing's mesh is wrong.
     """
-    require_machine(case)
+    parts = case.parts
+    machine = parts.machine
     require_comparable(case)
-    for rotor in case.rotor:
-        # A load that a rolling bearing cannot carry is refused here as by the commands that solve it.
-        build_bearings(case, rotor.name)
+    _ = parts.bearings  # a load that a rolling bearing cannot carry is refused here as by the commands that solve it
     if case.update is not None:
         fitted_case(case)
     mesh: MeshPreview | None = None
@@ -130,26 +122,21 @@ def check_case(case: Case, progress: Progress = silent) -> CheckedCase:
             material_of(case.material, name)
         mesh, warnings = mesh_health.preview_mesh(case.housing, case.material, case.input_files, progress)
         warnings += _checked_acoustics(case, case.housing, mesh)
-    rotors, pairs = checked_rotors(case), tuple(checked_pairs(case))
-    for pair in pairs:
-        warnings += geometry_warnings(build_pair(case, pair.given), pair.geometry)
-    warnings += fit_warnings(
-        case, {rotor.given.name: rotor.built for rotor in rotors}, None if mesh is None else mesh.mesh
-    )
-    machine = described_machine(case, None) if case.rotor and case.operation is not None else None
+    rotors, pairs = checked_rotors(parts), tuple(checked_pairs(parts))
+    for built, geometry in zip(parts.gear_pairs, parts.pair_geometries, strict=True):
+        warnings += geometry_warnings(built, geometry)
+    warnings += fit_warnings(parts, case.housing, None if mesh is None else mesh.mesh)
     if machine is not None:
         warnings += operation_warnings(machine)
-    locations = axial_locations(case)
-    speeds = {rotor.given.name: rotor.speed for rotor in rotors if rotor.speed is not None}
     warnings += centrifugal_warnings(
-        (bearing.name, bearing.rolling, speeds[location.shaft])
-        for location in locations
+        (bearing.name, bearing.rolling, parts.speeds[location.shaft])
+        for location in parts.axial_locations
         for bearing in location.bearings
-        if bearing.rolling is not None and location.shaft in speeds
+        if bearing.rolling is not None and location.shaft in parts.speeds
     )
     if case.measured is not None and case.measured.survey is not None:
         warnings += [warning("measured", f"{case.measured.file}: {remark}") for remark in case.measured.survey.remarks]
-    return CheckedCase(case, mesh, rotors, pairs, locations, machine, warnings)
+    return CheckedCase(case, mesh, rotors, pairs, parts.axial_locations, machine, warnings)
 
 
 def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> list[dict[str, Any]]:
@@ -169,20 +156,25 @@ def _checked_acoustics(case: Case, housing: Housing, preview: MeshPreview) -> li
     return acoustics_warnings(acoustics_of(case), mesh.bounds, housing.frequency_limit)
 
 
-def checked_rotors(case: Case) -> tuple[CheckedRotor, ...]:
+def checked_rotors(parts: Parts) -> tuple[CheckedRotor, ...]:
     """Build the rotors of a case, each with its speed."""
-    speeds = rotor_speeds(case) if case.operation is not None else {}
-    return tuple(CheckedRotor(entry, build_rotor(case, entry), speeds.get(entry.name)) for entry in case.rotor)
+    rows = zip(parts.rotor, parts.rotors, strict=True)
+    return tuple(CheckedRotor(entry, built, parts.speeds.get(entry.name)) for entry, built in rows)
 
 
-def checked_pairs(case: Case) -> Iterator[CheckedPair]:
+def checked_pairs(parts: Parts) -> Iterator[CheckedPair]:
     """Build the gear pairs of a case one by one, each with its mesh frequency and torque."""
-    number = len(case.gear_pair)
-    frequencies = mesh_frequencies(case) if case.operation is not None else (None,) * number
-    torques = pair_torques(case) if case.operation is not None else (None,) * number
-    misalignments = misalignments_of_case(case, None, is_sought=False)
-    origins = force_origins(case)
-    for row in zip(case.gear_pair, pair_geometries(case), misalignments, frequencies, torques, origins, strict=True):
+    unknown = (None,) * len(parts.gear_pair)
+    rows = zip(
+        parts.gear_pair,
+        parts.pair_geometries,
+        misalignments_of_case(parts, None, is_sought=False),
+        unknown if parts.operation is None else parts.mesh_frequencies,
+        unknown if parts.operation is None else parts.pair_torques,
+        parts.train.force_origins,
+        strict=True,
+    )
+    for built, row in zip(parts.gear_pairs, rows, strict=True):
         pair = CheckedPair(*row)
-        build_pair(case, pair.given).require_sound_faults(pair.geometry)
+        built.require_sound_faults(pair.geometry)
         yield pair

@@ -12,10 +12,11 @@ Damping decides the height of resonances and does not follow from drawings. Defa
   stiffness have none.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from gearwhine.case import Case
+from gearwhine.case import Case, GearPair
 from gearwhine.coupling.gears.geometry.pair import pair_label
 from gearwhine.numerics.materials import STRUCTURAL_DAMPING
 from gearwhine.numerics.result_warnings import warning
@@ -73,17 +74,14 @@ def part_dampings(case: Case) -> tuple[PartDamping, ...]:
     return tuple(parts)
 
 
-def damping_document(case: Case) -> list[dict[str, Any]]:
+def damping_document(parts: Iterable[PartDamping]) -> list[dict[str, Any]]:
     """Return the damping of each part for JSON: part, key of the case, words, and whether the case gives it."""
-    return [
-        {"part": part.part, "key": part.key, "damping": part.text, "given": part.is_given}
-        for part in part_dampings(case)
-    ]
+    return [{"part": part.part, "key": part.key, "damping": part.text, "given": part.is_given} for part in parts]
 
 
-def damping_warnings(case: Case) -> list[dict[str, Any]]:
+def damping_warnings(dampings: Iterable[PartDamping]) -> list[dict[str, Any]]:
     """Warn of damping that nobody gave, in one sentence for all parts."""
-    missing = [part for part in part_dampings(case) if not part.is_given]
+    missing = [part for part in dampings if not part.is_given]
     if not missing:
         return []
     by_text: dict[str, list[str]] = {}
@@ -97,11 +95,11 @@ def damping_warnings(case: Case) -> list[dict[str, Any]]:
     return [warning("damping", message, keys=[part.key for part in missing])]
 
 
-def assumed_mesh_damping(case: Case) -> tuple[str, ...]:
+def assumed_mesh_damping(pairs: Iterable[GearPair]) -> tuple[str, ...]:
     """Return the gear pairs whose mesh damping the case leaves to the default."""
     return tuple(
         pair_label(pair.driver, pair.driven)
-        for pair in case.gear_pair
+        for pair in pairs
         if not (_gives(pair, "damping_ratio") or _gives(pair, "damping"))
     )
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gearwhine.case import Case, CaseError, Problem, force_origins, require
+from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import NOTHING
 from gearwhine.case.gears import ReliefAim as GivenAim
 from gearwhine.coupling.analyses.gear_pairs import (
@@ -18,11 +18,10 @@ from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair
 from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak, ReliefAim, WeightedHarmonics
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import misalignments_of_case
+from gearwhine.from_case.machine import describe_machine, misalignments_of_case
 from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine
 
 
 def analyse_pairs(
@@ -33,7 +32,9 @@ def analyse_pairs(
     ``point`` is the machine's operating point, where it is solved.
     """
     analysed = []
-    rows = zip(case.gear_pair, solved, misalignments_of_case(case, point), force_origins(case), strict=True)
+    rows = zip(
+        case.gear_pair, solved, misalignments_of_case(case.parts, point), case.parts.train.force_origins, strict=True
+    )
     for entry, pair, misalignment, origin in rows:
         driver, driven = (case.gear_named(name).face_width is not None for name in (entry.driver, entry.driven))
         analysis = analyse_pair(pair, misalignment, (driver, driven))
@@ -71,7 +72,7 @@ def relief_aims(
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
     housing = housing or solve_housing(case, progress, folder=folder)
-    described = described_machine(case, housing)
+    described = describe_machine(case, housing)
     model = sensor_model(described, point, pairs, progress)
     rows = zip(range(len(aims)), pairs, aims, strict=True)
     return tuple(_aim_of(model, housing, number, pair, aim) for number, pair, aim in rows)

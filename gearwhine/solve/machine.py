@@ -13,8 +13,7 @@ from gearwhine.coupling.load_analysis.load_warnings import find_load
 from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine.components import HousingComponent, component_of_housing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
-from gearwhine.from_case.gear_pairs import aligned_by_default, solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import aligned_by_default, describe_machine, solve_gears
 from gearwhine.housing import HousingModes
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning
@@ -27,11 +26,6 @@ def reduce_housing(case: Case, solved: HousingModes) -> HousingComponent:
     return replace(component_of_housing(solved, participates=participates), displacement_field=None)
 
 
-def described_machine(case: Case, housing: HousingModes | HousingComponent | None) -> Machine:
-    """Describe the machine of a case in its solved housing, or on rigid seats."""
-    return describe_machine(case, housing, grounded=housing is None)
-
-
 def load_of_case(
     case: Case, machine: Machine, progress: Progress = silent
 ) -> tuple[SolvedLoad | None, list[ResultWarning]]:
@@ -42,7 +36,7 @@ def load_of_case(
     if not case.is_loaded:
         return None, []
     return find_load(
-        machine, progress, is_needed=case.needs_operating_point, aligned_by_default=aligned_by_default(case)
+        machine, progress, is_needed=case.parts.needs_operating_point, aligned_by_default=aligned_by_default(case.parts)
     )
 
 
@@ -62,9 +56,9 @@ def solve_pairs(
         the machine does not have.
     """
     if not case.rotor or case.operation is None:
-        return solve_gears(case, progress), None
-    machine = described_machine(case, housing)
-    point = point_of_flanks(machine, progress, is_needed=case.needs_operating_point)
+        return solve_gears(case.parts, progress), None
+    machine = describe_machine(case, housing)
+    point = point_of_flanks(machine, progress, is_needed=case.parts.needs_operating_point)
     return machine.with_flanks_of(point).loaded_pairs(progress), point
 
 

@@ -7,10 +7,10 @@ from the other, so that one of them is a slip of the pen or stands for a sleeve 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from gearwhine.case import Bearing, Case, Housing, RollingStiffness
+from gearwhine.case import Bearing, Gear, GearPair, Housing, RollingStiffness, Seat
 from gearwhine.case.bearings import RollingCatalogue
 from gearwhine.case.checks.housing import box_geometry
-from gearwhine.case.housing import Seat
+from gearwhine.case.parts import Parts
 from gearwhine.housing.model_warnings import surface_point_warnings
 from gearwhine.meshes import Mesh, find_bores
 from gearwhine.meshes.bores import CylindricalBore
@@ -22,44 +22,43 @@ _FIT_TOLERANCE = 1e-4  # difference up to which two diameters, or a place and an
 _TOUCHING_OVERLAP = 1e-6  # overlap of a part and a shaft segment up to which it counts as none [m]
 
 
-def fit_warnings(case: Case, rotors: Mapping[str, Rotor], mesh: Mesh | None = None) -> list[dict[str, Any]]:
+def fit_warnings(parts: Parts, housing: Housing | None, mesh: Mesh | None = None) -> list[dict[str, Any]]:
     """Warn of diameters that do not fit, bearings beside seats, gears beside their mates, sensors off the surface.
 
     Parameters
     ----------
-    case : Case
-    rotors : mapping of str to gearwhine.rotors.Rotor
-        Built rotors by name.
+    parts : Parts
+        Tables of the machine's parts, and the rotors that are made of them.
+    housing : Housing or None
     mesh : Mesh or None
         Mesh of a housing from a CAD or mesh file, in which the bores of the seats are found.
     """
     bores = () if mesh is None else find_bores(mesh, axis=(0.0, 0.0, 1.0))
-    return [
-        *(entry for bearing in case.bearing for entry in _of_bearing(case, bearing, rotors[bearing.rotor], bores)),
-        *_of_gears(case, rotors),
-        *_of_faces(case),
-        *(() if mesh is None or case.housing is None else _beside_surface(case.housing, mesh)),
-    ]
+    rotors = {rotor.name: rotor for rotor in parts.rotors}
+    starts = {rotor.name: rotor.start for rotor in parts.rotor}
+    warnings = list[dict[str, Any]]()
+    for bearing in parts.bearing:
+        bore, _, width = _rings(bearing)
+        if bore is not None:
+            warnings += _on_shaft(f'bearing "{bearing.name}"', bore, rotors[bearing.rotor], bearing.at, width or 0.0)
+        seat = None if housing is None else next((one for one in housing.seat if one.name == bearing.seat), None)
+        if housing is not None and seat is not None:
+            warnings += _in_seat(bearing, starts[bearing.rotor] + bearing.at, seat, _span(housing, seat, bores))
+    for gear in parts.gear:
+        if gear.bore and gear.rotor is not None and gear.at is not None:
+            on = rotors[gear.rotor]
+            warnings += _on_shaft(f'gear "{gear.name}"', gear.bore, on, gear.at, gear.face_width or 0.0)
+    warnings += _of_faces(parts.gear, parts.gear_pair, starts)
+    if mesh is not None and housing is not None:
+        sensors, masses = [sensor.build() for sensor in housing.sensor], [mass.build() for mass in housing.mass]
+        warnings += surface_point_warnings(mesh, sensors, masses)
+    return warnings
 
 
-def _beside_surface(table: Housing, mesh: Mesh) -> Iterator[dict[str, Any]]:
-    """Warn of sensors and masses beside the housing's surface."""
-    return surface_point_warnings(
-        mesh, [sensor.build() for sensor in table.sensor], [mass.build() for mass in table.mass]
-    )
-
-
-def _of_bearing(
-    case: Case, bearing: Bearing, rotor: Rotor, bores: Sequence[CylindricalBore]
-) -> Iterator[dict[str, Any]]:
-    bore, outside, width = _rings(bearing)
+def _in_seat(bearing: Bearing, z: float, seat: Seat, span: tuple[float, float] | None) -> Iterator[dict[str, Any]]:
+    """Warn of a bearing at z that does not fit its seat, or stands beside the bore, whose ends may be known [m]."""
     label = f'bearing "{bearing.name}"'
-    if bore is not None:
-        yield from _on_shaft(label, bore, rotor, bearing.at, width or 0.0)
-    seats = () if case.housing is None else case.housing.seat
-    seat = next((candidate for candidate in seats if candidate.name == bearing.seat), None)
-    if seat is None:
-        return
+    _, outside, width = _rings(bearing)
     if outside is not None and abs(outside - seat.diameter) > _FIT_TOLERANCE:
         yield warning(
             "bearing seat",
@@ -69,8 +68,6 @@ def _of_bearing(
             outside_diameter_m=outside,
             seat_diameter_m=seat.diameter,
         )
-    z = case.rotor_named(bearing.rotor).start + bearing.at
-    span = _span(case, seat, bores)
     if span is not None:
         off, where = max(span[0] - z, z - span[1]), f"the bore, z = {in_mm(span[0])} to {in_mm(span[1])}"
     else:
@@ -104,11 +101,10 @@ def _rings(bearing: Bearing) -> tuple[float | None, float | None, float | None]:
     return (None, None, None) if mounting is None else (mounting.bore, mounting.outer_diameter, None)
 
 
-def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[float, float] | None:
+def _span(housing: Housing, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[float, float] | None:
     """Return the ends of a seat's bore along z [m]: of a box by its walls and bosses, else of the bore found there."""
-    assert case.housing is not None
-    if case.housing.box is not None:
-        box = box_geometry(case.housing.box, case.housing.seat)
+    if housing.box is not None:
+        box = box_geometry(housing.box, housing.seat)
         low, high = box.bore_span(next(bore for bore in box.bores if bore.name == seat.name))
         return low, high
     for bore in bores:
@@ -120,21 +116,17 @@ def _span(case: Case, seat: Seat, bores: Sequence[CylindricalBore]) -> tuple[flo
     return None
 
 
-def _of_gears(case: Case, rotors: Mapping[str, Rotor]) -> Iterator[dict[str, Any]]:
-    for gear in case.gear:
-        if gear.bore and gear.rotor is not None and gear.at is not None:
-            yield from _on_shaft(f'gear "{gear.name}"', gear.bore, rotors[gear.rotor], gear.at, gear.face_width or 0.0)
-
-
-def _of_faces(case: Case) -> Iterator[dict[str, Any]]:
+def _of_faces(
+    tables: Sequence[Gear], pairs: Sequence[GearPair], starts: Mapping[str, float]
+) -> Iterator[dict[str, Any]]:
     """Warn of gears so far apart along z that less than the narrower face meets the other."""
-    gears = {gear.name: gear for gear in case.gear}
-    for pair in case.gear_pair:
+    gears = {gear.name: gear for gear in tables}
+    for pair in pairs:
         ends = []
         for gear in (gears[pair.driver], gears[pair.driven]):
             if gear.rotor is None or gear.at is None or gear.face_width is None:
                 break
-            middle = case.rotor_named(gear.rotor).start + gear.at
+            middle = starts[gear.rotor] + gear.at
             ends.append((middle - 0.5 * gear.face_width, middle + 0.5 * gear.face_width))
         else:
             common = min(end for _, end in ends) - max(start for start, _ in ends)

@@ -6,18 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from gearwhine.case import (
-    Case,
-    RotorAnalysis,
-    TorsionalAnalysis,
-    campbell_speeds,
-    require,
-    response_speeds,
-    whirl_speeds,
-)
+from gearwhine.case import Case, RotorAnalysis, TorsionalAnalysis, require, rotor_speeds
 from gearwhine.case import Rotor as GivenRotor
 from gearwhine.from_case.machine import rotor_bearings
-from gearwhine.from_case.rotors import build_rotor
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
 from gearwhine.rotors import AxisSpring, write_ross
@@ -44,29 +35,29 @@ def solve_rotors(case: Case, progress: Progress = silent, **chosen: Any) -> tupl
         Where the case has no rotors, or one cannot be solved as it stands.
     """
     require(case, "rotor", command="rotors")
-    built = rotor_bearings(case)
+    built = rotor_bearings(case.parts)
     solved = []
-    for table in case.rotor:
+    for table, rotor in zip(case.rotor, case.parts.rotors, strict=True):
         progress(f"rotor {table.name}")
         bearings, rolling = built[table.name]
         settings = replace(rotor_settings(case, table), **chosen)
-        solved.append(solve_rotor(build_rotor(case, table), bearings, settings, rolling=rolling, progress=progress))
+        solved.append(solve_rotor(rotor, bearings, settings, rolling=rolling, progress=progress))
     return tuple(solved)
 
 
 def rotor_settings(case: Case, table: GivenRotor) -> RotorSettings:
     """Return loads, speeds and probes of a rotor: those of `[rotor_analysis]`, of `[operation]` and of `[sweep]`."""
     analysis, name = case.rotor_analysis or RotorAnalysis(), table.name
-    speeds = whirl_speeds(case, name)
+    speeds = rotor_speeds(case, name)
     runs = case.operation is not None
     forces = () if case.operation is None else case.operation.force
     stiffness_map = analysis.stiffness_map
     probes = analysis.unbalance_response.probes
     return RotorSettings(
-        operation=speeds[0] if runs else None,
-        whirl_speeds=speeds[1:] if runs else speeds,
-        diagram_speeds=campbell_speeds(case, name),
-        response_speeds=response_speeds(case, name),
+        operation=speeds.whirl[0] if runs else None,
+        whirl_speeds=speeds.whirl[1:] if runs else speeds.whirl,
+        diagram_speeds=speeds.campbell,
+        response_speeds=speeds.response,
         mode_count=analysis.modes,
         orders=analysis.orders,
         gravity=analysis.gravity,

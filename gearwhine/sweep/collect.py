@@ -13,12 +13,13 @@ from gearwhine.case import Case, SweptKey, dump_case
 from gearwhine.coupling.linear.line_mechanisms import MECHANISMS
 from gearwhine.coupling.sweep.missed_peaks import MissedPeak, speeds_to_add
 from gearwhine.output.dataset import PHASE_CONVENTION
-from gearwhine.output.quantity import document_of
+from gearwhine.output.quantity import Quantity, document_of
+from gearwhine.results.operating_point import SWEPT_PAIR
 from gearwhine.results.sound import SWEPT_LINE, SweptLine
 from gearwhine.results.sweep import PEAK
+from gearwhine.sweep.grid import Solved
 from gearwhine.sweep.points import axis_name
 from gearwhine.sweep.resolution import over_with, peak_warnings
-from gearwhine.sweep.run import SweptPoint
 from gearwhine.sweep.solution import POINTS, PointFailure, PointResult
 
 if TYPE_CHECKING:
@@ -29,14 +30,53 @@ FloatArray = npt.NDArray[np.float64]
 _PEAKS = 10  # number of highest peaks of each sensor
 _SAME_ORDER = 9  # decimals to which orders of one line agree
 
+# Quantities of the points' documents, by key.
+_POINT = (
+    Quantity("speed_rpm", name="rotation_speed", long_name="speed of the first driver"),
+    Quantity(
+        "trusted_below_hz", name="trusted_limit", long_name="frequency up to which the housing's modes are complete"
+    ),
+    Quantity(
+        "energy_error",
+        name="energy_error",
+        unit="1",
+        long_name="part of the energy that is missing from the balance",
+    ),
+    Quantity("steps", name="steps", unit="1", long_name="time steps"),
+)
+_PEAK = (
+    Quantity("frequency_hz", name="sensor_peak_frequency", long_name="frequency of the highest lines"),
+    Quantity("amplitude_m_per_s2", name="sensor_peak_amplitude", long_name="peak amplitude of the highest lines"),
+)
+_MESH = (
+    Quantity("mean_force_n", name="mesh_force_mean", long_name="mean gear-mesh force"),
+    Quantity("peak_force_n", name="mesh_force_peak", long_name="largest gear-mesh force"),
+    Quantity("mesh_frequency_hz", name="mesh_frequency", long_name="tooth-mesh frequency"),
+    Quantity(
+        "contact_loss_fraction",
+        name="contact_loss",
+        unit="1",
+        long_name="part of the time in which the flanks are apart",
+    ),
+)
+_SOUND = (
+    Quantity("total_db", name="sound_power_level", long_name="sound power level of all lines re 1 pW"),
+    Quantity("total_db_a", name="sound_power_level_a", long_name="A-weighted sound power level of all lines re 1 pW"),
+)
+
 
 def collected_sweep(
-    case: Case, keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+    case: Case | None,
+    keys: Sequence[SweptKey],
+    swept: Sequence[Solved],
+    peaks: Sequence[MissedPeak] = (),
+    title: str = "",
 ) -> xr.Dataset:
     """Collect every point of a sweep over its swept keys; NaN where a point failed or has no such line.
 
     Spectra stand over *order*, cycles for each turn of the first driver: records hold a number of its turns, so the
-    lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz.
+    lines of all speeds fall on each other without any interpolation. ``frequency`` has each point's in Hz. The title is
+    that of the case, where there is one.
     """
     import xarray as xr
 
@@ -47,13 +87,7 @@ def collected_sweep(
         for name, key in zip(names, keys, strict=True)
     }
     variables: dict[str, Any] = {}
-    for name, key, unit, long_name in (
-        ("rotation_speed", "speed_rpm", "rpm", "speed of the first driver"),
-        ("trusted_limit", "trusted_below_hz", "Hz", "frequency up to which the housing's modes are complete"),
-        ("energy_error", "energy_error", "1", "part of the energy that is missing from the balance"),
-        ("steps", "steps", "1", "time steps"),
-    ):
-        variables[name] = grid.rows((), (), _entry(key), _unit(unit, long_name))
+    variables |= grid.quantities(_POINT, (), (), _entry)
     variables["done"] = (names, grid.filled(False, lambda outcome: isinstance(outcome, PointResult)), {})
     variables["failure"] = (names, grid.filled("", _failure), {"long_name": "why there is no result"})
     orders = _orders(grid.results())
@@ -77,9 +111,9 @@ def collected_sweep(
             _unit("Hz", "housing natural frequency"),
         )
     attributes = {
-        "title": case.title,
+        "title": title if case is None else case.title,
         "source": f"gearwhine {__version__}",
-        "case": dump_case(case),
+        **({} if case is None else {"case": dump_case(case)}),
         "amplitude_convention": "peak: the amplitude of a cosine a cos(2 pi f t + phase) is a",
         "phase_convention": PHASE_CONVENTION,
         "window": ", ".join(sorted({result.motion.window for result in grid.results()})),
@@ -88,7 +122,7 @@ def collected_sweep(
 
 
 def sweep_document(
-    keys: Sequence[SweptKey], swept: Sequence[SweptPoint], peaks: Sequence[MissedPeak] = ()
+    keys: Sequence[SweptKey], swept: Sequence[Solved], peaks: Sequence[MissedPeak] = ()
 ) -> dict[str, Any]:
     """Return a sweep as the command's JSON, with the peaks that lie between its points."""
     rows = []
@@ -101,7 +135,8 @@ def sweep_document(
             "settings": _settings(keys, swept_point),
             "resumed": swept_point.resumed,
         }
-        row["file"] = f"{POINTS}/{swept_point.point.file}"
+        if swept_point.point.file:
+            row["file"] = f"{POINTS}/{swept_point.point.file}"
         if isinstance(swept_point.outcome, PointFailure):
             row |= {"status": "failed", "failure": swept_point.outcome.message}
             if swept_point.outcome.traceback:
@@ -131,7 +166,7 @@ def sweep_document(
 class _Grid:
     """Grid of the swept keys, which is filled point by point."""
 
-    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[SweptPoint]) -> None:
+    def __init__(self, names: tuple[str, ...], shape: tuple[int, ...], swept: Sequence[Solved]) -> None:
         self.names, self.shape, self.swept = names, shape, swept
 
     def results(self) -> list[PointResult]:
@@ -150,6 +185,19 @@ class _Grid:
             if isinstance(swept_point.outcome, PointResult):
                 values[swept_point.point.place] = of(swept_point.outcome)
         return ((*self.names, *dimensions), values, attributes)
+
+    def quantities(
+        self,
+        quantities: Sequence[Quantity],
+        dimensions: tuple[str, ...],
+        shape: tuple[int, ...],
+        of: Callable[[str], Callable[[PointResult], Any]],
+    ) -> dict[str, Any]:
+        """Return the variables of quantities; ``of`` takes a key to the function that has its values of a point."""
+        return {
+            row.name: self.rows(dimensions, shape, of(row.key), _unit(row.file_unit, row.long_name))
+            for row in quantities
+        }
 
     def words(
         self,
@@ -201,11 +249,7 @@ def _add_sensors(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coo
         lambda result: _on_orders(orders, result, result.motion.sensor_spectra, names),
         _unit("m/s2", f"peak amplitude of acceleration {within}"),
     )
-    for name, key, unit, long_name in (
-        ("sensor_peak_frequency", "frequency_hz", "Hz", "frequency of the highest lines"),
-        ("sensor_peak_amplitude", "amplitude_m_per_s2", "m/s2", "peak amplitude of the highest lines"),
-    ):
-        variables[name] = grid.rows(("sensor", "peak"), (len(names), _PEAKS), peaks(key), _unit(unit, long_name))
+    variables |= grid.quantities(_PEAK, ("sensor", "peak"), (len(names), _PEAKS), peaks)
     _add_mechanisms(grid, names, variables, coordinates)
 
 
@@ -247,13 +291,7 @@ def _add_meshes(grid: _Grid, orders: FloatArray, variables: dict[str, Any], coor
 
         return of
 
-    for name, key, unit, long_name in (
-        ("mesh_force_mean", "mean_force_n", "N", "mean gear-mesh force"),
-        ("mesh_force_peak", "peak_force_n", "N", "largest gear-mesh force"),
-        ("mesh_frequency", "mesh_frequency_hz", "Hz", "tooth-mesh frequency"),
-        ("contact_loss", "contact_loss_fraction", "1", "part of the time in which the flanks are apart"),
-    ):
-        variables[name] = grid.rows(("contact",), (len(names),), figures(key), _unit(unit, long_name))
+    variables |= grid.quantities(_MESH, ("contact",), (len(names),), figures)
     variables["mesh_force_spectrum"] = grid.rows(
         ("contact", "order"),
         (len(names), orders.size),
@@ -307,12 +345,7 @@ def _add_operating_points(grid: _Grid, variables: dict[str, Any], coordinates: d
 
     if pairs:
         coordinates["loaded_pair"] = ("loaded_pair", pairs, {})
-        for name, key, unit, long_name in (
-            ("misalignment", "misalignment_rad", "rad", "angle between the flanks at the operating point"),
-            ("misalignment_taken", "misalignment_taken_rad", "rad", "misalignment that the motion takes"),
-            ("face_load_factor", "k_h_beta", "1", "face load factor K_Hbeta at the operating point"),
-        ):
-            variables[name] = grid.rows(("loaded_pair",), (len(pairs),), of_pairs(key), _unit(unit, long_name))
+        variables |= grid.quantities(SWEPT_PAIR, ("loaded_pair",), (len(pairs),), of_pairs)
     if bearings:
         coordinates |= {"loaded_bearing": ("loaded_bearing", bearings, {}), "axis": ("axis", ["x", "y", "z"], {})}
         attributes = _unit("N", "force of the shaft on its bearing at the operating point")
@@ -336,11 +369,7 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         lines = result.document.get("sound", {}).get("lines", ())[:count]
         return [document_of(SWEPT_LINE, SweptLine(line, result.motion.housing_frequencies_hz)) for line in lines]
 
-    for name, key, unit, long_name in (
-        ("sound_power_level", "total_db", "dB", "sound power level of all lines re 1 pW"),
-        ("sound_power_level_a", "total_db_a", "dB", "A-weighted sound power level of all lines re 1 pW"),
-    ):
-        variables[name] = grid.rows((), (), total(key), _unit(unit, long_name))
+    variables |= grid.quantities(_SOUND, (), (), total)
 
     def numbers(key: str) -> Callable[[PointResult], FloatArray]:
         return lambda result: _padded(np.array([row[key] for row in rows(result)], dtype=np.float64), count)
@@ -349,10 +378,9 @@ def _add_sound(grid: _Grid, variables: dict[str, Any], coordinates: dict[str, An
         return lambda result: [str(row[key]) for row in rows(result)]
 
     along, size = ("sound_line",), (count,)
+    variables |= grid.quantities([row for row in SWEPT_LINE if row.file_unit], along, size, numbers)
     for quantity in SWEPT_LINE:
-        if unit := quantity.file_unit:
-            variables[quantity.name] = grid.rows(along, size, numbers(quantity.key), _unit(unit, quantity.long_name))
-        else:
+        if not quantity.file_unit:
             variables[quantity.name] = grid.words(along, size, words(quantity.key), {"long_name": quantity.long_name})
     harmonics = _union([line["name"] for line in sound["lines"] if line["kind"] == "mesh"] for sound in sounds)
     if not harmonics:
@@ -421,11 +449,11 @@ def _failure(outcome: PointResult | PointFailure) -> str:
     return outcome.message if isinstance(outcome, PointFailure) else ""
 
 
-def _settings(keys: Sequence[SweptKey], swept_point: SweptPoint) -> dict[str, str]:
+def _settings(keys: Sequence[SweptKey], swept_point: Solved) -> dict[str, str]:
     return {key.key: text for key, text in zip(keys, swept_point.point.texts, strict=True)}
 
 
-def _warnings(swept: Sequence[SweptPoint]) -> list[dict[str, Any]]:
+def _warnings(swept: Sequence[Solved]) -> list[dict[str, Any]]:
     """Warnings of the points' housings, each once."""
     by_message: dict[str, dict[str, Any]] = {}
     for swept_point in swept:

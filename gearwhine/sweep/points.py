@@ -57,6 +57,12 @@ class Point:
     duration: float
     refusal: str = ""
 
+    @property
+    def speed(self) -> float:
+        """Signed speed of the first driver [rad/s]."""
+        assert self.case.operation is not None
+        return self.case.operation.speed
+
 
 def sweep_points(source: CaseSource, keys: Sequence[SweptKey]) -> tuple[Point, ...]:
     """Return every point of the grid, the last key fastest.

@@ -22,12 +22,12 @@ from gearwhine.coupling.sweep.missed_peaks import (
 )
 from gearwhine.coupling.sweep.resonances import SOUND
 from gearwhine.numerics.result_warnings import warning
-from gearwhine.sweep.run import SweptPoint
+from gearwhine.sweep.grid import Solved
 from gearwhine.sweep.solution import PointResult
 
 
 def missed_peaks(
-    keys: Sequence[SweptKey], swept: Sequence[SweptPoint], radiated: RadiatedLevel | None = None
+    keys: Sequence[SweptKey], swept: Sequence[Solved], radiated: RadiatedLevel | None = None
 ) -> list[MissedPeak]:
     """Return the peaks between the points of a sweep over speed that are louder than all at both points.
 
@@ -36,7 +36,7 @@ def missed_peaks(
     Parameters
     ----------
     keys : sequence of SweptKey
-    swept : sequence of SweptPoint
+    swept : sequence of Solved
         Solved points, with the sound in their documents.
     radiated : callable, optional
         Returns the sound power level [dB] of a frequency [Hz] and the rates of the housing's coordinates, shape (n,).
@@ -45,7 +45,7 @@ def missed_peaks(
     along = next((number for number, key in enumerate(keys) if SPEED_KEY in key.keys), None)
     if along is None or not keys[along].is_numeric:
         return []
-    rows: dict[tuple[int, ...], list[tuple[SpeedPoint, SweptPoint]]] = {}
+    rows: dict[tuple[int, ...], list[tuple[SpeedPoint, Solved]]] = {}
     for swept_point in swept:
         point, place = _speed_point(swept_point, radiated), swept_point.point.place
         if point is not None:
@@ -63,7 +63,7 @@ def missed_peaks(
     return sorted(peaks, key=lambda peak: -peak.rise_db)
 
 
-def over_with(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], speeds: Sequence[float]) -> str:
+def over_with(keys: Sequence[SweptKey], swept: Sequence[Solved], speeds: Sequence[float]) -> str:
     """Return the options of the command, quoted for a shell, for a sweep with further speeds [rpm]: old points stay."""
     along = next(number for number, key in enumerate(keys) if SPEED_KEY in key.keys)
     texts = {point.point.texts[along]: _speed(point) for point in swept}
@@ -94,13 +94,12 @@ def peak_warnings(peaks: Sequence[MissedPeak]) -> list[dict[str, Any]]:
     return [warning("sweep_resolution", f"{message}{more}; add {added}", speeds_rpm=speeds)]
 
 
-def _speed(swept_point: SweptPoint) -> float:
+def _speed(swept_point: Solved) -> float:
     """Return the speed of a point in rpm, signed."""
-    assert swept_point.point.case.operation is not None
-    return float(f"{to_rpm(swept_point.point.case.operation.speed):.12g}")
+    return float(f"{to_rpm(swept_point.point.speed):.12g}")
 
 
-def _speed_point(swept_point: SweptPoint, radiated: RadiatedLevel | None) -> SpeedPoint | None:
+def _speed_point(swept_point: Solved, radiated: RadiatedLevel | None) -> SpeedPoint | None:
     """Return a point as one of its row over speed; None where it has no resonances."""
     outcome = swept_point.outcome
     if not isinstance(outcome, PointResult) or outcome.motion.resonances is None:

@@ -11,7 +11,7 @@ import time
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,11 +21,15 @@ from gearwhine.case import Case, dump_case
 from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import machine_warnings
 from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
+from gearwhine.coupling.analyses.recording import TransientPlan
 from gearwhine.coupling.analyses.transient import SolvedTransient, mean_bearing_forces, solve_transient
+from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine_description import Machine
 from gearwhine.coupling.sweep.reduced_motion import ReducedMotion, reduce_motion
 from gearwhine.coupling.sweep.resonances import Resonances
 from gearwhine.failures import explain
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing.storage.atomic_file import checksum_holds, write_checksum
 from gearwhine.housing.storage.netcdf import Variables, read_netcdf, write_netcdf
 from gearwhine.numerics.result_warnings import ResultWarning
@@ -36,8 +40,11 @@ from gearwhine.results.run import transient_document
 from gearwhine.results.sensor_line_estimates import add_mechanisms, add_uncertainty
 from gearwhine.solve.acoustics import acoustics_of
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing, run_of
+from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing
 from gearwhine.sweep.points import Point, code_digest
+
+if TYPE_CHECKING:
+    from gearwhine.coupling.sound.acoustics import Acoustics
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -92,22 +99,47 @@ def solve_point(case: Case, housing: HousingComponent | PointFailure | None, cod
     try:
         _require_same_code(code)
         begin = time.perf_counter()
-        described = described_machine(case, housing)
+        described = describe_machine(case, housing)
         load, warnings_of_load = load_of_case(case, described)
-        loaded = load_machine(described, None if load is None else load.point, run_of(case))
-        frequencies = described.mesh_frequencies
-        solved = solve_transient(loaded.coupled, plan_of(case))
-        document = _document(solved, housing, time.perf_counter() - begin, warnings_of_load)
-        motion = reduce_motion(solved, None if case.acoustics is None else acoustics_of(case))
-        if load is not None:
-            document["load"] = load_part(load)
-        add_uncertainty(document, loaded.basis_error, solved.trusted_limit)
-        add_mechanisms(document, loaded.mechanisms, solved.line_tolerance_hz)
-        for pair, frequency in zip(document["gear_pairs"], frequencies, strict=True):
-            pair["mesh_frequency_hz"] = frequency
-        return PointResult(document, motion)
+        acoustics = None if case.acoustics is None else acoustics_of(case)
+        return solve_motion_of_point(described, load, warnings_of_load, plan_of(case), begin, acoustics)
     except Exception as error:
-        return _failure(error)
+        return failure_of(error)
+
+
+def solve_motion_of_point(
+    machine: Machine,
+    load: SolvedLoad | None,
+    warnings_of_load: list[ResultWarning],
+    plan: TransientPlan,
+    begin: float,
+    acoustics: Acoustics | None = None,
+) -> PointResult:
+    """Integrate the motion of a machine about its operating point, and reduce it.
+
+    Parameters
+    ----------
+    machine : Machine
+    load : SolvedLoad or None
+        Its operating point; None where nothing loads it, or none is found.
+    warnings_of_load : list of dict
+    plan : TransientPlan
+    begin : float
+        Time at which work on the point began, as `time.perf_counter` gives it [s].
+    acoustics : Acoustics, optional
+        Those of the sound whose lines are wanted.
+    """
+    loaded = load_machine(machine, None if load is None else load.point, plan.run)
+    solved = solve_transient(loaded.coupled, plan)
+    document = _document(solved, machine.housing_component, time.perf_counter() - begin, warnings_of_load)
+    motion = reduce_motion(solved, acoustics)
+    if load is not None:
+        document["load"] = load_part(load)
+    add_uncertainty(document, loaded.basis_error, solved.trusted_limit)
+    add_mechanisms(document, loaded.mechanisms, solved.line_tolerance_hz)
+    for pair, frequency in zip(document["gear_pairs"], machine.mesh_frequencies, strict=True):
+        pair["mesh_frequency_hz"] = frequency
+    return PointResult(document, motion)
 
 
 def solve_point_housing(case: Case, code: str) -> HousingComponent | PointFailure:
@@ -116,7 +148,7 @@ def solve_point_housing(case: Case, code: str) -> HousingComponent | PointFailur
         _require_same_code(code)
         return reduce_housing(case, solve_housing(case, command="sweep"))
     except Exception as error:
-        return _failure(error)
+        return failure_of(error)
 
 
 class OtherCodeError(RuntimeError):
@@ -130,7 +162,8 @@ def _require_same_code(code: str) -> None:
         )
 
 
-def _failure(error: Exception) -> PointFailure:
+def failure_of(error: Exception) -> PointFailure:
+    """Return the failure of a point by its error, with the traceback of an unexpected one."""
     _, message = explain(error)
     if message is None and not isinstance(error, OtherCodeError):
         return PointFailure(f"unexpected {type(error).__name__}: {error}", "".join(traceback.format_exception(error)))

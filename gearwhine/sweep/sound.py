@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.case.speeds_and_torques import mesh_frequencies
 from gearwhine.coupling.sound.proofs import gathered
 from gearwhine.coupling.sweep.line_sound import LineSound, interpolated_line_sound, line_sound, radiated_level
 from gearwhine.coupling.sweep.missed_peaks import RadiatedLevel
@@ -126,8 +125,7 @@ def add_sound(
     for (number, place, *_), line in zip(jobs, in_order(solve, jobs, "sound of the sweep", progress), strict=True):
         point, outcome = swept[number].point, swept[number].outcome
         assert isinstance(outcome, PointResult)
-        assert point.case.operation is not None
-        entry, order = _entry(line, natural), line.frequency_hz * _TWO_PI / abs(point.case.operation.speed)
+        entry, order = _entry(line, natural), line.frequency_hz * _TWO_PI / abs(point.speed)
         entry.update(order=order, name=outcome.motion.line_names[place], kind=outcome.motion.line_kinds[place])
         lines.setdefault(number, []).append((line, entry))
     failures: list[HousingError] = []
@@ -171,7 +169,7 @@ def _beyond_warnings(keys: Sequence[SweptKey], swept: Sequence[SweptPoint], limi
         (max(above), swept_point.point)
         for swept_point in swept
         if isinstance(swept_point.outcome, PointResult)
-        and (above := [hertz for hertz in mesh_frequencies(swept_point.point.case) if hertz > limit])
+        and (above := [hertz for hertz in swept_point.point.case.parts.mesh_frequencies if hertz > limit])
     ]
     if beyond:
         highest, point = max(beyond, key=lambda entry: entry[0])

@@ -269,6 +269,16 @@ class ProbeReading:
     major_axis: FloatArray
 
     @property
+    def label(self) -> str:
+        """Names of rotor and probe."""
+        return f"{self.rotor}: {self.probe.name}"
+
+    @property
+    def size(self) -> FloatArray:
+        """Reading of the probe, zero to peak [m], shape (b,)."""
+        return np.asarray(np.abs(self.amplitude))
+
+    @property
     def phase_lag(self) -> FloatArray:
         """Phase lag of the reading behind the rotor's mark, from 0 to 2π [rad], shape (b,)."""
         return np.asarray(np.mod(-np.angle(self.amplitude), 2.0 * np.pi))
@@ -276,9 +286,8 @@ class ProbeReading:
     @property
     def largest(self) -> tuple[float, float]:
         """Largest reading [m] and its speed [rad/s]."""
-        sizes = np.abs(self.amplitude)
-        highest = int(sizes.argmax())
-        return float(sizes[highest]), float(self.speeds[highest])
+        highest = int(self.size.argmax())
+        return float(self.size[highest]), float(self.speeds[highest])
 
 
 @dataclass(frozen=True)
@@ -354,7 +363,7 @@ class TorsionReading:
         Name of the rotor.
     probe : Probe
     frequencies : ndarray, shape (b,)
-        Frequencies [rad/s].
+        Frequencies of the torques [rad/s].
     angle, torque : ndarray of complex, shape (b,)
         Angle about the axis [rad], and torque in the shaft to the right of the probe, at the right end to its left
         [N m].
@@ -365,6 +374,31 @@ class TorsionReading:
     frequencies: FloatArray
     angle: ComplexArray
     torque: ComplexArray
+
+    @property
+    def label(self) -> str:
+        """Names of rotor and probe."""
+        return f"{self.rotor}: {self.probe.name}"
+
+    @property
+    def angle_size(self) -> FloatArray:
+        """Angle about the axis, zero to peak [rad], shape (b,)."""
+        return np.asarray(np.abs(self.angle))
+
+    @property
+    def angle_phase(self) -> FloatArray:
+        """Phase of the angle [rad], shape (b,)."""
+        return np.asarray(np.angle(self.angle))
+
+    @property
+    def torque_size(self) -> FloatArray:
+        """Torque in the shaft, zero to peak [N m], shape (b,)."""
+        return np.asarray(np.abs(self.torque))
+
+    @property
+    def torque_phase(self) -> FloatArray:
+        """Phase of the torque in the shaft [rad], shape (b,)."""
+        return np.asarray(np.angle(self.torque))
 
     @property
     def largest_angle(self) -> tuple[float, float]:
@@ -540,6 +574,26 @@ class SolvedRotor:
     def places(self) -> FloatArray:
         """Distances from the rotor's left end, evenly along the shaft, for shapes [m]."""
         return np.linspace(0.0, self.rotor.length, _PLACES)
+
+    @property
+    def lateral_shapes(self) -> FloatArray:
+        """Orthonormal lateral mode shapes at :attr:`places` [1/√kg]."""
+        return self.lateral.evaluate(self.places)[0]
+
+    @property
+    def torsional_shapes(self) -> FloatArray:
+        """Orthonormal torsional mode shapes at :attr:`places` [1/(√kg m)]."""
+        return self.torsional.evaluate(self.places)
+
+    @property
+    def bending_frequencies(self) -> FloatArray:
+        """Natural frequencies of bending at rest, both planes [rad/s]."""
+        return np.asarray(self.rest.frequencies[self.lateral_at_rest])
+
+    @property
+    def bending_axial_share(self) -> FloatArray:
+        """Share of the kinetic energy along the axis in each of them."""
+        return np.asarray(self.rest.axial_share[self.lateral_at_rest])
 
     @property
     def whirl_deflection(self) -> FloatArray | None:

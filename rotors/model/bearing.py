@@ -5,6 +5,7 @@ may stand on a `Pedestal`. A `RadialSupport` is a spring to ground in one plane.
 torsional spring from the shaft to ground.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -163,6 +164,21 @@ class Bearing:
     def __hash__(self) -> int:
         """Hash that agrees with equality."""
         return self._hash
+
+    @property
+    def findings(self) -> Iterator[Finding]:
+        """Unlikely stiffness of a radial bearing: none in a direction without damping either, or a negative one."""
+        if self.stiffness.shape[-1] != 2:
+            return
+        for axis, key in enumerate(("xx", "yy")):
+            values = self.stiffness[..., axis, axis]
+            expected = ""
+            if not values.any() and not self.damping[..., axis, axis].any():
+                expected = "a stiffness, or a damping beside it: this bearing does nothing in this direction"
+            elif values.min() < 0.0:
+                expected = "a stiffness that pushes back; a negative one is of seals and magnetic bearings"
+            if expected:
+                yield Finding(("bearing", self.name), f"stiffness.{key}", values.tolist(), expected, "warning")
 
     @classmethod
     def isotropic(cls, name: str, at: float, stiffness: float, damping: float = 0.0) -> "Bearing":

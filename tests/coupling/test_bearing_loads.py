@@ -4,7 +4,7 @@ import numpy as np
 
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.operation_warnings import bearing_load_warnings
-from gearwhine.solve.machine import described_machine
+from gearwhine.from_case.machine import describe_machine
 
 BALLS = (
     'bearing.0.stiffness={ rolling = { catalogue = { type = "deep-groove", bore = "35 mm", '
@@ -15,7 +15,7 @@ BALLS = (
 
 def test_a_load_more_than_a_tenth_off_is_told_with_both_numbers() -> None:
     case = load_case("spur-pair", BALLS).case
-    bearings, name = described_machine(case, None).bearings, case.bearing[0].name
+    bearings, name = describe_machine(case).bearings, case.bearing[0].name
     for force in ([1050.0, 0.0, 300.0], [1000.0, 60.0, 320.0]):
         assert bearing_load_warnings(bearings, {name: np.array(force)}) == []
     for force in ([1300.0, 0.0, 300.0], [0.0, 1000.0, 300.0], [1000.0, 0.0, -300.0]):
@@ -27,5 +27,5 @@ def test_a_load_more_than_a_tenth_off_is_told_with_both_numbers() -> None:
 
 def test_a_stiffness_that_is_given_depends_on_no_load() -> None:
     case = load_case("spur-pair").case
-    bearings = described_machine(case, None).bearings
+    bearings = describe_machine(case).bearings
     assert bearing_load_warnings(bearings, {one.bearing.name: np.full(3, 1e4) for one in bearings}) == []

@@ -9,7 +9,6 @@ from gearwhine.case import parse_case
 from gearwhine.coupling import ShaftGear
 from gearwhine.coupling.description.parts import gear_disc, inertia_with_discs, rotor_with_gears
 from gearwhine.coupling.gears import Gear
-from gearwhine.from_case.rotors import build_rotor
 from gearwhine.rotors import Rotor, Segment, ShaftMaterial
 
 WIDTH = 0.04
@@ -105,4 +104,4 @@ def test_a_case_weighs_its_pinion_once() -> None:
         }
     )
     mass = 7850.0 * math.pi / 4.0 * (0.04**2 * 0.2 + 0.075**2 * 0.04)
-    assert build_rotor(case, case.rotor[0]).mass == pytest.approx(mass, rel=1e-12)
+    assert case.parts.rotors[0].mass == pytest.approx(mass, rel=1e-12)

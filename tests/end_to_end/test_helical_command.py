@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from coupled_cases import coupled
 
-from gearwhine.case import load_case, mesh_frequencies
+from gearwhine.case import load_case
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
 from gearwhine.coupling.analyses.transient import mean_bearing_forces, solve_transient
@@ -57,7 +57,7 @@ def test_the_spectra_hold_the_axial_force_and_the_moments_of_bearings(results: P
     Both have Hann's window, since so short a record still rings from its start.
     """
     case = load_case("helical-pair", SHORTER).case
-    (mesh,) = mesh_frequencies(case)
+    (mesh,) = case.parts.mesh_frequencies
     with opened_dataset(results / "results.nc") as data:
         times = data["time"].values
         hann = np.sin(np.pi * np.arange(times.size) / times.size) ** 2

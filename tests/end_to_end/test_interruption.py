@@ -19,11 +19,12 @@ from gearwhine.coupling.analyses.loaded_machine import load_machine
 from gearwhine.coupling.analyses.modes_and_responses import solve_system
 from gearwhine.coupling.analyses.signature import solve_signature
 from gearwhine.coupling.analyses.transient import solve_transient
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.output.dataset import arrays_of, labels_of
 from gearwhine.results.operating_point import LOAD
 from gearwhine.solve.gear_pairs import analyse_pairs
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, load_of_case, plan_of, reduce_housing
+from gearwhine.solve.machine import load_of_case, plan_of, reduce_housing
 from gearwhine.solve.rotors import solve_rotors
 
 SHORT = ("--set", "transient.revolutions=6", "--set", "transient.discard=4", "--set", "housing.box.mesh_size=50 mm")
@@ -56,7 +57,7 @@ def write_whole(file: Path) -> set[str]:
     case = load_case("small-gearbox", MANY[1::2]).case
     rotors, housing = solve_rotors(case), solve_housing(case)
     part = reduce_housing(case, housing)
-    described = described_machine(case, part)
+    described = describe_machine(case, part)
     load, _ = load_of_case(case, described)
     assert load is not None
     standing = load_machine(described, load.point)

@@ -16,7 +16,6 @@ from coupled_cases import coupled
 from gearwhine.case import CaseError, RollingStiffness, parse_case
 from gearwhine.cli import run_command
 from gearwhine.coupling import coupled_modes
-from gearwhine.from_case.rotors import build_bearings, rolling_state
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.results.rotors import rotors_document
 from gearwhine.rotors.rolling_bearings import (
@@ -60,7 +59,7 @@ def friswell(journal: str = "50 mm", **bearing: Any) -> dict[str, Any]:
 
 def test_the_iso_bearing_under_a_case() -> None:
     case = parse_case(friswell("30 mm", stiffness={"rolling": ISO}, load={"x": "1 kN"}))
-    state = rolling_state(case, 0)
+    state = case.parts.rolling_states[case.bearing[0].name]
     assert state is not None
     assert 1e6 * state.displacement[0] == pytest.approx(15.110, rel=1e-4)
 
@@ -170,7 +169,7 @@ def test_fits_and_heat_change_the_clearance() -> None:
     sizes = {"count": 9, "element_diameter": "12 mm", "pitch_diameter": "60 mm", "clearance": "15 um"}
     rolling = {**sizes, "mounting": {**fits, **housing, **more, **rings}}
     case = parse_case(friswell(stiffness={"rolling": rolling}, load={"x": "1 kN"}))
-    state = rolling_state(case, 0)
+    state = case.parts.rolling_states[case.bearing[0].name]
     assert state is not None
     expected = operating_clearance(
         15e-6,
@@ -192,8 +191,8 @@ def test_a_rolling_bearing_stands_on_a_pedestal_with_damping_over_speed() -> Non
     tabled = {"speeds": [0.0, 1000.0], "damping": {"xx": [100.0, 300.0], "yy": 50.0}}
     pedestal = {"mass": "4 kg", "stiffness": {"xx": 1e8, "yy": 2e8}}
     case = parse_case(friswell("30 mm", **stands, **tabled, pedestal=pedestal))
-    bearing = build_bearings(case, "shaft")[0]
-    state = rolling_state(case, 0)
+    bearing = case.parts.bearings_on("shaft")[0]
+    state = case.parts.rolling_states[case.bearing[0].name]
     assert state is not None
     assert bearing.pedestal is not None
     assert bearing.pedestal.mass == 4.0
@@ -206,7 +205,7 @@ def test_damping_by_matrix_damps_tilting() -> None:
     matrix = np.diag([1e6, 1e6, 0.0, 1e4, 1e4])
     tilting = np.diag([0.0, 0.0, 0.0, 50.0, 50.0])
     case = parse_case(friswell(stiffness={"matrix": matrix.tolist()}, damping={"matrix": tilting.tolist()}))
-    assert build_bearings(case, "shaft")[0].spatial_damping[4, 4] == 50.0
+    assert case.parts.bearings_on("shaft")[0].spatial_damping[4, 4] == 50.0
     (solved,) = solve_rotors(case)
     assert solved.whirl[0].damping_ratios.min() > 0.0
 
@@ -216,7 +215,7 @@ def test_a_bearing_that_its_load_does_not_hold_is_the_users_to_mend(
 ) -> None:
     loose = friswell("30 mm", stiffness={"rolling": {**ISO, "clearance": "20 um"}}, load={"z": "0 N"})
     with pytest.raises(CaseError, match=r"bearing\[0\].stiffness.rolling .*loose in x and y"):
-        build_bearings(parse_case(loose), "shaft")
+        parse_case(loose).parts.bearings_on("shaft")
     changes = (
         f"rotor.shaft.segments={inline(journals('30 mm'))}",
         "bearing.left.stiffness={ rolling = { count = 7, element_diameter = 0.0115, pitch_diameter = 0.0435 } }",

@@ -4,14 +4,15 @@ from gearwhine.case import Case
 from gearwhine.coupling import CoupledMachine
 from gearwhine.coupling.analyses.loaded_machine import LoadedMachine, load_machine
 from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
-from gearwhine.solve.machine import described_machine, reduce_housing, run_of
+from gearwhine.solve.machine import reduce_housing, run_of
 
 
 def loaded(case: Case, housing: HousingModes | HousingComponent | None = None) -> LoadedMachine:
     """The machine of a case with aligned flanks, its bearings about the operating point where they are left to it."""
     part = reduce_housing(case, housing) if isinstance(housing, HousingModes) else housing
-    machine = described_machine(case, part).with_flanks_of(None)
+    machine = describe_machine(case, part).with_flanks_of(None)
     point = machine.operating_point() if machine.needs_operating_point else None
     return load_machine(machine, point, run_of(case))
 
@@ -24,6 +25,6 @@ def coupled(case: Case, housing: HousingModes | HousingComponent | None = None) 
 def about_operating_point(case: Case, housing: HousingModes | HousingComponent | None = None) -> LoadedMachine:
     """The machine of a case as its commands assemble it."""
     part = reduce_housing(case, housing) if isinstance(housing, HousingModes) else housing
-    machine = described_machine(case, part)
+    machine = describe_machine(case, part)
     point = machine.operating_point() if machine.needs_operating_point else None
     return load_machine(machine, point, run_of(case))

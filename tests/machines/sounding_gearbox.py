@@ -53,7 +53,8 @@ def sounding_gearbox(changes: dict[str, Any]) -> gw.CaseStudy:
 
 def swept_point(case: Case, text: str, outcome: PointResult | None = None, *, modes_key: str = "") -> Any:
     """A point of a sweep with the value of its key, whose motion has no lines by default."""
-    point = SimpleNamespace(case=case, texts=(text,), modes_key=modes_key)
+    speed = None if case.operation is None else case.operation.speed
+    point = SimpleNamespace(case=case, texts=(text,), modes_key=modes_key, speed=speed)
     return SimpleNamespace(outcome=outcome or PointResult({}, ReducedMotion(np.zeros(0))), point=point)
 
 

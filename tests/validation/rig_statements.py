@@ -16,8 +16,9 @@ from gearwhine.case import load_case
 from gearwhine.coupling import TransientOutputs, TransientSettings, simulate
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.machine.coupled_system import embed
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.housing import HousingModes
-from gearwhine.solve.machine import described_machine, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 
 FloatArray = npt.NDArray[np.float64]
 Runs = Callable[..., "Run"]
@@ -87,7 +88,7 @@ def settled_runs(name: str | Path, solved: HousingModes, dominant: list[int] | N
         if eight:
             assert dominant is not None
             housing, frequencies = _kept(whole, dominant), frequencies[dominant]
-        machine = described_machine(case, housing).assembled
+        machine = describe_machine(case, housing).assembled
         assert machine.housing is not None
         which = len(machine.rotors)
         own = np.array([embed(machine.system.components, which, row) for row in np.eye(machine.housing.size)])

@@ -34,7 +34,7 @@ from rig_statements import (
 )
 
 from gearwhine.case import Case, load_case
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.housing import HousingModes
 from gearwhine.solve.comparison import compare_measured
 from gearwhine.solve.housing_modes import solve_housing
@@ -78,7 +78,7 @@ def fails(reason: str) -> pytest.MarkDecorator:
 
 
 def test_contact_ratio_of_the_case(nominal: Case, published: Callable[..., None]) -> None:
-    (pair,) = solve_gears(nominal)
+    (pair,) = solve_gears(nominal.parts)
     published(TABLE_I, "contact ratio", 1.64, pair.geometry.contact_ratio, abs=0.005)
 
 

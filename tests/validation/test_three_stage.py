@@ -23,8 +23,7 @@ from gearwhine.coupling.analyses.transient import starting_state
 from gearwhine.coupling.signals.peaks import spectral_peaks
 from gearwhine.coupling.signals.spectrum import Spectrum
 from gearwhine.coupling.time.histories import histories, modal_rows, transient_outputs
-from gearwhine.from_case.gear_pairs import pair_geometries
-from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.from_case.machine import pair_geometries
 from gearwhine.rotors import rest_frequencies, solve_torsional_modes
 from gearwhine.solve.machine import plan_of
 
@@ -120,7 +119,8 @@ def test_natural_frequencies_of_the_stages(
         "so that these fifteen frequencies hold (studies/find_three_stage.py). Lateral modes are planar ones on "
         "averaged supports, torsional ones those of the free shaft, rigid rotation apart.",
     )
-    rotor, bearings = build_rotor(case, case.rotor_named(f"stage-{stage}")), build_bearings(case, f"stage-{stage}")
+    (rotor,) = (rotor for rotor in case.parts.rotors if rotor.name == f"stage-{stage}")
+    bearings = case.parts.bearings_on(rotor.name)
     both_planes = rest_frequencies(rotor, bearings, count=6).frequencies / (2.0 * np.pi)
     # Supports are isotropic, so that each lateral frequency stands in both planes.
     assert both_planes[:6:2] == pytest.approx(both_planes[1:6:2], rel=1e-9)
@@ -139,7 +139,7 @@ def test_gears_and_supports_are_as_published(case: Case, published: Callable[...
             TEXT, f"contact ratio of {pair.driver.name} with {pair.driven.name}", 1.6, pair.contact_ratio, abs=0.05
         )
     stiffness = {
-        stage: [bearing.stiffness[0, 0] for bearing in build_bearings(case, f"stage-{stage}")] for stage in (2, 3)
+        stage: [bearing.stiffness[0, 0] for bearing in case.parts.bearings_on(f"stage-{stage}")] for stage in (2, 3)
     }
     assert all(two > three for two, three in zip(stiffness[2], stiffness[3], strict=True))
 

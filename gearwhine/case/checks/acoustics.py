@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from gearwhine.case.checks.keys_of_attributes import steps_of
 from gearwhine.case.errors import LOOK_UP, NOTHING, Finding
 from gearwhine.case.model import Draft
 
@@ -19,5 +20,5 @@ def check_acoustics(draft: Draft) -> Iterator[Finding]:
     except AcousticsError as error:
         # Names that are given twice are found with those of all tables.
         for finding in (finding for finding in error.findings if finding.part[0] == "acoustics"):
-            steps = (int(step) if step.isdecimal() else step for step in finding.attribute.split("."))
-            yield Finding(("acoustics", *steps), finding.expected, NOTHING if finding.value is None else LOOK_UP)
+            place = ("acoustics", *steps_of(finding.attribute))
+            yield Finding(place, finding.expected, NOTHING if finding.value is None else LOOK_UP)

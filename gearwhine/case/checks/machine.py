@@ -10,25 +10,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from gearwhine.case.bearings import Bearing, RadialDamping, RadialStiffness, RollingStiffness, operation_loads
-from gearwhine.case.checks.keys_of_attributes import key_in_gear
-from gearwhine.case.errors import LOOK_UP, NOTHING, UNSAID, Finding, Location
-from gearwhine.case.gears import Gear, GearPair, shaft_of, train_of_pairs
+from gearwhine.case.checks.keys_of_attributes import key_in_gear, placed
+from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location
+from gearwhine.case.gears import Gear, GearPair, distance_of_axes, shaft_of, train_of_pairs
 from gearwhine.case.housing import Seat
-from gearwhine.case.model import Case, Draft, loaded_rotors
+from gearwhine.case.model import Draft
 from gearwhine.case.operation import Operation, listed
 from gearwhine.case.rotors import HarmonicTorque, Probe, Rotor, RoundDisc, TorsionProbe, TorsionSpring
-from gearwhine.case.speeds_and_torques import pair_torques
 from gearwhine.numerics.findings import in_mm
 
 if TYPE_CHECKING:
     from gearwhine.coupling.description.gear_train import GearTrain
     from gearwhine.coupling.gears import Gear as BuiltGear
-    from gearwhine.numerics.findings import Finding as PartFinding
 
 
 def check_shafts(draft: Draft) -> Iterator[Finding]:
@@ -86,15 +84,8 @@ def check_station(rotor: Rotor, at: float, location: Location) -> Iterator[Findi
     """Yield a finding where a station lies beyond the right end of its rotor."""
     from gearwhine.rotors.model.shaft import station_findings
 
-    yield from _at(location[:-1], station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length))
-
-
-def _at(entry: Location, findings: Iterable[PartFinding]) -> Iterator[Finding]:
-    """Put findings of a part at its entry of the case; one without a value is of the entry's relation to others."""
-    for finding in findings:
-        steps = tuple(int(step) if step.isdecimal() else step for step in finding.attribute.split(".") if step)
-        location = (*entry, *steps)
-        yield Finding(location, finding.expected, UNSAID if finding.value is None else LOOK_UP)
+    findings = station_findings(("", ""), str(location[-1]), at, rotor.name, rotor.length)
+    yield from (placed(location[:-1], finding) for finding in findings)
 
 
 def _check_part_material(rotor: Rotor, own: str | None, at: float, location: Location) -> Iterator[Finding]:
@@ -115,7 +106,8 @@ def _check_bow(index: int, rotor: Rotor) -> Iterator[Finding]:
         from gearwhine.coupling.description.parts import bow_findings
 
         places = [point.at for point in rotor.bow]
-        yield from _at(("rotor", index), bow_findings(("shaft", rotor.name), places, rotor.length))
+        findings = bow_findings(("shaft", rotor.name), places, rotor.length)
+        yield from (placed(("rotor", index), finding) for finding in findings)
 
 
 def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: Seat) -> Iterator[Finding]:
@@ -130,7 +122,7 @@ def _check_seat(draft: Draft, index: int, bearing: Bearing, rotor: Rotor, seat: 
     part = ("bearing", bearing.name)
     for finding in seat_findings(part, rotor.name, rotor.axis, rotor.start, bearing.at, place):
         if finding.attribute != "at" or bearing.at <= rotor.length:  # beyond the rotor is a finding of its own
-            yield from _at(("bearing", index), [finding])
+            yield placed(("bearing", index), finding)
 
 
 def check_bearings(draft: Draft) -> Iterator[Finding]:
@@ -143,7 +135,7 @@ def check_bearings(draft: Draft) -> Iterator[Finding]:
             from gearwhine.coupling.description.arrangement import pedestal_finding
 
             part = ("bearing", bearing.name)
-            yield from _at(("bearing", index), [pedestal_finding(part, bearing.seat, bearing.pedestal)])
+            yield placed(("bearing", index), pedestal_finding(part, bearing.seat, bearing.pedestal))
         if draft.transient is not None and bearing.pedestal is not None and bearing.pedestal.mass == 0.0:
             yield Finding(("bearing", index, "pedestal", "mass"), "a mass above 0, to be followed in time", NOTHING)
         if bearing.speeds is not None and bearing.rotor in ratios:
@@ -160,7 +152,7 @@ def _operation_loads(draft: Draft, bearing: Bearing, bearings: Sequence[Bearing]
     if draft.operation is None:
         return bool(draft.document.get("operation"))
     geared = bool(draft.document.get("gear_pair"))
-    return operation_loads(bearing, bearings, loaded_rotors(draft.names("rotor"), draft.operation, geared=geared))
+    return operation_loads(bearing, bearings, draft.operation.loaded_rotors(draft.names("rotor"), geared=geared))
 
 
 def _check_tables(index: int, bearing: Bearing) -> Iterator[Finding]:
@@ -194,7 +186,8 @@ def _check_reach(
 
     needed = [ratio * abs(speed) for speed in _named_speeds(draft)]
     part = ("bearing", bearing.name)
-    yield from _at(("bearing", index), table_findings_of_speeds(part, bearing.rotor, table, needed))
+    findings = table_findings_of_speeds(part, bearing.rotor, table, needed)
+    yield from (placed(("bearing", index), finding) for finding in findings)
 
 
 def _named_speeds(draft: Draft) -> list[float]:
@@ -280,7 +273,7 @@ def _check_pair(
         return
     rotors = draft.rotor(tables[0].rotor), draft.rotor(tables[1].rotor)
     if rotors[0] is not None and rotors[1] is not None:
-        apart = math.hypot(rotors[0].axis[0] - rotors[1].axis[0], rotors[0].axis[1] - rotors[1].axis[1])
+        apart = distance_of_axes(rotors[0].axis, rotors[1].axis)
         if distance is not None and abs(distance - apart) > LARGEST_OFFSET:
             expected = f"the distance of the rotors' axes, {in_mm(apart)}"
             yield Finding(("gear_pair", index, "centre_distance"), expected)
@@ -455,8 +448,8 @@ def _check_train(draft: Draft, operation: Operation) -> Iterator[Finding]:
         return
     imbalances = list(_check_balance(operation, train or train_of_pairs((), shafts))) if operation.output else []
     yield from imbalances
-    if draft.gear_pairs and not imbalances and all(shaft in ratios for shaft in shafts):
-        yield from _check_flow(draft, operation)
+    if train is not None and not imbalances and all(shaft in ratios for shaft in shafts):
+        yield from _check_flow(draft, operation, train)
 
 
 def _lacks_input(operation: Operation) -> bool:
@@ -494,7 +487,7 @@ def _check_each_shaft(draft: Draft, operation: Operation) -> Iterator[Finding]:
         yield Finding(("operation", "output", imbalance.output), expected, UNSAID)
 
 
-def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
+def _check_flow(draft: Draft, operation: Operation, train: GearTrain) -> Iterator[Finding]:
     """Yield gear pairs whose driven gear drives the driver, and braked ones whose back flanks never meet."""
     from gearwhine.coupling.description.arrangement import BACKLASH_OF_A_BRAKE, POWER_FROM_THE_DRIVER
     from gearwhine.coupling.description.gear_train import carrying_flanks
@@ -502,27 +495,29 @@ def _check_flow(draft: Draft, operation: Operation) -> Iterator[Finding]:
     names = draft.names("gear")
     if operation.torque == 0.0 or len(set(names)) < len(names):
         return
-    case = Case.model_construct(
-        rotor=tuple(rotor for _, rotor in draft.rotors),
-        gear=tuple(gear for _, gear in draft.gears),
-        gear_pair=tuple(pair for _, pair in draft.gear_pairs),
-        operation=operation,
-    )
-    flanks = carrying_flanks(pair_torques(case), operation.torque)
+    # Where torques act along their shafts does not count here.
+    torques = train.mean_pair_torques(operation.applied_torques(train, {}), operation.speed)
+    flanks = carrying_flanks(torques, operation.torque)
     for (index, pair), flank in zip(draft.gear_pairs, flanks, strict=True):
         if flank == "reversed":
             yield Finding(("gear_pair", index), POWER_FROM_THE_DRIVER, UNSAID)
-        elif flank == "back" and pair.backlash is None and not _has_designed_backlash(case, pair):
+        elif flank == "back" and pair.backlash is None and not _has_designed_backlash(draft, pair):
             yield Finding(("gear_pair", index, "backlash"), BACKLASH_OF_A_BRAKE, NOTHING)
 
 
-def _has_designed_backlash(case: Case, pair: GearPair) -> bool:
+def _has_designed_backlash(draft: Draft, pair: GearPair) -> bool:
     """Whether tooth thicknesses and centre distance leave a backlash; gears that do not mesh are other findings."""
     from gearwhine.coupling.gears import GearError, GearPairGeometry
 
-    driver, driven = case.gear_named(pair.driver), case.gear_named(pair.driven)
+    driver, driven = draft.gear(pair.driver), draft.gear(pair.driven)
+    if driver is None or driven is None:
+        return True
+    rotors = draft.rotor(driver.rotor), draft.rotor(driven.rotor)
+    distance = pair.centre_distance
+    if rotors[0] is not None and rotors[1] is not None:
+        distance = distance_of_axes(rotors[0].axis, rotors[1].axis)
     try:
-        geometry = GearPairGeometry(driver.build(), driven.build(), case.centre_distance(pair))
+        geometry = GearPairGeometry(driver.build(), driven.build(), distance)
     except GearError:
         return True
     return geometry.designed_backlash is not None

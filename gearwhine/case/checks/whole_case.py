@@ -1,4 +1,4 @@
-"""Checks across the tables of a case: names and provenance; all checks of a case in turn, its warnings, axial location.
+"""Checks across the tables of a case: names and provenance; all checks of a case in turn, its warnings.
 
 A name belongs to one entry, and a reference finds its entry. Names are read from the document itself, so an entry in
 which something else is wrong still counts. `[provenance]` gives the origin of numbers: published, nominal or found.
@@ -6,10 +6,10 @@ which something else is wrong still counts. `[provenance]` gives the origin of n
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
-from gearwhine.case.bearings import Bearing, MatrixStiffness, RollingStiffness
+from gearwhine.case.bearings import Bearing, RollingStiffness
 from gearwhine.case.checks.acoustics import check_acoustics
 from gearwhine.case.checks.housing import check_box, check_housing_form
 from gearwhine.case.checks.machine import check_bearings, check_gears, check_running, check_shafts
@@ -19,9 +19,6 @@ from gearwhine.case.errors import NOTHING, UNSAID, Finding, Location, key_of, lo
 from gearwhine.case.model import Case, Draft, case_document
 from gearwhine.case.overrides import parse_key_path, place_in_list
 from gearwhine.numerics.names import did_you_mean, twin_of
-
-if TYPE_CHECKING:
-    from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport
 
 _PROBES = ("rotor_analysis", "unbalance_response", "probes")
 _TORSION = ("rotor_analysis", "torsional_response")
@@ -138,9 +135,8 @@ def _check_unique(draft: Draft) -> Iterator[Finding]:
 _CHARACTERS = "both are written with other characters, such as Cyrillic letters or accents apart from theirs"
 
 
-def _names_by_case(case: Case) -> Iterator[str]:
+def _names_by_case(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield a sentence on names of one kind that differ in capitals alone."""
-    document = case_document(case)
     for keys in (*_KEYS_OF_NAMED_PARTS, ("material",)):
         entries = look_up(document, keys)
         if isinstance(entries, list):
@@ -225,42 +221,6 @@ def check(draft: Draft) -> Iterator[Finding]:
     yield from check_provenance(draft)
 
 
-def axial_locations(case: Case) -> tuple[AxialLocation, ...]:
-    """Return the axial location of each rotor by its bearings; a bearing that cannot be built carries no thrust."""
-    from gearwhine.coupling.description.axial_location import AxialLocation, AxialSupport
-
-    locations = []
-    for rotor in case.rotor:
-        bearings = [bearing for bearing in case.bearing if bearing.rotor == rotor.name]
-        names = {bearing.name for bearing in bearings}
-        supports = [_axial_support(bearing) for bearing in bearings]
-        for saved_bearing in rotor.saved.bearings if rotor.saved is not None else ():
-            carries_thrust = saved_bearing.stiffness.shape[-1] == 5 and saved_bearing.stiffness[..., 2, 2].min() > 0.0
-            if saved_bearing.name not in names:
-                supports.append(
-                    AxialSupport(
-                        saved_bearing.name, saved_bearing.at, frozenset((1, -1)) if carries_thrust else frozenset()
-                    )
-                )
-        locations.append(AxialLocation(rotor.name, supports))
-    return tuple(locations)
-
-
-def _axial_support(bearing: Bearing) -> AxialSupport:
-    from gearwhine.coupling.description.axial_location import AxialSupport
-    from gearwhine.rotors import RotorError
-
-    stiffness = bearing.stiffness
-    if isinstance(stiffness, RollingStiffness):
-        try:
-            rolling = stiffness.rolling.build(bearing.name)
-        except RotorError:  # which every command that builds it refuses
-            return AxialSupport(bearing.name, bearing.at, frozenset())
-        return AxialSupport(bearing.name, bearing.at, rolling.thrust_senses, rolling)
-    carries_thrust = isinstance(stiffness, MatrixStiffness) and stiffness.matrix[2][2] > 0.0
-    return AxialSupport(bearing.name, bearing.at, frozenset((1, -1)) if carries_thrust else frozenset())
-
-
 def warnings_of(case: Case) -> tuple[str, ...]:
     """Return a sentence on each choice in a valid case that is allowed but implausible."""
     warnings = []
@@ -291,18 +251,20 @@ def warnings_of(case: Case) -> tuple[str, ...]:
         has_own_bearings = rotor.saved is not None and rotor.saved.bearings
         if not has_own_bearings and not any(bearing.rotor == rotor.name for bearing in case.bearing):
             warnings.append(f'rotor "{rotor.name}" has no [[bearing]]: it floats freely')
-    warnings += _seat_warnings(case)
-    warnings += _names_by_case(case)
+    if housing is not None:
+        warnings += _seat_warnings(case.bearing)
+    document = case_document(case)
+    warnings += _names_by_case(document)
     if any(isinstance(bearing.stiffness, RollingStiffness) for bearing in case.bearing):
-        warnings += [text for location in axial_locations(case) for text in location.warnings]
-    warnings += case_warnings(case, library_findings(case), case_document(case))
+        warnings += [text for location in case.parts.axial_locations for text in location.warnings]
+    warnings += case_warnings(case.unusual, library_findings(case), document)
     return tuple(warnings)
 
 
-def _seat_warnings(case: Case) -> list[str]:
+def _seat_warnings(bearings: Sequence[Bearing]) -> list[str]:
     """Return a sentence on bearings without a `seat` beside others that stand in the housing."""
-    loose = [bearing.name for bearing in case.bearing if "seat" not in bearing.model_fields_set]
-    if case.housing is None or not loose or all(bearing.grounded for bearing in case.bearing):
+    loose = [bearing.name for bearing in bearings if "seat" not in bearing.model_fields_set]
+    if not loose or all(bearing.grounded for bearing in bearings):
         return []
     names = ", ".join(f'"{name}"' for name in loose)
     verb = "has no 'seat': it stands" if len(loose) == 1 else "have no 'seat': they stand"

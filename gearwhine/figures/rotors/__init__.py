@@ -26,7 +26,6 @@ from gearwhine.figures.rotors.responses import (
 )
 from gearwhine.figures.rotors.shaft import draw_shaft
 from gearwhine.figures.style import shortened
-from gearwhine.from_case.rotors import shaft_gears
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.output import file_stems
 from gearwhine.rotors import Bearing, Rotor
@@ -78,7 +77,7 @@ def rotor_assembly(case: Case, rotor: Rotor, bearings: Sequence[Bearing]) -> Rot
     return RotorAssembly(
         rotor=rotor,
         bearings=bearings,
-        gears=_drawn_gears(shaft_gears(case, name), rotor),
+        gears=_drawn_gears(case.parts.gears_on(name), rotor),
         unbalances=[DrawnUnbalance(mass.at, mass.moment, mass.phase) for mass in entry.unbalance],
         rolling={bearing.name for bearing in on_it if isinstance(bearing.stiffness, RollingStiffness)},
         seats={bearing.name: bearing.seat for bearing in on_it if not bearing.grounded},

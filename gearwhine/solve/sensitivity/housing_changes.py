@@ -14,6 +14,7 @@ from gearwhine.case.box import FACES
 from gearwhine.case.model import housing_table
 from gearwhine.case.overrides import parse_key_path
 from gearwhine.case.units import kind_of
+from gearwhine.coupling.load_analysis.ranking import FACES_IN_PLACE_OF_WALLS
 from gearwhine.from_case.housing import bearing_places, build_seats
 from gearwhine.from_case.parametric_housing import RATE_STEP, MeshedParameters, fitted_case
 from gearwhine.housing.model.seats import bearing_port, seat_matrix, sensor_port
@@ -58,7 +59,7 @@ def housing_changes(case: Case, mesh: Mesh) -> tuple[tuple[HousingChange, ...], 
     try:
         return case_changes(case, mesh, parameters), None
     except MorphError as error:
-        note = f"the mesh of the box does not follow its walls, so that flat faces stand in their place: {error}"
+        note = f"{FACES_IN_PLACE_OF_WALLS}: {error}"
         return face_changes(mesh, seats), note
 
 

@@ -7,8 +7,7 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
-from gearwhine.from_case.gear_pairs import pair_geometry, solve_gears
-from gearwhine.from_case.rotors import build_gear
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show, shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
@@ -40,7 +39,7 @@ def test_three_ways_of_saying_the_size() -> None:
     for size in ({"module": "3.175 mm"}, {"diametral_pitch": "8 1/in"}, {"base_radius": base_radius}):
         case = case_of(rest | size, TOOTH | {"helix_angle": "-15 deg"})
         given = case.gear_named("pinion")
-        gear = build_gear(case, given)
+        gear = case.parts.gears["pinion"]
         assert gear.module == pytest.approx(3.175e-3, rel=1e-13)
         assert gear.base_radius == pytest.approx(base_radius, rel=1e-13)
         # What the case knows by itself agrees with the gear that is built.
@@ -58,9 +57,9 @@ def test_a_gear_without_a_material_is_of_the_case_s_only_one() -> None:
         "gear_pair": [{"driver": "pinion", "driven": "wheel"}],
     }
     case = parse_case(document)
-    gear = build_gear(case, case.gear_named("wheel"))
+    gear = case.parts.gears["wheel"]
     assert (gear.youngs_modulus, gear.density) == (70e9, 2700.0)
-    steel = build_gear(case_of(TOOTH, TOOTH), case_of(TOOTH, TOOTH).gear_named("wheel"))
+    steel = case_of(TOOTH, TOOTH).parts.gears["wheel"]
     assert gear.mass == pytest.approx(steel.mass * 2700.0 / 7850.0, rel=1e-12)
 
 
@@ -89,7 +88,7 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
         "web": "8 mm",
     }
     case = case_of(TOOTH | {"helix_angle": "15 deg", "teeth": 14, "allow_undercut": True}, TOOTH | keys)
-    wheel, pinion = (build_gear(case, case.gear_named(name)) for name in ("wheel", "pinion"))
+    wheel, pinion = (case.parts.gears[name] for name in ("wheel", "pinion"))
     assert (wheel.addendum, wheel.dedendum, wheel.root_radius) == (0.9, 1.3, pytest.approx(0.8e-3))
     assert (wheel.rim_thickness, wheel.web_thickness) == (pytest.approx(9e-3), pytest.approx(8e-3))
     assert wheel.tooth_thinning == pytest.approx(0.05e-3)
@@ -101,7 +100,7 @@ def test_every_key_reaches_the_gear_and_the_resolved_case() -> None:
 
 @pytest.mark.slow
 def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) -> None:
-    geometry = pair_geometry(HELICAL, HELICAL.gear_pair[0])
+    geometry = HELICAL.parts.pair_geometries[0]
     document = check_document(HELICAL)
     (pair,) = document["gear_pairs"]
     assert pair["overlap_ratio"] == pytest.approx(30e-3 * math.sin(math.radians(15.0)) / (math.pi * 3.175e-3))
@@ -110,7 +109,7 @@ def test_check_and_gears_take_helical_gears(capsys: pytest.CaptureFixture[str]) 
     assert angles == pytest.approx([15.0, -15.0])
     assert [point["point"] for point in pair["geometry"]["path_of_contact"]][::4] == ["SAP", "EAP"]
     shown_by(check.sections)(document)
-    document = gears_document(solve_over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL))))
+    document = gears_document(solve_over_torques(analyse_pairs(HELICAL, solve_gears(HELICAL.parts))))
     assert document["pairs"][0]["transmission_error_m"]["peak_to_peak"] > 0.0
     show(document, sections(document))
     shown = " ".join(capsys.readouterr().out.split())
@@ -131,12 +130,12 @@ def test_undercut_and_thin_tips_are_warned_of() -> None:
 def test_backlash_is_that_of_thinned_teeth() -> None:
     """Both thinned by 40 µm along the reference circle, at nominal distance: 80 µm cos 20° along the line of action."""
     thin = TOOTH | {"tooth_thinning": "0.04 mm"}
-    (nominal,) = solve_gears(case_of(TOOTH, TOOTH))
+    (nominal,) = solve_gears(case_of(TOOTH, TOOTH).parts)
     assert nominal.backlash is None
-    (thinned,) = solve_gears(case_of(thin, thin))
+    (thinned,) = solve_gears(case_of(thin, thin).parts)
     expected = 80e-6 * math.cos(math.radians(20.0))
     assert thinned.backlash == pytest.approx(expected, rel=1e-9)
-    (given,) = solve_gears(case_of(thin, thin, backlash="0.1 mm"))
+    (given,) = solve_gears(case_of(thin, thin, backlash="0.1 mm").parts)
     assert given.backlash == 1e-4
 
 
@@ -156,16 +155,16 @@ def test_backlash_has_its_three_sizes_under_their_names(helix: float) -> None:
     along = around * math.cos(transverse)
     named = {"along_line_of_action": along, "circumferential": around, "normal": along * math.cos(base)}
     (checked,) = check_document(case)["gear_pairs"]
-    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case)))["pairs"]
+    (analysed,) = gears_document(analyse_pairs(case, solve_gears(case.parts)))["pairs"]
     for document in (checked, analysed):
         assert document["backlash_m"] == pytest.approx(named, rel=1e-6)
     sizes = f"j_wt {1e3 * around:.4g} mm on the working pitch circle, j_bn {1e3 * named['normal']:.4g} mm normal"
-    (section,) = sections(gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case)))))
+    (section,) = sections(gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case.parts)))))
     assert any(text.startswith(f"Backlash {sizes}") for text in section.sentences)
     lines = [line for part in check.sections(check_document(case)) for line in part.sentences]
     assert any(f"backlash {sizes}" in line for line in lines)
     bare = case_of(TOOTH, TOOTH)
-    assert gears_document(analyse_pairs(bare, solve_gears(bare)))["pairs"][0]["backlash_m"] is None
+    assert gears_document(analyse_pairs(bare, solve_gears(bare.parts)))["pairs"][0]["backlash_m"] is None
 
 
 def test_a_backlash_that_is_not_the_geometrys_is_doubted() -> None:

@@ -11,18 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearwhine.case import (
-    Case,
-    CaseError,
-    applied_torques,
-    load_case,
-    mesh_frequencies,
-    pair_torques,
-    parse_case,
-    require,
-    rotor_speeds,
-    speed_ratios,
-)
+from gearwhine.case import Case, CaseError, load_case, parse_case, require
 
 
 def gears(teeth: dict[str, int], pairs: list[tuple[str, str]], **operation: Any) -> Case:
@@ -40,50 +29,55 @@ def gears(teeth: dict[str, int], pairs: list[tuple[str, str]], **operation: Any)
 def test_an_idler_turns_back_and_passes_the_torque_on() -> None:
     """20 : 30 : 40 teeth at 600 rpm, 30 N m: speeds 600, -400, 300 rpm; 20 teeth 10 times a second mesh at 200 Hz."""
     case = gears({"a": 20, "b": 30, "c": 40}, [("a", "b"), ("b", "c")])
-    rpm = {name: speed * 60 / (2 * math.pi) for name, speed in rotor_speeds(case).items()}
+    rpm = {name: speed * 60 / (2 * math.pi) for name, speed in case.parts.speeds.items()}
     assert rpm == pytest.approx({"a": 600.0, "b": -400.0, "c": 300.0})
-    assert mesh_frequencies(case) == pytest.approx((200.0, 200.0))
+    assert case.parts.mesh_frequencies == pytest.approx((200.0, 200.0))
     # the output, turning forwards, is held back by 30 N m * 40 / 20
-    assert [(t.rotor, t.value) for t in applied_torques(case)] == [("a", 30.0), ("c", pytest.approx(-60.0))]
+    assert [(t.rotor, t.value) for t in case.parts.torques] == [("a", 30.0), ("c", pytest.approx(-60.0))]
     # the idler receives 30 N m * 30 / 20 and passes all of it on
-    assert pair_torques(case) == pytest.approx((30.0, 45.0))
+    assert case.parts.pair_torques == pytest.approx((30.0, 45.0))
 
 
 def test_two_outputs_share_the_power_equally() -> None:
     """The arrangement of NASA TM-101442: stage 1 drives 2 and 3, 36 teeth all, 2.25 kN m in at 1500 rpm (900 Hz)."""
     teeth = {"one": 36, "two": 36, "three": 36}
     case = gears(teeth, [("one", "two"), ("one", "three")], speed="1500 rpm", torque="2.25 kN*m")
-    assert mesh_frequencies(case) == pytest.approx((900.0, 900.0))
-    assert pair_torques(case) == pytest.approx((1125.0, 1125.0))
-    assert [t.value for t in applied_torques(case)] == pytest.approx([2250.0, 1125.0, 1125.0])
+    assert case.parts.mesh_frequencies == pytest.approx((900.0, 900.0))
+    assert case.parts.pair_torques == pytest.approx((1125.0, 1125.0))
+    assert [t.value for t in case.parts.torques] == pytest.approx([2250.0, 1125.0, 1125.0])
 
 
 def test_given_outputs_split_the_torque() -> None:
     outputs = [{"rotor": "two", "torque": "1000 N*m"}, {"rotor": "three", "torque": "1250 N*m"}]
     teeth = {"one": 36, "two": 36, "three": 36}
     case = gears(teeth, [("one", "two"), ("one", "three")], torque="2.25 kN*m", output=outputs)
-    assert pair_torques(case) == pytest.approx((1000.0, 1250.0))
+    assert case.parts.pair_torques == pytest.approx((1000.0, 1250.0))
 
 
 def test_outputs_within_one_per_cent_are_scaled_to_balance() -> None:
     case = gears({"a": 20, "b": 20}, [("a", "b")], output=[{"rotor": "b", "torque": "29.8 N*m"}])
-    assert [t.value for t in applied_torques(case)] == [30.0, 30.0]
+    assert [t.value for t in case.parts.torques] == [30.0, 30.0]
 
 
 def test_turning_the_other_way_turns_every_sign() -> None:
     forwards = gears({"a": 20, "b": 30}, [("a", "b")])
     backwards = gears({"a": 20, "b": 30}, [("a", "b")], speed="-600 rpm")
-    assert [t.value for t in applied_torques(backwards)] == [-t.value for t in applied_torques(forwards)]
-    assert pair_torques(backwards) == pair_torques(forwards)
-    assert mesh_frequencies(backwards) == mesh_frequencies(forwards)
+    assert [t.value for t in backwards.parts.torques] == [-t.value for t in forwards.parts.torques]
+    assert backwards.parts.pair_torques == forwards.parts.pair_torques
+    assert backwards.parts.mesh_frequencies == forwards.parts.mesh_frequencies
 
 
 def test_a_split_path_that_can_turn_carries_half_on_each_side() -> None:
     """Two equal idlers between one driver and one driven gear: by symmetry, half the torque through each."""
     pairs = [("in", "left"), ("in", "right"), ("left", "out"), ("right", "out")]
     case = gears({"in": 20, "left": 30, "right": 30, "out": 40}, pairs)
-    assert speed_ratios(case) == {"in": 1, "left": Fraction(-2, 3), "right": Fraction(-2, 3), "out": Fraction(1, 2)}
-    assert pair_torques(case) == pytest.approx((15.0, 15.0, 22.5, 22.5))
+    assert case.parts.train.ratios == {
+        "in": 1,
+        "left": Fraction(-2, 3),
+        "right": Fraction(-2, 3),
+        "out": Fraction(1, 2),
+    }
+    assert case.parts.pair_torques == pytest.approx((15.0, 15.0, 22.5, 22.5))
 
 
 @given(st.lists(st.integers(18, 200), min_size=2, max_size=6), st.floats(1.0, 1e4), st.floats(1.0, 1e3))
@@ -91,27 +85,27 @@ def test_power_in_is_power_out_along_any_chain(teeth: list[int], torque: float, 
     names = [f"g{index}" for index in range(len(teeth))]
     chain = list(itertools.pairwise(names))
     case = gears(dict(zip(names, teeth, strict=True)), chain, torque=torque, speed=speed)
-    speeds = rotor_speeds(case)
-    power = [applied.value * speeds[applied.rotor] for applied in applied_torques(case)]
+    speeds = case.parts.speeds
+    power = [applied.value * speeds[applied.rotor] for applied in case.parts.torques]
     assert power[0] == pytest.approx(torque * speed)
     assert sum(power) == pytest.approx(0.0, abs=1e-9 * torque * speed)
-    through = [t * abs(speeds[driver]) for t, (driver, _) in zip(pair_torques(case), chain, strict=True)]
+    through = [t * abs(speeds[driver]) for t, (driver, _) in zip(case.parts.pair_torques, chain, strict=True)]
     assert through == pytest.approx([torque * speed] * len(chain))
 
 
 def test_without_gears_every_rotor_has_the_speed_of_the_operation() -> None:
     case = load_case("friswell-rotor").case
-    assert rotor_speeds(case) == pytest.approx({"shaft": 4000 * 2 * math.pi / 60})
-    assert (applied_torques(case), pair_torques(case), mesh_frequencies(case)) == ((), (), ())
+    assert case.parts.speeds == pytest.approx({"shaft": 4000 * 2 * math.pi / 60})
+    assert (case.parts.torques, case.parts.pair_torques, case.parts.mesh_frequencies) == ((), (), ())
     assert case.sweep is not None
     assert [round(speed * 30 / math.pi) for speed in case.sweep.speeds] == list(range(0, 4001, 500))
 
 
 def test_stations_of_torques_are_the_ends_unless_given() -> None:
-    ends = [(t.rotor, t.at) for t in applied_torques(load_case("spur-pair").case)]
+    ends = [(t.rotor, t.at) for t in load_case("spur-pair").case.parts.torques]
     assert ends == [("input", 0.0), ("output", pytest.approx(0.2))]
     given_places = load_case("spur-pair", ["operation.at=30 mm"]).case
-    assert applied_torques(given_places)[0].at == 0.03
+    assert given_places.parts.torques[0].at == 0.03
 
 
 def test_what_a_command_needs_and_a_case_lacks_is_said() -> None:
@@ -121,5 +115,3 @@ def test_what_a_command_needs_and_a_case_lacks_is_said() -> None:
         require(rotor, "housing", "gear", command="run")
     assert "'run' needs [housing], which this case does not have" in str(caught.value)
     assert "'run' needs [[gear]], which this case does not have" in str(caught.value)
-    with pytest.raises(CaseError, match=r"needs \[operation\]"):
-        rotor_speeds(load_case("steel-box").case)

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from gearwhine.case import CaseError, load_case, pair_torques, parse_case
+from gearwhine.case import CaseError, load_case, parse_case
 
 STEEL = {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7800}}
 
@@ -59,7 +59,7 @@ def test_power_from_driven_to_driver_is_an_error() -> None:
     output = [{"rotor": "c", "torque": "30 N*m"}]
     expected = 'gear_pair[1] ("c" to "b"): expected power to flow from driver to driven; swap the two names'
     assert problems(gears([("a", "b"), ("c", "b")], output=output)) == [expected]
-    assert pair_torques(parse_case(gears([("a", "b"), ("b", "c")], output=output))) == pytest.approx((30.0, 60.0))
+    assert parse_case(gears([("a", "b"), ("b", "c")], output=output)).parts.pair_torques == pytest.approx((30.0, 60.0))
     backwards = gears([("a", "b"), ("c", "b")], output=output, speed="-600 rpm")
     assert problems(backwards) == [expected]
 
@@ -67,7 +67,7 @@ def test_power_from_driven_to_driver_is_an_error() -> None:
 def test_a_pair_without_torque_may_stand_either_way() -> None:
     parse_case(gears([("a", "b"), ("c", "b")], torque=0))
     idle = parse_case(gears([("a", "b"), ("c", "b")], output=[{"rotor": "b", "torque": "60 N*m"}]))
-    assert pair_torques(idle) == pytest.approx((30.0, 0.0), abs=1e-12)
+    assert idle.parts.pair_torques == pytest.approx((30.0, 0.0), abs=1e-12)
 
 
 def test_an_output_of_no_torque_is_an_imbalance_and_nothing_worse() -> None:
@@ -81,7 +81,7 @@ def test_outputs_that_drive_each_other_need_their_torque_as_the_input() -> None:
     (line,) = problems(gears([("a", "b"), ("b", "c")], output=output, torque=0))
     assert line.startswith("operation.torque: expected the torque that drives the outputs; where they drive each")
     idle = parse_case(gears([("c", "b"), ("a", "b")], output=output[:1]))
-    assert pair_torques(idle) == pytest.approx((30.0, 0.0), abs=1e-12)
+    assert idle.parts.pair_torques == pytest.approx((30.0, 0.0), abs=1e-12)
 
 
 def test_shafts_without_gears_balance_each_for_itself() -> None:

@@ -186,17 +186,16 @@ def with_table(file: Path) -> Case:
 
 
 def test_a_table_of_stiffness_is_the_one_that_was_read(tmp_path: Path) -> None:
-    from gearwhine.from_case.gear_pairs import build_pair
 
     file = tmp_path / "table.csv"
     file.write_text("0, 3e8\n1, 3e8\n", encoding="utf-8")
     case, late = with_table(file), with_table(file)
-    given = build_pair(case, case.gear_pair[0]).stiffness
+    given = case.parts.gear_pairs[0].stiffness
     file.write_text("0, 4e8\n1, 4e8\n", encoding="utf-8")
-    again = build_pair(case, case.gear_pair[0]).stiffness
+    again = case.parts.gear_pairs[0].stiffness
     for table in (given, again):
         assert table.stiffness.tolist() == [3e8, 3e8]  # type: ignore[union-attr]
     with pytest.raises(CaseError, match=rf"gear_pair\[0\]\.stiffness\.file: expected {CHANGED}"):
-        build_pair(late, late.gear_pair[0])
+        late.parts.gear_pairs[0]
     fresh = with_table(file)
-    assert build_pair(fresh, fresh.gear_pair[0]).stiffness.stiffness.tolist() == [4e8, 4e8]  # type: ignore[union-attr]
+    assert fresh.parts.gear_pairs[0].stiffness.stiffness.tolist() == [4e8, 4e8]  # type: ignore[union-attr]

@@ -23,6 +23,7 @@ from gearwhine.coupling import Machine, MountedBearing, Output, Shaft, ShaftForc
 from gearwhine.coupling.errors import TransientError
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair
+from gearwhine.coupling.sound import Acoustics
 from gearwhine.from_case.parametric_housing import fitted_case
 from gearwhine.housing import Support
 from gearwhine.housing.material import STEEL, Material
@@ -168,6 +169,34 @@ def test_a_machine_doubts_its_load() -> None:
     assert not [text for text in spur().warnings if "teeth bear" in text]
     (text,) = [text for text in spur(torque=7e3).warnings if "teeth bear" in text]
     assert "press their flanks with" in text
+
+
+PLAIN_BEARING: dict[str, Any] = {"name": "plain", "rotor": "input", "at": "20 mm"}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "attribute"),
+    [
+        ("operation.gravity", [0.0, -98.1, 0.0], "gravity"),
+        ("bearing.0.stiffness.xx", "-1.2e8 N/m", "stiffness.xx"),
+        ("bearing.0", PLAIN_BEARING | {"stiffness": {"xx": "1.2e8 N/m", "yy": 0.0}}, "stiffness.yy"),
+    ],
+)
+def test_a_machine_doubts_what_its_case_doubts(key: str, value: Any, attribute: str) -> None:
+    case = parse_case(changed("spur-pair", (key, value)))
+    machine = case.parts.machine
+    assert machine is not None
+    (found,) = (one for one in machine.findings if one.attribute == attribute)
+    assert found.severity == "warning"
+    assert [text for text in warnings_of(case) if attribute in text and found.expected in text]
+
+
+def test_a_medium_that_is_no_gas_is_doubted_as_in_a_case() -> None:
+    document = changed("steel-box", ("acoustics", {"density": "998 kg/m^3", "speed_of_sound": "1480 m/s"}))
+    told = warnings_of(parse_case(document))
+    for finding in Acoustics(density=998.0, speed_of_sound=1480.0).findings:
+        assert [text for text in told if f"acoustics.{finding.attribute}" in text and finding.expected in text]
+    assert not list(Acoustics().findings)
 
 
 def test_one_error_for_a_wrong_segment() -> None:

@@ -22,7 +22,7 @@ from gearwhine.figures.gears.contact import draw_contact_path
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_transmission_error
 from gearwhine.figures.machine.system import draw_transmissibility
 from gearwhine.figures.style import BLUE, GREY
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.rotors import Campbell
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import plan_of
@@ -255,7 +255,7 @@ def test_bars_with_and_without_load_have_the_curves_colours() -> None:
 
 def test_the_driver_slides_backwards_where_it_begins() -> None:
     case = load_case("spur-pair").case
-    (pair,) = solve_gears(case)
+    (pair,) = solve_gears(case.parts)
     mesh = pair.static
     pressure = mesh_pressure(pair.geometry, pair.contact, mesh)
     figure = draw_contact_path("p", pair.geometry, pair.contact, mesh, pressure)

@@ -31,7 +31,7 @@ from gearwhine.figures import draw_gear_pairs, save, save_all
 from gearwhine.figures.gears.contact import draw_contact_path, draw_contact_pattern, over_flank
 from gearwhine.figures.gears.teeth import draw_flank_charts, draw_tooth_pair, has_charts
 from gearwhine.figures.gears.transmission_error import draw_harris_map, draw_mesh_stiffness, draw_transmission_error
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.solve.gear_pairs import analyse_pairs
 
 ANGLE = math.radians(20.0)
@@ -240,7 +240,7 @@ def test_the_contact_pattern_holds_the_load() -> None:
 def test_every_pair_has_its_files(tmp_path: Path) -> None:
     """Odd names are no paths and no formulas; what one has not is not drawn."""
     case = load_case("spur-pair").case
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     idle = replace(solved, static=loaded_transmission_error(solved.contact, 0.0))
     pairs = [
         replace(pair, solved=replace(one, pair=replace(one.pair, driver=name, driven="ö ö")))

@@ -14,7 +14,6 @@ from gearwhine.case import Case, parse_case
 from gearwhine.coupling import CoupledMachine, GapLaw, Torque
 from gearwhine.coupling.machine.base_motion import BaseHarmonic
 from gearwhine.coupling.machine.loads import TorqueRipple
-from gearwhine.from_case.rotors import bearing_law, build_bearings, build_gear
 from gearwhine.solve.housing_modes import solve_housing
 
 Change = Callable[[dict[str, Any]], None]
@@ -172,7 +171,7 @@ def test_pedestals_have_their_own_matrices() -> None:
         "mass": "4 kg",
     }
     case = case_with(lambda document: entry(document, "bearing", "middle-front").update(pedestal=pedestal))
-    built = {bearing.name: bearing for bearing in build_bearings(case, "middle")}["middle-front"].pedestal
+    built = {bearing.name: bearing for bearing in case.parts.bearings_on("middle")}["middle-front"].pedestal
     assert built is not None
     assert built.stiffness.tolist() == [[3e7, 2e6], [-1e6, 4e7]]
     assert built.damping.tolist() == [[300.0, 0.0], [0.0, 500.0]]
@@ -193,11 +192,10 @@ def test_stops_and_rolling_bearings_have_the_laws_that_are_given() -> None:
             held.update(stiffness={"rolling": {**rolling, "carries": carries}}, load={"x": "60 N", "y": "-20 N"})
 
     case = case_with(change)
-    number = [bearing.name for bearing in case.bearing].index("input-front")
-    law = bearing_law(case, number)
+    (law,) = (mounted.law for mounted in case.parts.bearings if mounted.bearing.name == "input-front")
     assert isinstance(law, GapLaw)
     assert (law.force, law.depth, law.exponent, law.gap) == pytest.approx((900.0, 30e-6, 2.0, 15e-6))
-    back, front = (bearing.stiffness for bearing in build_bearings(case, "output"))
+    back, front = (bearing.stiffness for bearing in case.parts.bearings_on("output"))
     # Mirrored at the x-y plane: what ties z or tilts to x and y changes its sign, all else stays.
     mirror = np.diag([1.0, 1.0, -1.0, -1.0, -1.0])
     np.testing.assert_allclose(front, mirror @ back @ mirror, rtol=1e-6, atol=1e-6 * back.max())
@@ -212,7 +210,7 @@ def test_gears_are_built_of_their_own_numbers() -> None:
         entry(document, "gear", "b")["errors"] = {"runout": "8 um"}
 
     case = case_with(change)
-    a, b, _, d = (build_gear(case, gear) for gear in case.gear)
+    a, b, _, d = (case.parts.gears[gear.name] for gear in case.gear)
     assert (d.youngs_modulus, d.poisson_ratio, d.density, d.bore) == (110e9, 0.35, 8800.0, 0.04)
     assert (a.eccentricity, a.eccentricity_phase) == pytest.approx((9e-6, radians(70.0)))
     assert (b.eccentricity, b.bore) == pytest.approx((4e-6, 0.024))

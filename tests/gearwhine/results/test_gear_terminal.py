@@ -8,7 +8,7 @@ import pytest
 
 from gearwhine.case import load_case
 from gearwhine.coupling.analyses.gear_pairs import solve_over_torques
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.terminal import show
 from gearwhine.results.gears import gears_document, sections
 from gearwhine.solve.gear_pairs import analyse_pairs
@@ -19,7 +19,7 @@ Document = dict[str, Any]
 @cache
 def document(name: str, *settings: str) -> Document:
     case = load_case(name, settings).case
-    return gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case))))
+    return gears_document(solve_over_torques(analyse_pairs(case, solve_gears(case.parts))))
 
 
 def said(capsys: pytest.CaptureFixture[str], given: Document) -> str:

@@ -11,7 +11,7 @@ from gearwhine.coupling.analyses.gear_pairs import PairAnalysis, first_touch, so
 from gearwhine.coupling.gears import loaded_transmission_error, mesh_stiffness
 from gearwhine.coupling.gears.loaded.contact_pressure import mesh_pressure
 from gearwhine.coupling.sweep.resonances import find_resonances
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.results.system import sections
 from gearwhine.solve.gear_pairs import analyse_pairs
 
@@ -45,7 +45,7 @@ def exchanged_case() -> Case:
 @cache
 def analysed(*, braked: bool) -> PairAnalysis:
     case = braked_case() if braked else exchanged_case()
-    (pair,) = analyse_pairs(case, solve_gears(case))
+    (pair,) = analyse_pairs(case, solve_gears(case.parts))
     return pair
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from coupled_cases import about_operating_point, coupled
 
-from gearwhine.case import Case, CaseError, applied_torques, dump_case, load_case, mesh_frequencies, parse_case
+from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
 from gearwhine.coupling import CoupledMachine, Torque, TransientError, periodic_response, static_equilibrium
 from gearwhine.coupling.analyses.transient import SolvedTransient, solve_transient
 from gearwhine.coupling.description.excitation import Driving, machine_driving
@@ -23,13 +23,12 @@ from gearwhine.coupling.machine.speed_profile import free_speed
 from gearwhine.coupling.signals.spectrum import lines_at
 from gearwhine.coupling.statics.mean_mesh import mean_meshes
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.output.terminal import shown_by
 from gearwhine.results import check
 from gearwhine.results.check import check_document
 from gearwhine.results.run import transient_document
-from gearwhine.solve.machine import described_machine, plan_of, run_of
+from gearwhine.solve.machine import plan_of, run_of
 
 RPM = math.pi / 30.0
 LINE = {"speed": ["0 rpm", "3000 rpm"], "torque": ["90 N*m", "0 N*m"]}
@@ -53,7 +52,7 @@ def run(case: Case) -> SolvedTransient:
 
 
 def driving_of(case: Case, rotors: Sequence[RotorComponent]) -> Driving:
-    return machine_driving(described_machine(case, None), rotors, run_of(case))
+    return machine_driving(describe_machine(case), rotors, run_of(case))
 
 
 @pytest.mark.parametrize(
@@ -241,7 +240,7 @@ def test_the_mesh_of_a_free_run_is_that_of_its_mean_load() -> None:
     for one, other in zip(shuttling, machine.harmonic_loads, strict=True):
         np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-9)
     # At the start the load's line has 85 N m, at the end of a long run the two lines meet.
-    shares = [share.value for share in applied_torques(steady, -65.0)]
+    shares = [share.value for share in describe_machine(steady).torques_from_outside(-65.0)]
     assert [load.values[0] for load in machine.timed_loads] == pytest.approx(shares)
     assert [load.values[-1] for load in machine.timed_loads] == pytest.approx([0.0, 0.0], abs=1e-3)
 
@@ -263,7 +262,7 @@ def test_a_free_run_at_its_speed_has_the_lines_of_the_steady_motion() -> None:
     steady = parse_case(document)
     transient = {"run": {"from": "3000 rpm", "time": "0.2 s"}, "discard": 5, "tolerance": 1e-4}
     free = parse_case(document | {"operation": document["operation"] | lines, "transient": transient})
-    (mesh,) = mesh_frequencies(steady)
+    (mesh,) = steady.parts.mesh_frequencies
     machine = coupled(steady)
     response = periodic_response(machine.system)
     period = histories(machine, response.record(transient_outputs(machine), 256))
@@ -322,7 +321,7 @@ def test_a_braked_train_on_spread_axes_meets_its_back_flanks() -> None:
     case = load_case("spur-pair", spread).case
     (pair,) = describe_machine(case).loaded_pairs()
     assert pair.backlash == pytest.approx(0.4e-3 * math.sin(math.radians(20.0)), rel=0.01)
-    assert solve_gears(case)[0].backlash == pair.backlash
+    assert solve_gears(case.parts)[0].backlash == pair.backlash
 
 
 def test_a_braked_train_coasts_on_its_back_flanks() -> None:
@@ -331,7 +330,7 @@ def test_a_braked_train_coasts_on_its_back_flanks() -> None:
     (pair,) = transient_document(solved)["gear_pairs"]
     assert pair["flanks"] == "back"
     assert pair["contact_loss_fraction"] == 0.0
-    (mesh,) = solve_gears(case)
+    (mesh,) = solve_gears(case.parts)
     assert pair["mean_force_n"] == pytest.approx(100.0 / mesh.geometry.driver.base_radius, rel=1e-3)
     # One constant spring under a constant torque: the start is the motion, so nothing sets in.
     assert pair["peak_force_n"] == pytest.approx(pair["mean_force_n"], rel=1e-6)

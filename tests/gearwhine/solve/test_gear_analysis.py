@@ -29,7 +29,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phase
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.linear.sensor_level import SensorLevel
 from gearwhine.coupling.statics.mean_mesh import mean_contact
-from gearwhine.from_case.gear_pairs import solve_gears
+from gearwhine.from_case.machine import solve_gears
 from gearwhine.output.dataset import arrays_of, labelled, labels_of
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.output.terminal import show
@@ -46,7 +46,7 @@ def case_of(name: str, *settings: str) -> Case:
 @cache
 def analysed(name: str, *settings: str) -> PairAnalysis:
     case = case_of(name, *settings)
-    solved = solve_gears(case)
+    solved = solve_gears(case.parts)
     (pair,) = solve_over_torques(analyse_pairs(case, solved), aims=relief_aims(case, solved))
     return pair
 
@@ -157,7 +157,7 @@ def test_the_best_relief_is_better_than_any_neighbour() -> None:
 def test_corners_are_found_in_the_contact() -> None:
     """A contact with corners has all its studies with corners, whatever the case says."""
     case = case_of(*EVEN)
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     force = 3.0 * solved.static.force
     contact = tooth_contact(solved.geometry, solved.model, corner_contact=True)
     rounded = replace(solved, contact=contact, static=loaded_transmission_error(contact, force))
@@ -171,7 +171,7 @@ def test_corners_are_found_in_the_contact() -> None:
 
 def test_a_crowned_face() -> None:
     case = case_of(*EVEN)
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     crowned = replace(solved.geometry.driver, helix_deviation=HelixDeviation(crowning=10e-6))
     geometry = replace(solved.geometry, driver=crowned)
     faces = face_slices(geometry, count=11)
@@ -202,7 +202,7 @@ def test_a_coarser_face_is_the_one_that_would_be_cut_so() -> None:
 def test_all_recess_gears_have_no_pressure_at_their_pitch_point(capsys: pytest.CaptureFixture[str]) -> None:
     """A driven gear whose tips end below the pitch circle: contact begins when the pitch point has been passed."""
     case = case_of(*EVEN)
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     angle = math.radians(20.0)
     driver = Gear("pinion", 60, 3e-3, angle, 0.02, profile_shift=0.5, addendum=1.3)
     driven = Gear("wheel", 90, 3e-3, angle, 0.02, profile_shift=-0.5, addendum=0.4, dedendum=1.7)
@@ -273,7 +273,7 @@ def test_gears_by_base_radius_have_no_width_to_press_on() -> None:
             "operation": {"speed": "1000 rpm", "torque": "77.5 N*m"},
         }
     )
-    (pair,) = solve_over_torques(analyse_pairs(case, solve_gears(case)))
+    (pair,) = solve_over_torques(analyse_pairs(case, solve_gears(case.parts)))
     (given,) = gears_document((pair,))["pairs"]
     assert given["contact_pressure_pa"] is None
     assert [one["face_width_m"] for one in given["gears"]] == [None, None]
@@ -320,7 +320,7 @@ def test_the_command_compiles_nothing_and_draws_nothing_unasked() -> None:
 def test_damage_shows_over_the_hunting_period() -> None:
     fault = "gear.pinion.fault={kind='crack',tooth=3,depth='3 mm'}"
     case = case_of("spur-pair", fault)
-    (solved,) = solve_gears(case)
+    (solved,) = solve_gears(case.parts)
     assert solved.hunting is not None
     sound = analysed(*EVEN).solved.static
     phases, error = solved.hunting.phases, solved.hunting.transmission_error
@@ -336,7 +336,7 @@ def test_damage_shows_over_the_hunting_period() -> None:
 def test_what_the_curves_leave_out_or_no_teeth_bear_is_said() -> None:
     def names(*settings: str) -> list[str]:
         case = case_of("spur-pair", *settings)
-        found = gears_document(analyse_pairs(case, solve_gears(case))).get("warnings", [])
+        found = gears_document(analyse_pairs(case, solve_gears(case.parts))).get("warnings", [])
         return [warning["name"] for warning in found]
 
     assert names() == []
@@ -362,7 +362,7 @@ def test_the_level_at_a_sensor_is_an_aim() -> None:
     The transmissibility lets the mesh damper feel the error's velocity; the teeth's own deviations do not move it.
     """
     case = case_of("small-gearbox", "gear_pair.0.relief_aim.sensor=top", "operation.speed=1500 rpm")
-    solved = solve_gears(case)
+    solved = solve_gears(case.parts)
     housing = solve_housing(case)
     (aim,) = relief_aims(case, solved)
     assert isinstance(aim, SensorLevel)

@@ -21,8 +21,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import mesh_period_phase
 from gearwhine.coupling.linear.frequency_response import mesh_error_response
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.linear.sensor_level import SensorLevel
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.housing import HousingModes
 from gearwhine.solve.gear_pairs import analyse_pairs, relief_aims
 from gearwhine.solve.housing_modes import solve_housing
@@ -81,7 +80,7 @@ def housing() -> HousingModes:
 
 def gearbox(housing: HousingModes, relief: TipRelief | None, *more: str) -> Gearbox:
     case = helical_case(relief, *more)
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     return Gearbox(case, housing, pairs, LineModel(coupled(case, housing), point, pairs, (False,)))
 

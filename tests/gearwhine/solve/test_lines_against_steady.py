@@ -14,8 +14,7 @@ from gearwhine.coupling.gears.loaded.transmission_error import loaded_transmissi
 from gearwhine.coupling.linear.line_outputs import SensorAmplitude
 from gearwhine.coupling.linear.line_sensitivity import LineModel
 from gearwhine.coupling.time.histories import histories, transient_outputs
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.solve.housing_modes import solve_housing
 from gearwhine.solve.machine import reduce_housing
 
@@ -68,7 +67,7 @@ def test_lines_are_those_of_the_motion_where_the_mesh_hardly_varies(case: Case) 
     δ_s of the slices, tilt of the bodies included, to half a nanometre in each harmonic; k times that is the rest.
     """
     housing = solve_housing(case)
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     machine = coupled(case, housing)
     point = describe_machine(case, reduce_housing(case, housing)).operating_point()
     drive, _ = machine.system.contacts

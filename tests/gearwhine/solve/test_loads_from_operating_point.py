@@ -18,7 +18,7 @@ from gearwhine.coupling.gears import loaded_transmission_error
 from gearwhine.from_case.machine import describe_machine, rotor_bearings
 from gearwhine.output.manifest import opened_dataset
 from gearwhine.rotors.rolling_bearings import RollingBearing, rolling_equilibrium
-from gearwhine.solve.machine import described_machine, load_of_case, solve_pairs
+from gearwhine.solve.machine import load_of_case, solve_pairs
 from gearwhine.solve.rotors import solve_rotors
 from gearwhine.sweep import PointResult, SweptPoint, collected_sweep, sweep_points
 from gearwhine.sweep.points import code_digest
@@ -120,7 +120,7 @@ def test_flanks_open_as_the_operating_point_finds(case: gw.Case) -> None:
 
 def test_rotors_alone_stand_on_the_same_bearings(case: gw.Case) -> None:
     """The rotors' own analyses take the bearings' tangent at the operating point, and the life at its load."""
-    point = describe_machine(case, grounded=True).operating_point()
+    point = describe_machine(case).operating_point()
     solved = solve_rotors(case)
     for rotor in solved:
         for bearing in rotor.bearings:
@@ -141,8 +141,8 @@ def test_a_given_load_is_taken() -> None:
     """A load that the case gives stays the one that the stiffness is made for."""
     changed = document()
     changed["bearing"][0]["load"] = FORCE
-    stiffness = rotor_bearings(parse_case(changed))["input"][0][0].stiffness
-    assert np.abs(stiffness - rotor_bearings(parse_case(document()))["input"][0][0].stiffness).max() > 1e6
+    stiffness = rotor_bearings(parse_case(changed).parts)["input"][0][0].stiffness
+    assert np.abs(stiffness - rotor_bearings(parse_case(document()).parts)["input"][0][0].stiffness).max() > 1e6
 
 
 @pytest.mark.slow
@@ -239,14 +239,14 @@ def test_an_analysis_whose_machine_has_no_operating_point_says_why(monkeypatch: 
     changed = document(misalignment="0 rad")
     for bearing in changed["bearing"]:
         bearing["stiffness"] = {"matrix": np.diag([1e8, 1e8, 1e8, 1e5, 1e5]).tolist()}
-    found, told = load_of_case(parse_case(changed), described_machine(parse_case(changed), None))
+    found, told = load_of_case(parse_case(changed), describe_machine(parse_case(changed)))
     assert found is None
     assert told[0]["message"].startswith("no operating point is found")
     assert told[0]["message"].endswith(": no static equilibrium of the machine")
     with pytest.raises(EquilibriumNotFoundError):
-        load_of_case(parse_case(document()), described_machine(parse_case(document()), None))
+        load_of_case(parse_case(document()), describe_machine(parse_case(document()), None))
     idle = parse_case(document() | {"operation": {"speed": "1500 rpm", "torque": "0 N*m"}})
-    assert load_of_case(idle, described_machine(idle, None)) == (None, [])
+    assert load_of_case(idle, describe_machine(idle)) == (None, [])
 
 
 def test_a_bearing_without_any_load_is_refused(tmp_path: Path) -> None:
@@ -344,7 +344,7 @@ def test_flanks_are_aligned_where_nothing_holds_the_machine() -> None:
     given["rotor"][1]["axis"] = ["72.5 mm", "0 m"]
     given["bearing"] = [bearing | ACROSS for bearing in given["bearing"] if bearing["name"].endswith("left")]
     case = parse_case(given)
-    load, (entry,) = load_of_case(case, described_machine(case, None))
+    load, (entry,) = load_of_case(case, describe_machine(case))
     assert load is None
     assert entry["message"].endswith("; the misalignment of gear pair 'pinion' -> 'wheel' is taken as 0")
     (pair,), _ = solve_pairs(case, None)

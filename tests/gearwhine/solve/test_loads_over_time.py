@@ -5,8 +5,9 @@ import math
 import pytest
 
 import gearwhine as gw
-from gearwhine.case.speeds_and_torques import range_of_tables, table_range
-from gearwhine.solve.machine import described_machine
+from gearwhine.case.analysis_speeds import branch_speeds
+from gearwhine.coupling.analyses.shafts_alone import held_speeds
+from gearwhine.from_case.machine import describe_machine
 
 RAMP = {"time": ["0 s", "1 ms"], "torque": ["0 N*m", "6 N*m"]}
 OUTPUT = [{"rotor": "output", "torque": "20 N*m", "over_time": RAMP}]
@@ -15,17 +16,17 @@ OUTPUT = [{"rotor": "output", "torque": "20 N*m", "over_time": RAMP}]
 def test_torque_taken_off_over_time_is_unbalanced_unless_the_input_gives_it() -> None:
     """At the first driver, over the ratio of speeds: here 28 teeth drive as many."""
     alone = gw.load("spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT}).case
-    assert described_machine(alone, None).unbalanced_torque == pytest.approx(6.0)
+    assert describe_machine(alone).unbalanced_torque == pytest.approx(6.0)
     both = gw.load(
         "spur-pair", {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": RAMP}
     ).case
-    assert described_machine(both, None).unbalanced_torque == 0.0
+    assert describe_machine(both).unbalanced_torque == 0.0
     # An input that falls as the output rises leaves both.
     falling = {"time": RAMP["time"], "torque": ["0 N*m", "-6 N*m"]}
     apart = {"operation.torque": "20 N*m", "operation.output": OUTPUT, "operation.over_time": falling}
-    assert described_machine(gw.load("spur-pair", apart).case, None).unbalanced_torque == pytest.approx(12.0)
+    assert describe_machine(gw.load("spur-pair", apart).case).unbalanced_torque == pytest.approx(12.0)
     shared = gw.load("spur-pair", {"operation.over_time": RAMP}).case
-    assert described_machine(shared, None).unbalanced_torque == 0.0
+    assert describe_machine(shared).unbalanced_torque == 0.0
 
 
 def test_a_run_under_unbalanced_torques_says_so() -> None:
@@ -49,9 +50,13 @@ def test_a_steady_motion_says_what_loads_it_leaves_out() -> None:
 
 def test_a_branch_over_speed_keeps_within_the_tables_of_the_bearings() -> None:
     case = gw.load("overhung-fan").case
-    low, high = table_range(case, "fan")
+    low, high = case.parts.table_range("fan")
     assert 0.0 < low < high < math.inf
-    assert range_of_tables(case, 0.0, math.inf) == pytest.approx((low, high))
-    assert range_of_tables(case, 2.0 * low, 0.5 * high) == pytest.approx((2.0 * low, 0.5 * high))
+    held = held_speeds(describe_machine(case))
+    assert held == pytest.approx((low, high))
+    # The branch goes from half the speed to one and a half times it.
+    speed = 0.5 * (low + high)
+    assert branch_speeds(speed, None, held) == pytest.approx((max(low, 0.5 * speed), min(high, 1.5 * speed)))
+    assert branch_speeds(-0.5 * high, None, held) == pytest.approx((-max(low, 0.25 * high), -0.75 * high))
     with pytest.raises(gw.CaseError, match="tables over speed with a range in common"):
-        range_of_tables(case, 2.0 * high, 3.0 * high)
+        branch_speeds(3.0 * high, None, held)

@@ -228,7 +228,7 @@ def test_peaks_of_a_run_are_the_highest_of_its_orders() -> None:
     assert found is not None
     document = transient_document(run, None, found)
     (sensor,), (pair,) = document["sensors"], document["gear_pairs"]
-    told = {(row["signal"], row["name"]): row for row in found.highest()}
+    told = {(row.signal, row.name): row for row in found.highest()}
     for signal, key, peaks in (
         ("top", "amplitude_m_per_s2", sensor["peaks"]),
         ("pinion -> wheel", "amplitude_n", pair["force_peaks"]),
@@ -238,8 +238,8 @@ def test_peaks_of_a_run_are_the_highest_of_its_orders() -> None:
         for peak in peaks:
             row = told[signal, peak["name"]]
             assert peak["kind"] == "highest of an order along the run"
-            assert (peak[key], peak["frequency_hz"]) == (row["highest_amplitude"], row["frequency_hz"])
-            assert (peak["order"], peak["at_rpm"]) == (row["order"], row["at_rpm"])
+            assert (peak[key], peak["frequency_hz"]) == (row.highest_amplitude, row.frequency_hz)
+            assert (peak["order"], peak["at_rpm"]) == (row.order, row.at_rpm)
     assert sensor["peaks"][0]["amplitude_m_per_s2"] == pytest.approx(50.0 * LIMIT / 81.0 * 60.0 / 5500.0, rel=0.1)
     shown = words(document | {"run_signature": run_signature_document(found)})
     assert "highest lines" not in shown.lower()

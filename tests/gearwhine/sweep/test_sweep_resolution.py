@@ -66,8 +66,7 @@ def point(number: int, rpm: float, found: Resonances, *, other: float = 0.0, nat
     total = 10.0 * np.log10(10.0 ** (0.1 * heard) + 10.0 ** (0.1 * other))
     motion = ReducedMotion(np.zeros(0), resonances=found)
     result = PointResult({"sound": {"lines": [line], "total_db": total}}, motion)
-    case = SimpleNamespace(operation=SimpleNamespace(speed=rpm * np.pi / 30.0))
-    place = SimpleNamespace(case=case, place=(number,), texts=(f"{rpm:g} rpm",))
+    place = SimpleNamespace(speed=rpm * np.pi / 30.0, place=(number,), texts=(f"{rpm:g} rpm",))
     return SimpleNamespace(point=place, outcome=result)
 
 

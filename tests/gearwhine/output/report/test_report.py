@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gearwhine.case import Case, CaseError, dump_case, load_case, mesh_frequencies
+from gearwhine.case import Case, CaseError, dump_case, load_case
 from gearwhine.case.input_files import file_contents
 from gearwhine.output.report import Contents, report_page
 from gearwhine.output.report.freshness import mismatches
@@ -241,7 +241,7 @@ def test_the_first_page_tells_the_machine(tmp_path: Path) -> None:
     text = read_case(tmp_path, case).text
     driver, driven = (next(gear for gear in case.gear if gear.name == name) for name in pair_of(case))
     assert f"{driver.teeth} : {driven.teeth}" in text
-    (frequency,) = mesh_frequencies(case)
+    (frequency,) = case.parts.mesh_frequencies
     assert f"{frequency:.2f}" in text
 
 

@@ -29,8 +29,7 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.machine import describe_machine
+from gearwhine.from_case.machine import describe_machine, solve_gears
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
 from gearwhine.housing.material import element_constants
@@ -165,7 +164,7 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     _, _, found = solved
     part = component_of_housing(found.housing, participates=False, with_coarser=False)
     machine = describe_machine(case, part).at_operating_point(point)
-    pairs = solve_gears(case, silent, {one.names: one.station_gap for one in point.pairs})
+    pairs = solve_gears(case.parts, silent, {one.names: one.station_gap for one in point.pairs})
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
     model = LineModel(assembled, point, pairs, found.model.found)

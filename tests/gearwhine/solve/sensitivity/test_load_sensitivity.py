@@ -14,6 +14,7 @@ from gearwhine.case.box import FACES
 from gearwhine.coupling.load_analysis.housing_fields import housing_fields
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import OUTCOMES, pair_adjoints
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import FittedCase, MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
 from gearwhine.housing.updating.housing_change import by_changes, face_changes
@@ -22,7 +23,7 @@ from gearwhine.meshes import Mesh
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import solve_housing
-from gearwhine.solve.machine import described_machine, reduce_housing
+from gearwhine.solve.machine import reduce_housing
 from gearwhine.solve.sensitivity.housing_changes import (
     case_changes,
     housing_parameters,
@@ -70,7 +71,7 @@ def solve() -> Solve:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(housing_modes, "build_mesh", lambda *_: mesh)
             housing = solve_housing(case)
-        return housing, described_machine(case, reduce_housing(case, housing)).operating_point()
+        return housing, describe_machine(case, reduce_housing(case, housing)).operating_point()
 
     return solved
 

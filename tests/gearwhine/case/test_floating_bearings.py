@@ -9,7 +9,6 @@ import pytest
 import gearwhine as gw
 from gearwhine.case import CaseError
 from gearwhine.coupling.errors import CouplingError
-from gearwhine.from_case.rotors import build_bearings
 
 BALLS = {"type": "deep-groove", "bore": "40 mm", "outer_diameter": "80 mm", "width": "18 mm"}
 # 150 N·m on 23 teeth of 3 mm at 15°: T tan β / r on the reference circle, along z in the sense of the pinion's helix.
@@ -68,7 +67,7 @@ def test_all_analyses_have_the_same_tangent() -> None:
     (bearing,) = (one for one in study.operating_point().solved.point.bearings if one.name == "input-right")
     x, y, z = bearing.force[:3]
     typed = gw.load("helical-pair", changes(1, 3) | {"bearing.1.load": {"x": x, "y": y, "z": z}})
-    (_, own) = build_bearings(typed.case, "input")
+    (_, own) = typed.case.parts.bearings_on("input")
     # The shaft's tilt in the bearing is left out there, and is small.
     assert own.spatial_stiffness[:2, :2] == pytest.approx(bearing.stiffness[:2, :2], rel=0.02)
     assert not own.spatial_stiffness[2].any()

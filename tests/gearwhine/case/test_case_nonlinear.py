@@ -12,7 +12,6 @@ from coupled_cases import about_operating_point
 from gearwhine.case import CaseError, dump_case, parse_case
 from gearwhine.coupling import GapLaw, RollingLaw
 from gearwhine.coupling.analyses.transient import solve_transient
-from gearwhine.from_case.rotors import bearing_law, build_bearings
 from gearwhine.results.run import transient_document
 from gearwhine.solve.machine import plan_of
 
@@ -45,18 +44,18 @@ def test_what_is_read_is_written() -> None:
 
 
 def test_laws_of_bearings() -> None:
-    assert bearing_law(spur_pair(), 0) is None
-    assert bearing_law(spur_pair(**rolling("linear")), 0) is None
-    law = bearing_law(spur_pair(**rolling("nonlinear")), 0)
+    assert spur_pair().parts.bearings[0].law is None
+    assert spur_pair(**rolling("linear")).parts.bearings[0].law is None
+    law = spur_pair(**rolling("nonlinear")).parts.bearings[0].law
     assert isinstance(law, RollingLaw)
     np.testing.assert_allclose(law.state.load[:2], [300.0, 800.0])
-    assert bearing_law(spur_pair(stiffness={"stop": STOP}), 0) == GapLaw(1000.0, 1e-5, 1.5, 5e-5)
+    assert spur_pair(stiffness={"stop": STOP}).parts.bearings[0].law == GapLaw(1000.0, 1e-5, 1.5, 5e-5)
     # Linear analyses find nothing where the shaft does not press on its stop.
     idle = spur_pair(stiffness={"stop": STOP})
-    assert not build_bearings(idle, "input")[0].stiffness.any()
+    assert not idle.parts.bearings_on("input")[0].stiffness.any()
     pressed = spur_pair(stiffness={"stop": STOP}, load={"x": "1 kN"})
     np.testing.assert_allclose(
-        build_bearings(pressed, "input")[0].stiffness, np.diag([1.5 * 1000.0 / 1e-5, 1000.0 / 6e-5]), atol=1e-3
+        pressed.parts.bearings_on("input")[0].stiffness, np.diag([1.5 * 1000.0 / 1e-5, 1000.0 / 6e-5]), atol=1e-3
     )
 
 

@@ -11,8 +11,7 @@ from coupled_cases import coupled
 
 from gearwhine.case import Case, CaseError, dump_case, load_case, parse_case
 from gearwhine.coupling.gears.geometry.pitch_deviations import pitch_gaps
-from gearwhine.from_case.gear_pairs import solve_gears
-from gearwhine.from_case.rotors import build_gear
+from gearwhine.from_case.machine import solve_gears
 
 MICROMETRES = [0.0, 1.0, -2.5, *([0.5] * 25)]
 
@@ -31,7 +30,7 @@ def test_deviations_are_lengths_tooth_by_tooth() -> None:
     case = case_with([f"{value} um" for value in MICROMETRES])
     assert case.gear[0].errors.pitch == pytest.approx([1e-6 * value for value in MICROMETRES], rel=1e-12)
     assert case.gear[1].errors.pitch == ()
-    assert build_gear(case, case.gear[0]).pitch_deviations == case.gear[0].errors.pitch
+    assert case.parts.gears[case.gear[0].name].pitch_deviations == case.gear[0].errors.pitch
 
 
 def test_written_back_they_load_equal() -> None:
@@ -50,12 +49,12 @@ def test_a_length_for_each_tooth_within_reason() -> None:
 
 def test_bundled_cases_have_none() -> None:
     case = load_case("spur-pair").case
-    assert all(pair.contact.pitch_gaps.size == 0 for pair in solve_gears(case))
+    assert all(pair.contact.pitch_gaps.size == 0 for pair in solve_gears(case.parts))
 
 
 def test_they_reach_both_flanks_of_the_machine() -> None:
     case = case_with([f"{value} um" for value in MICROMETRES])
-    pairs = solve_gears(case)
+    pairs = solve_gears(case.parts)
     drive, back = coupled(case).system.contacts
     expected = -np.array(MICROMETRES) * 1e-6 * math.cos(math.radians(20.0))
     np.testing.assert_allclose(drive.contact.pitch_gaps, expected, rtol=1e-9)

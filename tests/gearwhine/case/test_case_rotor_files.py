@@ -9,7 +9,6 @@ import pytest
 
 from gearwhine.case import CaseError, dump_case, load_case, parse_case
 from gearwhine.cli import run_command
-from gearwhine.from_case.rotors import build_bearings, build_gear, build_rotor
 from gearwhine.rotors import Bearing, Disc, Rotor, Segment, ShaftMaterial, read_ross, write_ross
 
 STEEL = ShaftMaterial(211e9, 81.2e9, 7810.0)
@@ -30,7 +29,7 @@ def entry(**more: object) -> dict:
 
 def test_shaft_discs_and_bearings_are_those_of_the_file(folder: Path) -> None:
     case = parse_case(entry(discs=[{"at": "250 mm", "mass": "2 kg"}]), folder=folder)
-    rotor, bearings = build_rotor(case, case.rotor[0]), build_bearings(case, "input")
+    rotor, bearings = case.parts.rotors[0], case.parts.bearings_on("input")
     assert rotor.name == "input"
     assert rotor.segments == read_ross(folder / "fan.toml").rotor.segments
     assert rotor.discs == (*ROTOR.discs, Disc(0.25, 2.0))
@@ -41,7 +40,10 @@ def test_shaft_discs_and_bearings_are_those_of_the_file(folder: Path) -> None:
 def test_a_bearing_of_the_same_name_and_rotor_takes_the_place_of_the_files(folder: Path) -> None:
     own = {"name": "left", "rotor": "input", "at": "10 mm", "stiffness": {"xx": 5e6, "yy": 5e6}}
     case = parse_case(entry() | {"bearing": [own]}, folder=folder)
-    assert [(bearing.name, bearing.at) for bearing in build_bearings(case, "input")] == [("right", 1.0), ("left", 0.01)]
+    assert [(bearing.name, bearing.at) for bearing in case.parts.bearings_on("input")] == [
+        ("right", 1.0),
+        ("left", 0.01),
+    ]
 
 
 def test_a_resolved_case_reads_back_alike(folder: Path) -> None:
@@ -50,7 +52,7 @@ def test_a_resolved_case_reads_back_alike(folder: Path) -> None:
     assert "segments" not in written["rotor"][0]
     again = parse_case(written)
     assert again == case
-    assert build_rotor(again, again.rotor[0]).mass_model == "lumped"
+    assert again.parts.rotors[0].mass_model == "lumped"
 
 
 def test_what_a_file_holds_and_a_rotor_does_not_is_a_warning(folder: Path) -> None:
@@ -108,11 +110,11 @@ def test_parts_on_a_files_shaft_are_of_its_material_there(
     kind: str, at: str, material: ShaftMaterial, folder: Path
 ) -> None:
     case = parse_case(on_two_metals(folder, kind, at), folder=folder)
-    (disc,) = build_rotor(case, case.rotor[0]).discs
+    (disc,) = case.parts.rotors[0].discs
     # A gear's blank is a cylinder between its pitch circle of 160 mm and the bore, as the disc is.
     assert disc.mass == pytest.approx(material.density * np.pi / 4.0 * (0.16**2 - 0.05**2) * 0.04)
     if kind == "gear":
-        gear = build_gear(case, case.gear[0])
+        gear = case.parts.gears[case.gear[0].name]
         assert gear.youngs_modulus == pytest.approx(material.youngs_modulus)
         assert gear.poisson_ratio == pytest.approx(material.youngs_modulus / material.shear_modulus / 2.0 - 1.0)
 
@@ -125,7 +127,7 @@ def test_where_two_materials_of_a_file_meet_one_is_asked_for(kind: str, key: str
     assert problem.key == key
     assert "its file has not one that a solid can have at 500 mm" in problem.expected
     case = parse_case(on_two_metals(folder, kind, "500 mm", material="rail"), folder=folder)
-    (disc,) = build_rotor(case, case.rotor[0]).discs
+    (disc,) = case.parts.rotors[0].discs
     assert disc.mass == pytest.approx(7850.0 * np.pi / 4.0 * (0.16**2 - 0.05**2) * 0.04)
 
 
@@ -133,7 +135,7 @@ def test_a_rotors_own_material_is_that_of_parts_on_its_files_shaft(folder: Path)
     given = on_two_metals(folder, "gear", "250 mm")
     given["rotor"][0]["material"] = "rail"
     case = parse_case(given, folder=folder)
-    assert build_gear(case, case.gear[0]).youngs_modulus == 210e9
+    assert case.parts.gears[case.gear[0].name].youngs_modulus == 210e9
 
 
 def test_without_file_and_segments_a_rotor_is_told_of_both() -> None:

@@ -9,17 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearwhine.case import (
-    Case,
-    campbell_speeds,
-    dump_case,
-    load_case,
-    parse_case,
-    response_speeds,
-    table_range,
-    whirl_speeds,
-)
-from gearwhine.from_case.rotors import build_bearings, build_rotor
+from gearwhine.case import Case, dump_case, load_case, parse_case, rotor_speeds
 from gearwhine.rotors import Coupling, Rotor, Segment, ShaftMaterial
 
 RPM = math.pi / 30.0
@@ -37,7 +27,7 @@ def case_of(rotor: dict[str, Any] | None = None, bearing: dict[str, Any] | None 
 
 def built(**keys: Any) -> Rotor:
     case = case_of(keys)
-    return build_rotor(case, case.rotor[0])
+    return case.parts.rotors[0]
 
 
 def test_a_segment_has_its_own_values_where_it_has_them_and_the_rotors_where_not() -> None:
@@ -101,7 +91,7 @@ def test_a_coupling_passes_on_the_axial_force_that_the_shafts_on_both_sides_have
 def test_the_discs_of_the_friswell_rotor_are_those_of_the_book() -> None:
     """Discs 70 mm thick, 280 and 350 mm across, on a 50 mm bore, density 7810: the solid's formulas."""
     case = load_case("friswell-rotor").case
-    for disc, (outer, at) in zip(build_rotor(case, case.rotor[0]).discs, [(0.28, 0.5), (0.35, 1.0)], strict=True):
+    for disc, (outer, at) in zip(case.parts.rotors[0].discs, [(0.28, 0.5), (0.35, 1.0)], strict=True):
         mass = 7810.0 * math.pi / 4.0 * (outer**2 - 0.05**2) * 0.07
         assert disc.at == at
         assert disc.mass == pytest.approx(mass, rel=1e-13)
@@ -121,17 +111,17 @@ def test_a_disc_is_of_its_own_material_its_own_density_or_the_rotors_material() 
 def test_constants_and_lists_over_speed_make_one_table() -> None:
     stiffness = {"xx": ["1e7 N/m", "2e7 N/m"], "yy": "3e7 N/m", "yx": ["-1e6 N/m", 0]}
     case = case_of(bearing={"speeds": ["300 rpm", "900 rpm"], "stiffness": stiffness, "damping": {"xx": "5 N*s/mm"}})
-    (bearing,) = build_bearings(case, "shaft")
+    (bearing,) = case.parts.bearings_on("shaft")
     assert bearing.speeds is not None
     assert bearing.speeds.tolist() == pytest.approx([300.0 * RPM, 900.0 * RPM])
     assert bearing.stiffness.tolist() == [[[1e7, 0.0], [-1e6, 3e7]], [[2e7, 0.0], [0.0, 3e7]]]
     assert bearing.damping.tolist() == [[5e3, 0.0], [0.0, 0.0]]
-    assert table_range(case, "shaft") == pytest.approx((300.0 * RPM, 900.0 * RPM))
+    assert case.parts.table_range("shaft") == pytest.approx((300.0 * RPM, 900.0 * RPM))
 
 
 def test_a_pedestal_stands_under_its_bearing() -> None:
     pedestal = {"mass": "40 kg", "stiffness": {"xx": 1e8, "yy": 2e8, "xy": 1e6}, "damping": {"yy": "200 N*s/m"}}
-    (bearing,) = build_bearings(case_of(bearing={"pedestal": pedestal}), "shaft")
+    (bearing,) = case_of(bearing={"pedestal": pedestal}).parts.bearings_on("shaft")
     assert bearing.pedestal is not None
     assert bearing.pedestal.mass == 40.0
     assert bearing.pedestal.stiffness.tolist() == [[1e8, 1e6], [0.0, 2e8]]
@@ -142,7 +132,7 @@ def test_all_of_it_loads_back_equal() -> None:
     case = load_case("overhung-fan").case
     again = parse_case(tomllib.loads(dump_case(case)))
     assert again == case
-    assert build_bearings(again, "fan") == build_bearings(case, "fan")
+    assert again.parts.bearings_on("fan") == case.parts.bearings_on("fan")
 
 
 def in_rpm(speeds: tuple[float, ...]) -> list[float]:
@@ -151,51 +141,51 @@ def in_rpm(speeds: tuple[float, ...]) -> list[float]:
 
 def test_a_campbell_diagram_has_its_own_speeds_else_the_sweeps_else_those_around_operation() -> None:
     operation, sweep = {"speed": "1000 rpm"}, {"speed": ["100 rpm", "700 rpm"]}
-    assert campbell_speeds(case_of(), "shaft") == ()
-    around = in_rpm(campbell_speeds(case_of(operation=operation), "shaft"))
+    assert rotor_speeds(case_of(), "shaft").campbell == ()
+    around = in_rpm(rotor_speeds(case_of(operation=operation), "shaft").campbell)
     assert around == pytest.approx(np.linspace(0.0, 1500.0, 51).tolist(), abs=1e-9)
     swept = case_of(operation=operation, sweep=sweep)
-    assert in_rpm(campbell_speeds(swept, "shaft")) == pytest.approx([100.0, 700.0])
-    assert in_rpm(whirl_speeds(swept, "shaft")) == pytest.approx([1000.0, 100.0, 700.0])
+    assert in_rpm(rotor_speeds(swept, "shaft").campbell) == pytest.approx([100.0, 700.0])
+    assert in_rpm(rotor_speeds(swept, "shaft").whirl) == pytest.approx([1000.0, 100.0, 700.0])
     own = {"speed": {"from": "0 rpm", "to": "300 rpm", "step": "150 rpm"}}
     case = case_of(operation=operation, sweep=sweep, rotor_analysis=own)
-    assert in_rpm(campbell_speeds(case, "shaft")) == pytest.approx([0.0, 150.0, 300.0])
-    finer = in_rpm(response_speeds(case, "shaft"))
+    assert in_rpm(rotor_speeds(case, "shaft").campbell) == pytest.approx([0.0, 150.0, 300.0])
+    finer = in_rpm(rotor_speeds(case, "shaft").response)
     assert finer == pytest.approx(np.linspace(0.0, 300.0, 301).tolist(), abs=1e-9)
     chosen = own | {"unbalance_response": {"speed": ["5 rpm"]}}
     case = case_of(operation=operation, rotor_analysis=chosen)
-    assert in_rpm(response_speeds(case, "shaft")) == pytest.approx([5.0])
+    assert in_rpm(rotor_speeds(case, "shaft").response) == pytest.approx([5.0])
 
 
 def test_speeds_are_in_the_sense_of_operation() -> None:
     """A machine that turns clockwise does so at every speed that its case lists."""
     clockwise = {"speed": "-1000 rpm"}
     swept = case_of(operation=clockwise, sweep={"speed": ["100 rpm", "700 rpm"]})
-    assert in_rpm(whirl_speeds(swept, "shaft")) == pytest.approx([-1000.0, -100.0, -700.0])
-    assert in_rpm(campbell_speeds(swept, "shaft")) == pytest.approx([-700.0, -100.0])
+    assert in_rpm(rotor_speeds(swept, "shaft").whirl) == pytest.approx([-1000.0, -100.0, -700.0])
+    assert in_rpm(rotor_speeds(swept, "shaft").campbell) == pytest.approx([-700.0, -100.0])
     own = {"speed": ["0 rpm", "300 rpm"], "unbalance_response": {"speed": ["20 rpm", "5 rpm"]}}
     case = case_of(operation=clockwise, rotor_analysis=own)
-    assert in_rpm(campbell_speeds(case, "shaft")) == pytest.approx([-300.0, 0.0])
-    assert in_rpm(response_speeds(case, "shaft")) == pytest.approx([-5.0, -20.0])
+    assert in_rpm(rotor_speeds(case, "shaft").campbell) == pytest.approx([-300.0, 0.0])
+    assert in_rpm(rotor_speeds(case, "shaft").response) == pytest.approx([-5.0, -20.0])
     # Its driven shaft turns the other way.
     pair = load_case("spur-pair", ["operation.speed=-5500 rpm", "sweep.speed=['1000 rpm']"]).case
-    assert in_rpm(whirl_speeds(pair, "output")) == pytest.approx([5500.0, 1000.0])
+    assert in_rpm(rotor_speeds(pair, "output").whirl) == pytest.approx([5500.0, 1000.0])
 
 
 def test_speeds_that_nobody_named_stay_within_the_tables() -> None:
     table = {"speeds": ["300 rpm", "1200 rpm"], "stiffness": {"xx": [1e7, 2e7], "yy": 1e7}}
-    speeds = in_rpm(campbell_speeds(case_of(bearing=table, operation={"speed": "-1000 rpm"}), "shaft"))
+    speeds = in_rpm(rotor_speeds(case_of(bearing=table, operation={"speed": "-1000 rpm"}), "shaft").campbell)
     assert (speeds[0], speeds[-1], len(speeds)) == (pytest.approx(-1200.0), pytest.approx(-300.0), 51)
-    (bearing,) = build_bearings(case_of(bearing=table), "shaft")
+    (bearing,) = case_of(bearing=table).parts.bearings_on("shaft")
     for speed in speeds:
         assert bearing.at_speed(speed * RPM).speeds is None  # the table holds it
 
 
 def test_a_driven_rotor_has_the_speeds_that_its_gears_give_it() -> None:
     case = load_case("spur-pair", ["gear.wheel.teeth=56", "rotor.output.axis=['88.9 mm', '0 mm']"]).case
-    assert in_rpm(whirl_speeds(case, "output")) == pytest.approx([-2750.0])
-    assert in_rpm(campbell_speeds(case, "output"))[0] == pytest.approx(-4125.0)
-    assert in_rpm(campbell_speeds(case, "input"))[-1] == pytest.approx(8250.0)
+    assert in_rpm(rotor_speeds(case, "output").whirl) == pytest.approx([-2750.0])
+    assert in_rpm(rotor_speeds(case, "output").campbell)[0] == pytest.approx(-4125.0)
+    assert in_rpm(rotor_speeds(case, "input").campbell)[-1] == pytest.approx(8250.0)
 
 
 def test_a_stiffness_map_goes_in_equal_ratios_and_ends_where_it_says() -> None:
@@ -212,7 +202,7 @@ def test_a_gear_without_a_face_width_is_a_disc_on_one_section() -> None:
     inertia = {"mass": "2 kg", "polar_inertia": "3e-3 kg*m^2", "diametral_inertia": "2e-3 kg*m^2"}
     gear = {"name": "pinion", "rotor": "shaft", "at": "0.5 m", "teeth": 40, "base_radius": "60 mm", **inertia}
     unknown, wide = (case_of(gear=[gear | width]) for width in ({}, {"face_width": "60 mm"}))
-    rotor = build_rotor(unknown, unknown.rotor[0])
+    rotor = unknown.parts.rotors[0]
     assert not rotor.stiffness_diameters
     assert [(disc.at, disc.mass) for disc in rotor.discs] == [(0.5, 2.0)]
-    assert build_rotor(wide, wide.rotor[0]).stiffness_diameters
+    assert wide.parts.rotors[0].stiffness_diameters
