@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from gearwhine.housing import Seat as Seat
     from gearwhine.housing import Sensor as Sensor
     from gearwhine.housing import Support as Support
+    from gearwhine.housing.modal_test import ModalTest as ModalTest
     from gearwhine.housing_study import HousingStudy as HousingStudy
     from gearwhine.meshes import GeometryError as GeometryError
     from gearwhine.rotors import Bearing as Bearing
@@ -94,6 +95,7 @@ _HOMES = {
         "Sensor",
         "Support",
     ),
+    "gearwhine.housing.modal_test": ("ModalTest",),
     "gearwhine.housing_study": ("HousingStudy",),
     "gearwhine.meshes": ("GeometryError",),
     "gearwhine.rotors": ("Bearing", "Disc", "Rotor", "RotorError", "Segment", "ShaftMaterial"),
