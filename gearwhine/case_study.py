@@ -4,6 +4,7 @@ import json
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -12,7 +13,7 @@ from gearwhine.numerics.findings import Number
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.studied_machine import Settings
-from gearwhine.study import Study
+from gearwhine.study import Study, require_either
 from gearwhine.view_names import View
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from gearwhine.analyses.origin import Origin
     from gearwhine.analyses.result import Result
     from gearwhine.case import Case, LoadedCase
-    from gearwhine.coupling import Machine
+    from gearwhine.coupling import CoupledMachine, Machine
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
@@ -29,12 +30,14 @@ if TYPE_CHECKING:
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
+    from gearwhine.coupling.sound.motion_lines import MotionLines
     from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.figures.rotors.assembly import RotorAssembly
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
     from gearwhine.housing.modal_test import PlannedSurvey
+    from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.meshes import Mesh
     from gearwhine.output.export import Signals
     from gearwhine.results_folder import Format
@@ -52,6 +55,7 @@ _NEEDS = {
     "system --mesh-phase": ("rotor", "operation", "gear_pair"),
     "steady": ("rotor", "operation"),
     "simulate": ("rotor", "operation", "transient"),
+    "simulate with a plan": ("rotor", "operation"),
     "sound": ("housing",),
 }
 _AtLeastOne = Number(at_least=1, whole=True)
@@ -507,11 +511,11 @@ class CaseStudy(Study):
             return None
         if aims_at_sensor(case):
             return self.housing
-        if self._kept.solved is None:
-            if case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair):
-                return kept_housing(case, self.folder, self.progress)
-            return None
-        return self._kept.solved
+        takes_part = case.housing.sensor or any(case.parts.finds_misalignment(pair) for pair in case.gear_pair)
+        with self._kept.lock:
+            if self._kept.solved is None and takes_part and not self.fresh:
+                self._kept.solved = kept_housing(case, self.folder, self.progress)
+            return self._kept.solved
 
     def sound(self, acoustics: "Acoustics | None" = None, /, **settings: Any) -> "Result[SolvedSound]":
         """Sound power, radiation efficiency and sound pressure of the housing's modes and of the steady motion's lines.
@@ -541,6 +545,7 @@ class CaseStudy(Study):
         from gearwhine.coupling.sound.acoustics_checks import require_acoustics
         from gearwhine.solve.acoustics import acoustics_of, refused_by_key
 
+        require_either("sound", "an Acoustics", acoustics, settings)
         self.require("sound")
         given = Acoustics(**settings) if settings else acoustics
         housing = self._required_housing("sound", with_sound=given is None)
@@ -548,11 +553,12 @@ class CaseStudy(Study):
         if given is not None:
             require_acoustics(given, field.mesh, field.widest_bore, given.limit_hz(field))
         chosen = given or acoustics_of(self.case)
-        warnings, machine = list[ResultWarning](), None
+        warnings, machine = self.doubts_of_acoustics(chosen), None
         if self.has_machine:
-            warnings = self.left_out_of_sound(None)
-            machine = None if warnings else self.under_load()
-        with refused_by_key(chosen):
+            left_out = self.left_out_of_sound(None)
+            machine = None if left_out else self.under_load()
+            warnings = [*left_out, *warnings]
+        with refused_by_key(chosen) if given is None else nullcontext():
             return sound_result(housing, chosen, self.origin, machine, warnings, self.progress)
 
     def sweep(  # type: ignore[override]  # a case is swept over its keys, with files and workers
@@ -745,6 +751,23 @@ class CaseStudy(Study):
                 )
         except UnknownLineError as error:
             raise CaseError([Problem("--line", error.line, error.expected)]) from error
+
+    def doubts_of_acoustics(self, acoustics: "Acoustics") -> "list[ResultWarning]":
+        """Return warnings of unlikely numbers of acoustics that are not the case's, which has its own."""
+        return [] if acoustics == self.settings.acoustics else super().doubts_of_acoustics(acoustics)
+
+    def solved_sound(
+        self,
+        acoustics: "Acoustics",
+        field: "HousingField",
+        lines: "MotionLines | None",
+        machine: "CoupledMachine | None",
+    ) -> "SolvedSound":
+        """Solve the sound; acoustics that do not fit the housing are refused by their keys."""
+        from gearwhine.solve.acoustics import refused_by_key
+
+        with refused_by_key(acoustics):
+            return super().solved_sound(acoustics, field, lines, machine)
 
     def analysed_pairs(self, machine: "MachineUnderLoad | None") -> "tuple[PairAnalysis, ...]":
         """Analyse each gear pair as it stands in the machine under load, or alone."""

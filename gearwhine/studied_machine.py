@@ -16,7 +16,7 @@ from gearwhine.numerics.progress import Progress, silent
 if TYPE_CHECKING:
     from gearwhine.analyses.machine_results import MachineUnderLoad
     from gearwhine.analyses.origin import Origin
-    from gearwhine.coupling import Machine
+    from gearwhine.coupling import CoupledMachine, Machine
     from gearwhine.coupling.analyses.gear_pairs import PairAnalysis
     from gearwhine.coupling.analyses.motion import MachineMotion
     from gearwhine.coupling.analyses.recording import TransientPlan
@@ -26,9 +26,12 @@ if TYPE_CHECKING:
     from gearwhine.coupling.load_analysis.influences import LoadSensitivity
     from gearwhine.coupling.load_analysis.solved_load import SolvedLoad
     from gearwhine.coupling.sound import Acoustics
+    from gearwhine.coupling.sound.motion_lines import MotionLines
+    from gearwhine.coupling.sound.solution import SolvedSound
     from gearwhine.coupling.statics.operating_point import OperatingPoint
     from gearwhine.housing import HousingModes
     from gearwhine.housing.correlation.comparison import Comparison
+    from gearwhine.housing.modes.housing_field import HousingField
     from gearwhine.numerics.result_warnings import ResultWarning
     from gearwhine.rotors.analyses.solved_rotor import SolvedRotor
 
@@ -156,9 +159,9 @@ class StudiedMachine:
 
         if command == "steady" and self.machine.speed == 0.0:
             raise CouplingError("steady: expected a speed: what stands still has no motion that repeats")
-        if command == "simulate" and self.settings.transient is None:
-            example = "study.simulate(revolutions=40, discard=20), or Settings(transient=TransientPlan(...))"
-            raise CouplingError(f"simulate: expected how far to integrate, such as {example}")
+        if command in ("simulate", "sweep") and self.settings.transient is None:
+            example = "a plan, gw.TransientPlan(revolutions=40, discard=20), or Settings(transient=...)"
+            raise CouplingError(f"{command}: expected how far to integrate, such as {example}")
 
     def solved_rotors(self, **settings: Any) -> "tuple[SolvedRotor, ...]":
         """Solve each rotor, alone in its bearings on rigid seats."""
@@ -258,19 +261,57 @@ class StudiedMachine:
         speed_changes = plan is not None and plan.run is not None
         return left_out_warnings(base_moves=self.machine.base is not None, speed_changes=speed_changes)
 
+    def doubts_of_acoustics(self, acoustics: "Acoustics") -> "list[ResultWarning]":
+        """Return warnings of numbers of the acoustics that are unlikely."""
+        from gearwhine.numerics.result_warnings import warning
+
+        return [warning("acoustics", str(finding)) for finding in acoustics.findings]
+
+    def solved_sound(
+        self,
+        acoustics: "Acoustics",
+        field: "HousingField",
+        lines: "MotionLines | None",
+        machine: "CoupledMachine | None",
+    ) -> "SolvedSound":
+        """Solve the sound of a housing's modes, and of the lines of a motion."""
+        from gearwhine.coupling.sound.solution import solve_sound
+
+        return solve_sound(acoustics, field, lines, machine, self.progress)
+
     def _assumed_mesh_damping(self) -> tuple[str, ...]:
         """Return the gear pairs whose mesh damping nobody gave."""
         return ()
 
     def _diagram_speeds(self) -> tuple[float, ...]:
-        """Return the signed speeds of a diagram of the machine [rad/s], ascending in size."""
+        """Return the signed speeds of a diagram of the machine [rad/s], ascending in size.
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            For a machine at rest, one speed alone, or bearings whose tables leave no range.
+        """
+        from gearwhine.coupling import CouplingError
         from gearwhine.numerics.speed_ranges import campbell_speeds
 
-        chosen = sorted(self.settings.speeds, key=abs)
-        return tuple(chosen) or campbell_speeds(self.machine.speed, self._held_speeds())
+        if self.machine.speed == 0.0:
+            raise CouplingError("speed is 0; expected a machine that turns, for a diagram over speed")
+        chosen = tuple(sorted(self.settings.speeds, key=abs))
+        speeds = chosen or campbell_speeds(self.machine.speed, self._held_speeds())
+        if len(set(speeds)) < 2:
+            source = "in the settings" if chosen else "that the tables of all bearings hold"
+            raise CouplingError(f"a diagram over speed: expected two or more speeds {source}, got {len(set(speeds))}")
+        return speeds
 
     def _branch_speeds(self, *, down: bool) -> tuple[float, float]:
-        """Return the signed speeds from which and to which a motion is followed [rad/s]."""
+        """Return the signed speeds from which and to which a motion is followed [rad/s].
+
+        Raises
+        ------
+        gearwhine.coupling.CouplingError
+            Where the settings, or the tables of the bearings, hold no range of speeds above zero in one sense.
+        """
+        from gearwhine.coupling import CouplingError
         from gearwhine.numerics.speed_ranges import BEYOND_OPERATION, SLOWEST_OF_BRANCH
 
         low, high = self._held_speeds()
@@ -278,7 +319,11 @@ class StudiedMachine:
         if not speeds:
             sense, size = math.copysign(1.0, self.machine.speed), abs(self.machine.speed)
             speeds = [sense * max(SLOWEST_OF_BRANCH * size, low), sense * min(BEYOND_OPERATION * size, high)]
-        return (speeds[-1], speeds[0]) if down else (speeds[0], speeds[-1])
+        first, last = speeds[0], speeds[-1]
+        if not 0.0 < abs(first) < abs(last) or min(speeds) * max(speeds) <= 0.0:
+            given = "the settings" if self.settings.speeds else "the tables of the bearings"
+            raise CouplingError(f"a branch over speed: expected a range of speeds above zero, of one sense, in {given}")
+        return (last, first) if down else (first, last)
 
     def _held_speeds(self) -> tuple[float, float]:
         """Return the range of speeds of the first shaft, without sense, that the bearings' tables hold [rad/s]."""

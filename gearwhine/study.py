@@ -4,7 +4,7 @@ The command line is made from the same methods: their parameters are its options
 """
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -177,7 +177,7 @@ class Study(StudiedMachine):
         ----------
         campbell : bool
             Also compute the Campbell diagram: over the speeds of the settings ([sweep]), else up to 1.5 times the
-            operating speed. Speeds of the settings imply it.
+            operating speed. Two or more speeds of the settings imply it.
         sidebands : int
             Number of shaft-order sidebands drawn on each side of every mesh order, up to 20.
         mesh_harmonics : int
@@ -271,9 +271,12 @@ class Study(StudiedMachine):
         from gearwhine.coupling.analyses.recording import TransientPlan
         from gearwhine.coupling.statics.mean_mesh import mean_contact
 
+        require_either("simulate", "a TransientPlan", plan, stretch)
         if plan is None and not stretch:
             self.require("simulate")
             plan = self.settings.transient
+        else:
+            self.require("simulate with a plan")
         plan = TransientPlan(**stretch) if plan is None else plan
         machine = self.under_load(plan)
         modes = coupled_modes(machine.coupled.system, mean_contact(machine.coupled.system))
@@ -300,10 +303,9 @@ class Study(StudiedMachine):
             the result.
         """
         from gearwhine.analyses.sweep_result import solve_speed_sweep
-        from gearwhine.numerics.result_warnings import warning
 
         if plan is None:
-            self.require("simulate")
+            self.require("sweep")
             plan = self.settings.transient
         assert plan is not None
         message = "the sound is left out of a sweep of a machine of Python; study.sound() finds it at one speed"
@@ -335,14 +337,14 @@ class Study(StudiedMachine):
         from gearwhine.analyses.machine_results import radiating_housing, sound_result
         from gearwhine.coupling.sound import Acoustics
 
+        require_either("sound", "an Acoustics", acoustics, settings)
         if acoustics is None:
             given = self.settings.acoustics
             acoustics = Acoustics(**settings) if given is None or settings else given
         housing = radiating_housing(self.machine, acoustics)
-        left_out = self.left_out_of_sound(None)
-        unlikely = [warning("acoustics", str(finding)) for finding in acoustics.findings]
-        machine = None if left_out else self.under_load()
-        return sound_result(housing, acoustics, self.origin, machine, [*left_out, *unlikely], self.progress)
+        warnings = [*self.left_out_of_sound(None), *self.doubts_of_acoustics(acoustics)]
+        machine = None if self.left_out_of_sound(None) else self.under_load()
+        return sound_result(housing, acoustics, self.origin, machine, warnings, self.progress)
 
     def run(self) -> "Result[RunSolution]":
         """Find everything: rotors, gears, operating point, modes and responses, transient, and sound where it is asked.
@@ -373,6 +375,21 @@ class Study(StudiedMachine):
         with ExitStack() as until_written:
             run = WholeRun(self, self.settings.transient, Path(folder), until_written, pictures=pictures)
             return run.result().stored(Path(folder), pictures=pictures, progress=self.progress)
+
+
+def require_either(verb: str, kind: str, given: object, named: Mapping[str, object]) -> None:
+    """Refuse an object beside its attributes by name.
+
+    Raises
+    ------
+    gearwhine.coupling.CouplingError
+    """
+    from gearwhine.coupling import CouplingError
+
+    if given is not None and named:
+        raise CouplingError(
+            f"{verb}: expected {kind} or its attributes by name, got both: {', '.join(named)} beside it"
+        )
 
 
 def _require_numbers(verb: str, **given: tuple[object, Number]) -> None:

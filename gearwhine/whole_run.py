@@ -175,13 +175,12 @@ class WholeRun:
     def _sound(self) -> Document | None:
         """Return the sound of the housing's modes and of the lines of the motion."""
         settings, housing = self.study.settings, self.solution.housing
-        if settings.acoustics is not None and not self._has_sound:
-            return {"sound_not_solved": SOUND_LEFT_OUT}
         if settings.acoustics is None or housing is None:
             return None
+        if not self._has_sound:
+            return {"sound_not_solved": SOUND_LEFT_OUT}
         from gearwhine.coupling.sound.motion_lines import AUDIBLE, lines_of_run
-        from gearwhine.coupling.sound.solution import solve_sound, with_histories
-        from gearwhine.solve.acoustics import refused_by_key
+        from gearwhine.coupling.sound.solution import with_histories
         from gearwhine.solve.kept_radiation import kept_radiation
 
         acoustics, field, progress = settings.acoustics, housing.displacement_field, self.study.progress
@@ -189,8 +188,7 @@ class WholeRun:
         if transient is not None and not (left_out := self.study.left_out_of_sound(self.plan)):
             lines = lines_of_run(transient, acoustics.estimated_below_hz(field))
         machine = None if self.machine is None else self.machine.coupled
-        with refused_by_key(acoustics):
-            sound = solve_sound(acoustics, field, lines, machine, progress)
+        sound = self.study.solved_sound(acoustics, field, lines, machine)
         # A moving base drives the housing beside its bearings.
         if transient is not None and sound.microphones and self.study.machine.base is None:
             between = AUDIBLE, sound.limit_hz
@@ -198,7 +196,7 @@ class WholeRun:
             sound = with_histories(sound, transient, transfer)
         self.solution = replace(self.solution, sound=sound, housing=housing)
         document = {"sound": sound_document(sound)}
-        add_warnings(document, [*left_out, *sound.warnings()])
+        add_warnings(document, [*left_out, *sound.warnings(), *self.study.doubts_of_acoustics(acoustics)])
         return document
 
 

@@ -1,7 +1,7 @@
-"""Operating point of a machine: static equilibrium under its mean load, lives of its bearings, and its plausibility.
+"""Operating point of a machine: static equilibrium under its mean load, and lives of its bearings.
 
-The equilibrium is that of :meth:`gearwhine.coupling.Machine.operating_point`. This module adds the lives of its
-bearings, and warnings: :mod:`gearwhine.coupling.load_analysis.load_warnings`.
+The equilibrium is that of :meth:`gearwhine.coupling.Machine.operating_point`, its plausibility that of
+:mod:`gearwhine.coupling.load_analysis.load_warnings`.
 """
 
 import math

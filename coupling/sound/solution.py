@@ -156,7 +156,7 @@ class ModeSound:
 
 @dataclass(frozen=True)
 class SolvedSound:
-    """Sound of a case.
+    """Sound of a housing: of its modes, and of the lines of a motion.
 
     Attributes
     ----------

@@ -165,7 +165,9 @@ def radiated_level(
 
     Interpolated where the radiation is known over frequency, else by their equivalent power.
     """
-    if table is not None and table.holds(hertz) and table.power(hertz, rates)[2] <= _LARGEST_INTERPOLATION_ERROR:
-        return float(power_level(table.power(hertz, rates)[0]))
+    if table is not None and table.holds(hertz):
+        power, _, error = table.power(hertz, rates)
+        if error <= _LARGEST_INTERPOLATION_ERROR:
+            return float(power_level(power))
     sphere = pulsating_efficiency(np.array([hertz]), radiation.area, radiation.medium.speed_of_sound)
     return float(power_level(radiation.equivalent_power(rates[:, None])[0] * sphere[0]))

@@ -1,6 +1,7 @@
-"""Analyses of a case: one function for each, from the case to its :class:`Result`.
+"""Results of analyses: what each says of its solution, draws and writes.
 
-A command, a method of :class:`gearwhine.Study` and an analysis have one name, but for these: the command ``load`` is
-`operating_point` here, as `gearwhine.load` reads a case; ``report`` and ``export`` are `write_report` and
-`export_results`. The analyses of housings are imported without rotors and gears.
+- :mod:`~gearwhine.analyses.result`: the :class:`Result`; :mod:`~gearwhine.analyses.origin`: what it is of.
+- :mod:`~gearwhine.analyses.machine_results`: rotors, gear pairs, and the machine under load.
+- :mod:`~gearwhine.analyses.housing`: mesh, modes, comparison, survey, update and pictures; imported without rotors.
+- :mod:`~gearwhine.analyses.run_solution`: a whole run; :mod:`~gearwhine.analyses.sweep_result`: a sweep.
 """

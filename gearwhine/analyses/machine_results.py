@@ -257,9 +257,8 @@ def modes_of_run(machine: MachineUnderLoad, progress: Progress = silent) -> tupl
 def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: CoupledModes) -> Result[RunSolution]:
     """Return the result of a motion over time; ``modes`` are those of the machine, whose instability is told."""
     document = joined({"title": machine.origin.title}, motion_document(machine, motion))
-    add_warnings(document, [*machine.warnings, *unstable_modes_warnings(coupled_stability(modes))])
-    if machine.load is not None:
-        document["load"] = load_part(machine.load)
+    add_warnings(document, unstable_modes_warnings(coupled_stability(modes)))
+    machine.add_parts_to(document)
     solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion)
     return solved.result("simulate", machine.origin, document)
 

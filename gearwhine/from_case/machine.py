@@ -1,6 +1,5 @@
 """Machine of a case in its housing or on rigid seats, and its bearings and gear pairs where there is no machine."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from gearwhine.case import Case, shaft_of
@@ -10,7 +9,7 @@ from gearwhine.coupling import Machine
 from gearwhine.coupling.analyses.gear_pairs import TakenMisalignment
 from gearwhine.coupling.analyses.shafts_alone import BearingsUnderLoad, bearings_under_load
 from gearwhine.coupling.gears.geometry.pair import pair_label
-from gearwhine.coupling.gears.loaded.gear_pair import GearPair, LoadedGearPair, load_gear_pair
+from gearwhine.coupling.gears.loaded.gear_pair import LoadedGearPair, load_gear_pair
 from gearwhine.coupling.machine.components import HousingComponent
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.housing import HousingModes
@@ -25,8 +24,7 @@ def require_machine(case: Case) -> None:
     CaseError, gearwhine.rotors.RotorError, gearwhine.coupling.CouplingError, gearwhine.coupling.gears.GearError
         As :func:`describe_machine`; thrust that nothing carries is among the reasons.
     """
-    if case.gear_pair:
-        _ = case.parts.machine
+    _ = case.parts.machine
 
 
 def describe_machine(case: Case, housing: HousingModes | HousingComponent | None = None) -> Machine:
@@ -68,13 +66,8 @@ def rotor_bearings(parts: Parts) -> dict[str, BearingsUnderLoad]:
     return {name: (under_load[name][0], states | under_load[name][1]) for name, (_, states) in built.items()}
 
 
-def solve_gears(
-    parts: Parts, progress: Progress = silent, gaps: Mapping[tuple[str, str], tuple[float, ...]] | None = None
-) -> tuple[LoadedGearPair, ...]:
-    """Solve every gear pair of a case.
-
-    ``gaps`` are those of the flanks over the face by driver and driven gear, where the misalignment is to be found.
-    Without one, flanks whose misalignment the case leaves out are aligned.
+def solve_gears(parts: Parts, progress: Progress = silent) -> tuple[LoadedGearPair, ...]:
+    """Solve every gear pair of a case, flanks whose misalignment the case leaves out as aligned ones.
 
     Raises
     ------
@@ -87,7 +80,7 @@ def solve_gears(
     for entry, pair, geometry, torque in rows:
         progress(f"gear pair {entry.driver} -> {entry.driven}")
         loaded = load_gear_pair(
-            _aligned_pair(pair, gaps or {}),
+            pair,
             geometry,
             torque=torque,
             inertias=parts.rotating_inertias(entry),
@@ -95,13 +88,6 @@ def solve_gears(
         )
         solved.append(loaded)
     return tuple(solved)
-
-
-def _aligned_pair(pair: GearPair, gaps: Mapping[tuple[str, str], tuple[float, ...]]) -> GearPair:
-    """Give a pair whose misalignment is to be found the gap of its flanks over the face, if there is one."""
-    if pair.misalignment is not None or (pair.driver, pair.driven) not in gaps:
-        return pair
-    return replace(pair, misalignment=0.0, face_gap=gaps[pair.driver, pair.driven])
 
 
 def aligned_by_default(parts: Parts) -> tuple[str, ...]:

@@ -76,6 +76,8 @@ def refused_by_key(acoustics: AcousticsSettings) -> Iterator[None]:
     try:
         yield
     except AcousticsError as error:
+        if not error.findings:
+            raise
         raise CaseError([_problem(acoustics, finding) for finding in error.findings]) from error
 
 

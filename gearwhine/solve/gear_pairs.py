@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from gearwhine.case import Case, CaseError, Problem, require
 from gearwhine.case.errors import NOTHING
@@ -49,7 +48,6 @@ def relief_aims(
     *,
     point: OperatingPoint | None = None,
     housing: HousingModes | None = None,
-    folder: Path | None = None,
 ) -> tuple[ReliefAim, ...]:
     """Objective of the tip-relief search for each pair.
 
@@ -71,7 +69,7 @@ def relief_aims(
     if not aims_at_sensor(case) and (housing is None or not _may_aim_at_sensors(case)):
         return tuple(_without_sensor(aim) for aim in aims)
     require(case, "rotor", "operation", "housing", command="gears with the aim at a sensor")
-    housing = housing or solve_housing(case, progress, folder=folder)
+    housing = housing or solve_housing(case, progress)
     described = describe_machine(case, housing)
     model = sensor_model(described, point, pairs, progress)
     rows = zip(range(len(aims)), pairs, aims, strict=True)

@@ -1,4 +1,4 @@
-"""Machine of a case with its solved housing: reduced housing, gear pairs at the operating point, coupled system."""
+"""Machine of a case: reduced housing, operating point, gear pairs there, and plan of the motion over time."""
 
 from dataclasses import replace
 

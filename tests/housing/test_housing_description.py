@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from gearwhine.housing import Housing, HousingError, Joint, LumpedMass, Material
 from gearwhine.housing.model.bushings import Bushing
 from gearwhine.housing.model.cover_bolts import cover_joints
 from gearwhine.housing.model.seats import bearing_port
-from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box
+from gearwhine.meshes import BoxGeometry, ElementBlock, Mesh, mesh_box, write_mesh
 from gearwhine.meshes.box import Bore, Cover, CoverBolts, WallThickness
 
 STEEL = Material(207e9, 0.3, 7850.0)
@@ -26,6 +27,16 @@ BOX = BoxGeometry(
 def box() -> Housing:
     sensors = [Sensor("top", (0.0, 0.15, 0.0))]
     return Housing.from_box(BOX, 0.06, STEEL, fixtures=[FOOT], sensors=sensors, damping_ratio=0.02)
+
+
+def test_a_housing_of_a_mesh_file_is_that_of_its_mesh_in_its_unit(box: Housing, tmp_path: Path) -> None:
+    write_mesh(box.mesh, tmp_path / "box.msh")
+    support = replace(FOOT, surface="bottom")
+    read = Housing.from_mesh_file(tmp_path / "box.msh", STEEL, seats=box.seats, fixtures=[support], damping_ratio=0.02)
+    expected = box.modes(count=2).frequencies_hz
+    np.testing.assert_allclose(read.modes(count=2).frequencies_hz, expected, rtol=1e-9)
+    small = Housing.from_mesh_file(tmp_path / "box.msh", STEEL, unit=1e-3, fixtures=[support])
+    np.testing.assert_allclose(small.modes(count=1).frequencies_hz, 1e3 * expected[:1], rtol=1e-6)
 
 
 def test_a_clamped_housing_cannot_come_out_free(box: Housing) -> None:

@@ -331,6 +331,9 @@ def test_a_changed_study_solves_its_housing_again_only_where_it_has_to(study: gw
     assert kept.housing is study.housing
     for change in ({"housing.box.wall": "9 mm"}, {"bearing.0.at": "12 mm"}, {"housing.damping_ratio": 0.05}):
         assert study.changed(change)._kept.solved is None
+    # Pictures stand upright by the gravity, which changes no mode.
+    assert study.changed({"operation.gravity": [0.0, -9.81, 0.0]})._kept is study._kept
+    assert study.changed({"operation.gravity": [-9.81, 0.0, 0.0]})._kept is not study._kept
     built = gw.build(
         material={"steel": {"youngs_modulus": 207e9, "poisson_ratio": 0.3, "density": 7850.0}}, rotor=[ROD]
     )

@@ -13,6 +13,7 @@ from case_housings import described_housing
 import gearwhine as gw
 from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
 from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
+from gearwhine.coupling.sound import Acoustics
 from gearwhine.solve.machine import plan_of
 
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
@@ -203,6 +204,33 @@ def test_speeds_of_the_settings_are_those_of_diagrams_and_branches(machine: gw.S
     assert machine.system(campbell=True).solved.campbell is not None
     with pytest.raises(CouplingError, match=r"settings: speeds is .*; expected numbers, each a finite number rad/s"):
         gw.Settings(speeds=[float("nan")])
+
+
+def test_what_has_no_range_of_speeds_is_refused(machine: gw.Study) -> None:
+    given, speed = machine.machine, machine.machine.speed
+    at_rest = gw.Study(replace(given, speed=0.0))
+    with pytest.raises(CouplingError, match="expected a machine that turns, for a diagram over speed"):
+        at_rest.system(campbell=True)
+    with pytest.raises(CouplingError, match="steady: expected a speed"):
+        at_rest.steady()
+    one = gw.Study(given, gw.Settings(speeds=[speed]))
+    with pytest.raises(CouplingError, match="expected two or more speeds in the settings, got 1"):
+        one.system(campbell=True)
+    for speeds in ([speed], [-speed, 2.0 * speed], [0.0, speed]):
+        with pytest.raises(CouplingError, match="a range of speeds above zero, of one sense, in the settings"):
+            gw.Study(given, gw.Settings(speeds=speeds)).steady(curve=True)
+
+
+def test_an_object_beside_its_attributes_is_refused(study: gw.CaseStudy, machine: gw.Study) -> None:
+    """One of the two would be dropped without a word."""
+    plan = gw.TransientPlan(revolutions=4.0)
+    for one in (study, machine):
+        with pytest.raises(
+            CouplingError, match="simulate: expected a TransientPlan or its attributes by name, got both"
+        ):
+            one.simulate(plan, discard=2.0)
+        with pytest.raises(CouplingError, match="sound: expected an Acoustics or its attributes by name, got both"):
+            one.sound(Acoustics(method="erp"), floor=-0.1)
 
 
 def test_rotors_over_the_speeds_of_a_sweep_are_those_of_the_case() -> None:
