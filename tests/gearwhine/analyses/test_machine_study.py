@@ -225,11 +225,9 @@ def test_an_object_beside_its_attributes_is_refused(study: gw.CaseStudy, machine
     """One of the two would be dropped without a word."""
     plan = gw.TransientPlan(revolutions=4.0)
     for one in (study, machine):
-        with pytest.raises(
-            CouplingError, match="simulate: expected a TransientPlan or its attributes by name, got both"
-        ):
+        with pytest.raises(CouplingError, match="simulate: expected a TransientPlan or its attributes by name, got"):
             one.simulate(plan, discard=2.0)
-        with pytest.raises(CouplingError, match="sound: expected an Acoustics or its attributes by name, got both"):
+        with pytest.raises(CouplingError, match="sound: expected an Acoustics or its attributes by name, got"):
             one.sound(Acoustics(method="erp"), floor=-0.1)
 
 
