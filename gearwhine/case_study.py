@@ -207,7 +207,9 @@ class CaseStudy(Study):
         if self.case.housing is not None and study.case.housing is not None:
             from gearwhine.solve.housing_modes import given_housing, housing_key
 
-            if housing_key(given_housing(self.case)) == housing_key(given_housing(study.case)):
+            given, changed = given_housing(self.case), given_housing(study.case)
+            # The pictures of a housing stand upright by what is up, which no machine takes.
+            if housing_key(given) == housing_key(changed) and given.up == changed.up:
                 study._kept = self._kept
         return study
 

@@ -124,11 +124,8 @@ def given_housing(case: Case, command: str = "modes") -> GivenHousing:
 
 
 def housing_key(given: GivenHousing) -> str:
-    """Return the content key of all that is taken of a solved housing: modes, damping, seats, sensors, and up."""
-    table = given.table.model_dump(mode="json")
-    return content_key(
-        {"modes": content_key(given.cache_inputs()), "housing": table, "up": [part + 0.0 for part in given.up]}
-    )
+    """Return the content key of all that a machine takes of its solved housing: modes, damping, seats and sensors."""
+    return content_key({"modes": content_key(given.cache_inputs()), "housing": given.table.model_dump(mode="json")})
 
 
 def read_mode_cache(folder: Path, inputs: Mapping[str, Any]) -> tuple[ModeRecord | None, str | None]:
