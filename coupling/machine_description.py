@@ -968,7 +968,7 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
     }
     yield from kind_findings(part, machine, **kinds)
     rules: dict[str, Rule] = {
-        "housing": Instance((HousingModes, HousingComponent), "modes of a housing, or None", optional=True),
+        "housing": Instance((HousingModes, HousingComponent), "result of Housing.modes(), or None", optional=True),
         "torque_over_time": Instance(TorqueOverTime, "a TorqueOverTime, or None", optional=True),
         "motor": Instance(TorqueLine, "a TorqueLine, or None", optional=True),
         "load": Instance(TorqueLine, "a TorqueLine, or None", optional=True),

@@ -154,6 +154,12 @@ class Housing:
     up: tuple[float, float, float] = _UPWARDS
     box: BoxGeometry | None = None
 
+    def __repr__(self) -> str:
+        """Return the mesh and what is on it in a line."""
+        parts = ("seats", self.seats), ("sensors", self.sensors), ("fixtures", self.fixtures)
+        listed = "; ".join(f"{kind} {', '.join(one.name for one in entries)}" for kind, entries in parts if entries)
+        return f"<Housing: {len(self.mesh.points)} nodes; {listed or 'nothing on it'}>"
+
     def __post_init__(self) -> None:
         """Keep own copies; check unique names, volumes of the materials, and the damping ratios."""
         keep_tuples(self, "fixtures", "seats", "sensors", "damping_ratio", "outer_faces", "up")
@@ -581,6 +587,13 @@ class HousingModes:
     source: Path | None = None
     source_holds: bool = False
     file_warnings: Sequence[ResultWarning] = ()
+
+    def __repr__(self) -> str:
+        """Return the number of modes, their range, and whether they are complete, in a line."""
+        hertz = self.frequencies_hz
+        span = f", {hertz[0]:.4g} to {hertz[-1]:.4g} Hz" if len(hertz) else ""
+        complete = "complete" if self.modes.certificate.complete else "not complete"
+        return f"<HousingModes: {len(hertz)} modes{span}, {complete} below {self.trusted_limit_hz:.4g} Hz>"
 
     def __post_init__(self) -> None:
         """Check the number of damping ratios."""

@@ -104,6 +104,11 @@ class Mesh:
     surfaces: Mapping[str, Facets] = field(default_factory=dict)
     volumes: Mapping[str, IntArray] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """Return the size and the named surfaces in a line."""
+        elements = sum(len(block.nodes) for block in self.blocks)
+        return f"<Mesh: {len(self.points)} nodes, {elements} elements; surfaces {', '.join(self.surfaces) or 'none'}>"
+
     def __post_init__(self) -> None:
         """Check the points, the numbers of nodes and elements, and the volumes of the elements."""
         if self.points.ndim != 2 or self.points.shape[1] != 3:

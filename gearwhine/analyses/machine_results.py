@@ -41,6 +41,7 @@ from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import ResultWarning, warning
 from gearwhine.output.quantity import add_warnings, joined
 from gearwhine.results.gears import GEARS, gears_document
+from gearwhine.results.housing import origin_document
 from gearwhine.results.operating_point import LOAD, LOAD_OPTIONS, LOAD_SAME, load_document, load_part
 from gearwhine.results.rotors import ROTORS, rotors_document
 from gearwhine.results.run import run_signature_document, transient_document
@@ -259,6 +260,7 @@ def motion_result(machine: MachineUnderLoad, motion: MachineMotion, modes: Coupl
     document = joined({"title": machine.origin.title}, motion_document(machine, motion))
     add_warnings(document, unstable_modes_warnings(coupled_stability(modes)))
     machine.add_parts_to(document)
+    document = joined(document, origin_document(machine.origin.housing))
     solved = RunSolution(housing=machine.origin.housing, load=machine.load).with_motion(motion)
     return solved.result("simulate", machine.origin, document)
 

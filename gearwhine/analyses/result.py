@@ -18,7 +18,7 @@ from gearwhine.housing.storage.netcdf import Variables, write_netcdf
 from gearwhine.numerics.progress import Progress, silent
 from gearwhine.numerics.result_warnings import warning
 from gearwhine.output import COMMANDS, finite, json_text, staging
-from gearwhine.output.files import SUMMARY, finish_moves
+from gearwhine.output.files import finish_moves
 from gearwhine.output.manifest import require_as_written
 from gearwhine.output.quantity import add_warnings
 from gearwhine.output.store import Kept, Option, earlier_result, kept_options, store_results
@@ -243,19 +243,17 @@ class Result(Generic[Solved]):
 
         def write_with_modes(place: Path) -> None:
             write(place)
-            if self._housing is not None:
+            if self._housing is not None and self.case is not None:
                 from gearwhine.solve.housing_modes import write_mode_cache
 
                 write_mode_cache(place, self._housing)
 
-        if self.case is not None and self.command in COMMANDS:
+        if self.command in COMMANDS:
             cached = self._housing is not None and self._housing.source is not None
             store_results(self.command, document, self.case, Path(folder), write_with_modes, modes_stored=cached)
         else:
             with staging(Path(folder)) as place:
                 write(place)
-                if self.case is None:
-                    (place / SUMMARY).write_text(f"{json_text(finite(document))}\n", encoding="utf-8")
                 files = sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_file())
             document.update(folder=str(folder), files=files)
         return replace(self, document=document)

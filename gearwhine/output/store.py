@@ -143,7 +143,7 @@ def kept_sentence(document: Mapping[str, Any], options: Sequence[Option], alike:
 def store_results(
     command: str,
     document: dict[str, Any],
-    case: Case,
+    case: Case | None,
     folder: Path,
     write: Callable[[Path], None],
     *,
@@ -158,8 +158,8 @@ def store_results(
     document : dict
         Document that is stored as the summary; it gains the command, the time, the input files as they were read, and
         the files written.
-    case : Case
-        Case, which is stored as it is resolved.
+    case : Case or None
+        Case, which is stored as it is resolved; None for objects of Python.
     folder : path
         Output folder.
     write : callable
@@ -178,15 +178,15 @@ def store_results(
         if modes_stored:
             names.add(MODE_CACHE_FILE)
         files = [*sorted(names), (command_folder / SUMMARY).as_posix()]
-        document.update(
-            command=command, made_at=_now(), input_files=case.input_files.contents, folder=str(folder), files=files
-        )
+        read = {} if case is None else {"input_files": case.input_files.contents}
+        document.update(command=command, made_at=_now(), **read, folder=str(folder), files=files)
         if command == _FOREMOST and (moved := _give_way(place, folder)):
             document["moved"] = {"command": moved, "to": (folder / moved).as_posix()}
         (place / command_folder / SUMMARY).write_text(json_text(finite(document)) + "\n", encoding="utf-8")
 
     with staging(folder, settle) as place:
-        (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
+        if case is not None:
+            (place / "case.toml").write_text(dump_case(case), encoding="utf-8")
         write(place)
 
 

@@ -14,6 +14,7 @@ import gearwhine as gw
 from gearwhine.coupling import CouplingError, SpeedRun, TorqueOverTime
 from gearwhine.coupling.gears.loaded.optimal_relief import PeakToPeak
 from gearwhine.coupling.sound import Acoustics
+from gearwhine.results_folder import write_report
 from gearwhine.solve.machine import plan_of
 
 SHORT = {"transient.revolutions": 6, "transient.discard": 3}
@@ -124,6 +125,24 @@ def test_writing_a_result_leaves_it_as_it_is(machine: gw.Study, tmp_path: Path) 
     stored = result.stored(tmp_path / "two", pictures=False)
     assert stored.document["files"] == files
     assert stored.document["folder"] == str(tmp_path / "two")
+
+
+def test_analyses_of_a_machine_keep_their_own_results_in_a_folder(machine: gw.Study, tmp_path: Path) -> None:
+    """In either order; the report shows both."""
+    rotors, point = machine.rotors(mode_count=4), machine.operating_point()
+    for name, pair in (("one", (rotors, point)), ("two", (point, rotors))):
+        first, second = pair
+        first.write(tmp_path / name, pictures=False)
+        before = (tmp_path / name / "results.nc").read_bytes()
+        files = second.write(tmp_path / name, pictures=False)
+        assert f"{second.command}/results.nc" in files
+        assert (tmp_path / name / "results.nc").read_bytes() == before
+        assert json.loads((tmp_path / name / "summary.json").read_text())["command"] == first.command
+        page = write_report(tmp_path / name)
+        assert page["files"] == ["report.html"]
+        text = (tmp_path / name / "report.html").read_text(encoding="utf-8")
+        assert ">gearwhine rotors</h2>" in text
+        assert ">gearwhine load</h2>" in text
 
 
 @pytest.mark.slow
