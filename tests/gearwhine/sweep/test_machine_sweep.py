@@ -70,5 +70,5 @@ def test_a_speed_without_a_motion_has_its_failure_and_the_others_go_on(monkeypat
     for speeds in ([200.0, 0.0], [float("nan")], []):
         with pytest.raises(CouplingError, match="expected finite speeds other than 0"):
             machine.sweep(speeds, plan)
-    with pytest.raises(CouplingError, match="simulate: expected how far to integrate"):
+    with pytest.raises(CouplingError, match="sweep: expected how far to integrate"):
         machine.sweep([200.0])
