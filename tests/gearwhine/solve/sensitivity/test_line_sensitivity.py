@@ -29,14 +29,13 @@ from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.operating_point import OperatingPoint
 from gearwhine.coupling.statics.sensitivity import adjoint
 from gearwhine.coupling.statics.static_model import RollingElementLaw, StaticBearing, static_bearing
-from gearwhine.from_case.machine import describe_machine, solve_gears
+from gearwhine.from_case.machine import describe_machine
 from gearwhine.from_case.parametric_housing import MeshedParameters, fitted_case, geometry_of
 from gearwhine.housing import HousingModes
 from gearwhine.housing.material import element_constants
 from gearwhine.housing.updating.housing_change import by_changes, slopes_of
 from gearwhine.housing.updating.static_sensitivity import harmonic_surface_density
 from gearwhine.meshes import Mesh
-from gearwhine.numerics.progress import silent
 from gearwhine.results.operating_point import sections
 from gearwhine.solve import housing_modes
 from gearwhine.solve.housing_modes import solve_housing
@@ -164,7 +163,11 @@ def at_point(case: Case, solved: Solved, point: OperatingPoint) -> FloatArray:
     _, _, found = solved
     part = component_of_housing(found.housing, participates=False, with_coarser=False)
     machine = describe_machine(case, part).at_operating_point(point)
-    pairs = solve_gears(case.parts, silent, {one.names: one.station_gap for one in point.pairs})
+    gaps = {one.names: one.station_gap for one in point.pairs}
+    flanks = [
+        replace(pair, misalignment=0.0, face_gap=tuple(gaps[pair.driver, pair.driven])) for pair in machine.gear_pairs
+    ]
+    pairs = replace(machine, gear_pairs=flanks).loaded_pairs()
     # The basis of the shafts stays, so that the difference has no part by it.
     assembled = machine.assemble(pairs, found.model.machine.rotors)
     model = LineModel(assembled, point, pairs, found.model.found)
