@@ -25,6 +25,31 @@ _JUST_AFTER = 1e-9  # mesh periods
 
 
 @dataclass(frozen=True)
+class TurningPart:
+    """Part of a connector's directions that turns against the coordinates of a component: A cos w s + B sin w s.
+
+    A connector between parts of different frames, such as the mesh of a planet whose axis turns with a carrier and a
+    sun whose coordinates stand still, has directions D(s) = D + Σ (A cos w s + B sin w s) by the nominal time s.
+
+    Attributes
+    ----------
+    rate : float
+        w, the speed of the connector's frame over the component's [rad/s].
+    cosine, sine : ndarray, shape (n, d)
+        A and B.
+    """
+
+    rate: float
+    cosine: FloatArray
+    sine: FloatArray
+
+    def at(self, time: float) -> FloatArray:
+        """Directions at a nominal time [s], shape (n, d)."""
+        angle = self.rate * time
+        return np.asarray(self.cosine * np.cos(angle) + self.sine * np.sin(angle))
+
+
+@dataclass(frozen=True)
 class LinearConnector:
     """A connector whose law is f = f₀ + K δ + C δ': a bearing, a shaft coupling, a torque over speed, condensed parts.
 
@@ -46,6 +71,8 @@ class LinearConnector:
     of_contact : int or None
         Number of the tooth contact whose flanks resist tilting by this connector
         (:mod:`gearwhine.coupling.machine.mesh_face`).
+    turning : tuple of TurningPart
+        Parts of the directions that turn, beside the constant ``directions``.
     """
 
     name: str
@@ -56,6 +83,7 @@ class LinearConnector:
     axes: tuple[int, ...] = ()
     offset: FloatArray | None = None
     of_contact: int | None = None
+    turning: tuple[TurningPart, ...] = ()
 
     def __post_init__(self) -> None:
         """Require stiffness and damping of shape (d, d) for d directions."""
@@ -185,6 +213,8 @@ class ContactConnector:
     sliding : Sliding or None
         Friction of the flanks; None without. To the generalised force d Σ F_j of the pairs j with forces F_j it adds
         μ Σ ± F_j (a + x_j b), x_j their positions along the path of contact.
+    turning : tuple of TurningPart
+        Parts of the direction that turn, of shape (n, 1), beside the constant ``direction``.
     """
 
     name: str
@@ -197,6 +227,7 @@ class ContactConnector:
     loaded: bool = True
     sliding: Sliding | None = None
     compression_limit: float = np.inf
+    turning: tuple[TurningPart, ...] = ()
 
     @property
     def friction_law(self) -> tuple[FloatArray, bool]:
