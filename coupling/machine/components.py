@@ -176,6 +176,8 @@ class RotorComponent(Component):
         Gears whose rims move on their hubs.
     damping_ratio : float
         Damping ratio of the shaft and the gears' bodies.
+    carrier : str or None
+        Rotor with which the shaft's axis turns, of a planet; ``axis`` is its place at t = 0.
     """
 
     modal: ModalRotor
@@ -186,6 +188,7 @@ class RotorComponent(Component):
     axis: tuple[float, float] = (0.0, 0.0)
     bodies: tuple[GearBody, ...] = ()
     damping_ratio: float = 0.0
+    carrier: str | None = None
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -194,6 +197,35 @@ class RotorComponent(Component):
     def motions(self, at: float) -> FloatArray:
         """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
         return self._section(at)[:5]
+
+    def station(self, z: float) -> float:
+        """Section of the rotor nearest to a place along z, from its left end [m]."""
+        return min(max(z - self.start, 0.0), float(self.modal.lateral.stations[-1]))
+
+    def seat_motions(self, axis: Sequence[float], z: float) -> FloatArray:
+        """Motion of a seat in this rotor, such as a planet's pin: x, y, z, rotations about x and y, shape (5, n).
+
+        The seat moves as one body with the section at z, or with the end of the rotor where that is nearer.
+
+        Parameters
+        ----------
+        axis : sequence of float
+            x and y of the seat's axis [m].
+        z : float
+            Place along the shafts [m].
+        """
+        at = self.station(z)
+        x, y, along, about_x, about_y, turned = self._section(at)
+        arm, across, up = z - self.start - at, axis[0] - self.axis[0], axis[1] - self.axis[1]
+        return np.array(
+            [
+                x + arm * about_y - up * turned,
+                y - arm * about_x + across * turned,
+                along + up * about_x - across * about_y,
+                about_x,
+                about_y,
+            ]
+        )
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
@@ -509,6 +541,7 @@ def rotor_component(
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
     bodies: Sequence[GearBody] = (),
+    carrier: str | None = None,
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -551,6 +584,8 @@ def rotor_component(
         x and y of the shaft's line [m], which matter where the base turns.
     bodies : sequence of GearBody
         Gears on the rotor whose rims move on their hubs.
+    carrier : str, optional
+        Rotor with which the shaft's axis turns.
     """
     lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
@@ -594,6 +629,7 @@ def rotor_component(
         axis=axis,
         bodies=tuple(bodies),
         damping_ratio=damping_ratio,
+        carrier=carrier,
     )
 
 

@@ -130,6 +130,30 @@ class MountedBearing:
 
 
 @dataclass(frozen=True)
+class TorqueSupport:
+    """A spring that holds a shaft from rotation, such as the splines of a ring gear in the housing.
+
+    Attributes
+    ----------
+    shaft : str
+    at : float
+        Distance from the shaft's left end [m].
+    stiffness : float
+        [N m/rad].
+    damping : float
+        [N m s/rad].
+    seat : str or None
+        Seat of the housing that takes the torque; None for the ground.
+    """
+
+    shaft: str
+    at: float
+    stiffness: float
+    damping: float = 0.0
+    seat: str | None = None
+
+
+@dataclass(frozen=True)
 class MountedGear:
     """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m].
 
