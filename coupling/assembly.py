@@ -503,8 +503,8 @@ def _torque_support(
         if housing is None or support.seat not in housing.seats:
             raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
         row = row - coordinates.rows(housing.name, housing.seats[support.seat].T[5])
-    law = (np.array([[value]]) for value in (support.stiffness, support.damping))
-    return LinearConnector(f"torque support of {support.shaft}", row[:, None], *law)
+    stiffness, damping = np.array([[support.stiffness]]), np.array([[support.damping]])
+    return LinearConnector(f"torque support of {support.shaft}", row[:, None], stiffness, damping)
 
 
 def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatArray:

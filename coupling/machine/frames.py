@@ -220,7 +220,7 @@ class Frames:
             # The constant loads hold the connector's force at t = 0; it turns with the connector.
             for part in parts:
                 load += part.cosine @ connector.offset
-                amplitude = 1j * (part.sine @ connector.offset) - part.cosine @ connector.offset
+                amplitude = (1j * part.sine - part.cosine) @ connector.offset.astype(np.complex128)
                 harmonic.append(HarmonicLoad(part.rate, amplitude, "turning"))
         return replace(
             system,
