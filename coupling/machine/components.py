@@ -215,17 +215,7 @@ class RotorComponent(Component):
             Place along the shafts [m].
         """
         at = self.station(z)
-        x, y, along, about_x, about_y, turned = self._section(at)
-        arm, across, up = z - self.start - at, axis[0] - self.axis[0], axis[1] - self.axis[1]
-        return np.array(
-            [
-                x + arm * about_y - up * turned,
-                y - arm * about_x + across * turned,
-                along + up * about_x - across * about_y,
-                about_x,
-                about_y,
-            ]
-        )
+        return seat_in_section(self._section(at), np.subtract(axis, self.axis), z - self.start - at)
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
@@ -338,6 +328,30 @@ class RotorComponent(Component):
         row[2 * self.plane_size] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
         row.setflags(write=False)
         return row
+
+
+def seat_in_section(section: FloatArray, arm: FloatArray, along: float) -> FloatArray:
+    """Motion of a seat that moves as one body with a section: x, y, z, rotations about x and y, shape (5, n).
+
+    Parameters
+    ----------
+    section : ndarray, shape (6, n)
+        Motion of the section along and about x, y, z by n coordinates.
+    arm : ndarray, shape (2,)
+        Place of the seat from the section's centre across the shaft [m].
+    along : float
+        Place along the shaft from the section [m].
+    """
+    x, y, z, about_x, about_y, turned = section
+    return np.array(
+        [
+            x + along * about_y - arm[1] * turned,
+            y - along * about_x + arm[0] * turned,
+            z + arm[1] * about_x - arm[0] * about_y,
+            about_x,
+            about_y,
+        ]
+    )
 
 
 def _component_findings(component: HousingComponent) -> Iterator[Finding]:

@@ -30,6 +30,7 @@ from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoa
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+ComplexArray = npt.NDArray[np.complex128]
 
 _SAME_SPEED = 1e-12  # part of the larger of two speeds by which they differ from rounding
 
@@ -220,8 +221,8 @@ class Frames:
             # The constant loads hold the connector's force at t = 0; it turns with the connector.
             for part in parts:
                 load += part.cosine @ connector.offset
-                amplitude = (1j * part.sine - part.cosine) @ connector.offset.astype(np.complex128)
-                harmonic.append(HarmonicLoad(part.rate, amplitude, "turning"))
+                phasor: ComplexArray = np.asarray(1j * part.sine - part.cosine, dtype=np.complex128)
+                harmonic.append(HarmonicLoad(part.rate, np.asarray(phasor @ connector.offset), "turning"))
         return replace(
             system,
             linear=tuple(connectors),
