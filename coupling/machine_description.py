@@ -88,7 +88,7 @@ from gearwhine.coupling.machine.loads import (
     Unbalance,
     largest_torques,
 )
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear, TorqueSupport
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots
 from gearwhine.coupling.machine.speed_profile import TorqueLine
 from gearwhine.coupling.periodic.response import PeriodicResponse
@@ -189,6 +189,7 @@ class Machine:
     load: TorqueLine | None = None
     base: BaseMotion | None = None
     gravity: Sequence[float] | None = None
+    torque_supports: Sequence[TorqueSupport] = ()
 
     def __repr__(self) -> str:
         """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""

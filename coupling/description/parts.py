@@ -66,6 +66,9 @@ class Shaft:
         default.
     mode_count : int, optional
         Number of retained modes of each kind, in place of the limit.
+    carrier : str, optional
+        Shaft with which this shaft's axis turns, of a planet: ``axis`` is its place at t = 0, and its bearings sit in
+        the carrier.
     """
 
     rotor: Rotor
@@ -76,6 +79,7 @@ class Shaft:
     bow: Bow | None = None
     frequency_limit: float | None = None
     mode_count: int | None = None
+    carrier: str | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
