@@ -838,7 +838,9 @@ class Machine:
             [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in bearings],
             frequency_limit=limit,
             count=count,
-            gears_at=list(dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft), *twisted_at])),
+            gears_at=list(
+                dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft), *twisted_at])
+            ),
             forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
@@ -878,9 +880,7 @@ class Machine:
                 if gear.shaft == shaft.name:
                     places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
-        return StaticShaftPart(
-            shaft.name, shaft.axis, shaft.start, exact, self._acceleration_on(shaft), shaft.carrier
-        )
+        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact, self._acceleration_on(shaft), shaft.carrier)
 
     def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
         """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
