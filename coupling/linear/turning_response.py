@@ -66,7 +66,8 @@ class TurningResponse:
     def rates(self) -> tuple[float, ...]:
         """Rates of turning f of which all others are multiples [rad/s], ascending."""
         found: list[float] = []
-        parts = [part for one in (*self.system.linear, *self.system.contacts) for part in one.turning]
+        turning = [one.turning for one in self.system.linear] + [one.turning for one in self.system.contacts]
+        parts = [part for some in turning for part in some]
         for rate in sorted({abs(part.rate) for part in parts}):
             if not any(self._multiple(rate, base) for base in found):
                 found.append(rate)

@@ -264,7 +264,7 @@ class _StaticModel:
         if support.seat is not None:
             assert self.housing is not None
             row[self.housing_first : self.housing_first + self.housing.size] -= self.housing.seats[support.seat][:, 5]
-        return row[:, None]
+        return np.asarray(row[:, None])
 
     def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
         return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
