@@ -10,17 +10,17 @@ come from :mod:`gearwhine.coupling.statics`.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import (
-    GearedShafts,
     gear_train,
+    geared_names,
+    geared_shafts,
     mesh_phases,
     require_balance,
     require_meshing,
@@ -96,6 +96,8 @@ class CoupledMachine:
         Faces of its meshes under the mean load, for the machine at other speeds.
     speed_profile : SpeedProfile or None
         Speed over time of the run that it is assembled for; None at constant speed.
+    speed_ratios : mapping of str to Fraction
+        Speed of each shaft of the leading rotor's train over that one's, which comes first; exact and signed.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -108,6 +110,7 @@ class CoupledMachine:
     speed_range: tuple[float, float] = (1.0, 1.0)
     mean_faces: "MeanFaces | None" = None
     speed_profile: SpeedProfile | None = None
+    speed_ratios: Mapping[str, Fraction] = field(default_factory=dict)
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -117,21 +120,12 @@ class CoupledMachine:
     @property
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
-        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+        return next(iter(self.speed_ratios)) if self.speed_ratios else self.rotors[0].name
 
     @property
     def speed(self) -> float:
         """Signed speed of the leading rotor [rad/s]."""
         return self.speeds[self.leading_rotor]
-
-    @cached_property
-    def speed_ratios(self) -> dict[str, Fraction]:
-        """Speed of each shaft of the leading rotor's train over that one's, exact and signed."""
-        pairs = [
-            GearedShafts(mesh.driver.rotor, mesh.driven.rotor, (mesh.geometry.driver.teeth, mesh.geometry.driven.teeth))
-            for mesh in self.meshes
-        ]
-        return dict(gear_train(pairs, [rotor.name for rotor in self.rotors]).ratios)
 
     @property
     def input_torque(self) -> float:
@@ -143,8 +137,8 @@ class CoupledMachine:
     def train_inertia(self) -> float:
         """Polar inertia of the leading rotor's train, reduced to that rotor: Σ J (Ω / Ω_lead)² [kg m²]."""
         speeds, lead = self.speeds, self.leading_rotor
-        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in self.meshes]
-        train = next(train for train in trains([rotor.name for rotor in self.rotors], pairs) if lead in train)
+        names = [rotor.name for rotor in self.rotors]
+        train = next(train for train in trains(names, geared_names(self.meshes)) if lead in train)
         return sum(
             float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
             for rotor in self.rotors
@@ -181,7 +175,7 @@ class CoupledMachine:
     def face(self, number: int, contact: ToothContact) -> MeshFace:
         """Face of the flanks of a contact of the system, by its number, with another tooth contact in its place."""
         place, back = self.flanks(number)
-        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
+        sense = _senses(self.meshes, self.speeds, self.speed_ratios)[place] * (-1 if back else 1)
         return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
 
     def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
@@ -225,6 +219,7 @@ class CoupledMachine:
             dashpots=self.dashpots,
             speed_range=_about(self.speed_range, speed / present),
             mean_faces=self.mean_faces,
+            speed_ratios=self.speed_ratios,
         )
 
 
@@ -239,6 +234,7 @@ def assemble_machine(
     dashpots: Sequence[ShaftDashpots] = (),
     speed_range: tuple[float, float] = (1.0, 1.0),
     mean_faces: "MeanFaces | None" = None,
+    speed_ratios: Mapping[str, Fraction] | None = None,
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already.
 
@@ -261,6 +257,9 @@ def assemble_machine(
         followed between them.
     mean_faces : MeanFaces, optional
         Faces under the mean load of the machine at another speed, which are taken where nothing of them has changed.
+    speed_ratios : mapping of str to Fraction, optional
+        Speed of each rotor over that of the leading one, which comes first. By default they follow from the meshes,
+        the driver of the first one leading; held rotors and second inputs do not follow.
 
     Raises
     ------
@@ -295,10 +294,13 @@ def assemble_machine(
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
     coordinates = MachineCoordinates(components, speeds)
+    if speed_ratios is None:
+        speed_ratios = gear_train(map(geared_shafts, meshes), [rotor.name for rotor in rotors]).ratios
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
     require_balance(meshes, loads.torques, speeds)
-    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
+    held = [name for name, ratio in speed_ratios.items() if not ratio]
+    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques, held)
     pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
     bearing_connectors = [
         _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings
@@ -310,7 +312,7 @@ def assemble_machine(
     for rotor in rotors:
         within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
 
-    senses = _senses(meshes, speeds)
+    senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
         [mesh.driven.name for mesh in meshes],
@@ -335,9 +337,7 @@ def assemble_machine(
         load=acting.constant,
         harmonic_loads=tuple(acting.harmonic),
         timed_loads=tuple(acting.timed),
-        acceleration_load=coordinates.acceleration_load(
-            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
-        ),
+        acceleration_load=coordinates.acceleration_load(geared_names(meshes), loads.drives),
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
@@ -354,12 +354,15 @@ def assemble_machine(
         tuple(dashpots),
         speed_range,
         mean_faces,
+        speed_ratios=speed_ratios,
     )
 
 
-def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
-    """Sense of rotation of the driver of each mesh."""
-    return turning_senses([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], speeds)
+def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float], ratios: Mapping[str, Fraction]) -> list[int]:
+    """Sense of rotation of the driver of each mesh, seen from its carrier; at rest that in which it would turn."""
+    at_rest = any(mesh.carrier for mesh in meshes) and not any(speeds.values())
+    turning = {name: float(ratio) for name, ratio in ratios.items()} if at_rest else speeds
+    return turning_senses(list(map(geared_shafts, meshes)), turning)
 
 
 def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
@@ -442,7 +445,8 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    frequency = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
+    relative = geared_shafts(mesh).relative_speed(coordinates.speeds)
+    frequency = mesh_frequency(float(relative), abs(mesh.geometry.driver.teeth))
     name, contact, clearance = mesh.name, mesh.contact, 0.0
     if back:
         name, contact, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
@@ -618,16 +622,22 @@ def _require_thrust_carried(
     bearings: Sequence[MountedBearing],
     meshes: Sequence[GearMesh],
     torques: Sequence[AnyTorque],
+    held: Sequence[str],
 ) -> None:
     """Refuse helical gears that push a rotor without an axial coordinate or a bearing that holds it axially."""
     pairs = [
-        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        ThrustPair(
+            (mesh.driver.rotor, mesh.driven.rotor),
+            (mesh.driver.name, mesh.driven.name),
+            mesh.geometry,
+            mesh.carrier,
+        )
         for mesh in meshes
     ]
     names = {rotor.name for rotor in rotors}
     movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
     if all(name in names for pair in pairs for name in pair.rotors):
-        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable)
+        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable, held)
 
 
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:

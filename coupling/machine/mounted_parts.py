@@ -177,6 +177,8 @@ class GearMesh:
         Slices by which flanks that carry evenly resist tilting, see
         :mod:`gearwhine.coupling.machine.mesh_face`. By default those of ``contact``; where it has none
         either, the mesh acts in the middle of its face alone.
+    carrier : str, optional
+        Rotor with which the axes of planets among the two turn; None where both axes stand still.
     """
 
     driver: MountedGear
@@ -187,6 +189,7 @@ class GearMesh:
     friction: float = 0.0
     behind_rims: float = 0.0
     faces: FaceSlices | None = None
+    carrier: str | None = None
 
     @property
     def name(self) -> str:
