@@ -10,22 +10,23 @@ come from :mod:`gearwhine.coupling.statics`.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import (
-    GearedShafts,
     gear_train,
+    geared_names,
+    geared_shafts,
     mesh_phases,
     require_balance,
     require_meshing,
     turning_senses,
 )
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
@@ -54,7 +55,7 @@ from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, st
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, TorqueSupport
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -99,6 +100,8 @@ class CoupledMachine:
         Faces of its meshes under the mean load, for the machine at other speeds.
     speed_profile : SpeedProfile or None
         Speed over time of the run that it is assembled for; None at constant speed.
+    speed_ratios : mapping of str to Fraction
+        Speed of each shaft of the leading rotor's train over that one's, which comes first; exact and signed.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -112,6 +115,7 @@ class CoupledMachine:
     speed_range: tuple[float, float] = (1.0, 1.0)
     mean_faces: "MeanFaces | None" = None
     speed_profile: SpeedProfile | None = None
+    speed_ratios: Mapping[str, Fraction] = field(default_factory=dict)
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -121,21 +125,12 @@ class CoupledMachine:
     @property
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
-        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+        return next(iter(self.speed_ratios)) if self.speed_ratios else self.rotors[0].name
 
     @property
     def speed(self) -> float:
         """Signed speed of the leading rotor [rad/s]."""
         return self.speeds[self.leading_rotor]
-
-    @cached_property
-    def speed_ratios(self) -> dict[str, Fraction]:
-        """Speed of each shaft of the leading rotor's train over that one's, exact and signed."""
-        pairs = [
-            GearedShafts(mesh.driver.rotor, mesh.driven.rotor, (mesh.geometry.driver.teeth, mesh.geometry.driven.teeth))
-            for mesh in self.meshes
-        ]
-        return dict(gear_train(pairs, [rotor.name for rotor in self.rotors]).ratios)
 
     @property
     def input_torque(self) -> float:
@@ -147,8 +142,8 @@ class CoupledMachine:
     def train_inertia(self) -> float:
         """Polar inertia of the leading rotor's train, reduced to that rotor: Σ J (Ω / Ω_lead)² [kg m²]."""
         speeds, lead = self.speeds, self.leading_rotor
-        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in self.meshes]
-        train = next(train for train in trains([rotor.name for rotor in self.rotors], pairs) if lead in train)
+        names = [rotor.name for rotor in self.rotors]
+        train = next(train for train in trains(names, geared_names(self.meshes)) if lead in train)
         return sum(
             float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
             for rotor in self.rotors
@@ -185,7 +180,7 @@ class CoupledMachine:
     def face(self, number: int, contact: ToothContact) -> MeshFace:
         """Face of the flanks of a contact of the system, by its number, with another tooth contact in its place."""
         place, back = self.flanks(number)
-        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
+        sense = _senses(self.meshes, self.speeds, self.speed_ratios)[place] * (-1 if back else 1)
         return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
 
     def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
@@ -230,6 +225,7 @@ class CoupledMachine:
             torque_supports=self.torque_supports,
             speed_range=_about(self.speed_range, speed / present),
             mean_faces=self.mean_faces,
+            speed_ratios=self.speed_ratios,
         )
 
 
@@ -245,6 +241,7 @@ def assemble_machine(
     torque_supports: Sequence[TorqueSupport] = (),
     speed_range: tuple[float, float] = (1.0, 1.0),
     mean_faces: "MeanFaces | None" = None,
+    speed_ratios: Mapping[str, Fraction] | None = None,
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already.
 
@@ -269,6 +266,9 @@ def assemble_machine(
         followed between them.
     mean_faces : MeanFaces, optional
         Faces under the mean load of the machine at another speed, which are taken where nothing of them has changed.
+    speed_ratios : mapping of str to Fraction, optional
+        Speed of each rotor over that of the leading one, which comes first. By default they follow from the meshes,
+        the driver of the first one leading; held rotors and second inputs do not follow.
 
     Raises
     ------
@@ -305,10 +305,13 @@ def assemble_machine(
     frames = Frames(components, _frame_speeds(rotors, bearings, meshes, speeds))
     components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
+    if speed_ratios is None:
+        speed_ratios = gear_train(map(geared_shafts, meshes), [rotor.name for rotor in rotors]).ratios
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
     require_balance(meshes, loads.torques, speeds)
-    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
+    held = [name for name, ratio in speed_ratios.items() if not ratio]
+    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques, held)
     pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
     bearing_connectors = [
         _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range, frames) for mounted in bearings
@@ -325,7 +328,7 @@ def assemble_machine(
     for rotor in rotors:
         within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
 
-    senses = _senses(meshes, speeds)
+    senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
         [mesh.driven.name for mesh in meshes],
@@ -351,9 +354,7 @@ def assemble_machine(
         load=acting.constant,
         harmonic_loads=tuple(acting.harmonic),
         timed_loads=tuple(acting.timed),
-        acceleration_load=coordinates.acceleration_load(
-            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
-        ),
+        acceleration_load=coordinates.acceleration_load(geared_names(meshes), loads.drives),
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
@@ -378,12 +379,15 @@ def assemble_machine(
         tuple(torque_supports),
         speed_range,
         mean_faces,
+        speed_ratios=speed_ratios,
     )
 
 
-def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
-    """Sense of rotation of the driver of each mesh."""
-    return turning_senses([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], speeds)
+def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float], ratios: Mapping[str, Fraction]) -> list[int]:
+    """Sense of rotation of the driver of each mesh, seen from its carrier; at rest that in which it would turn."""
+    at_rest = any(mesh.carrier for mesh in meshes) and not any(speeds.values())
+    turning = {name: float(ratio) for name, ratio in ratios.items()} if at_rest else speeds
+    return turning_senses(list(map(geared_shafts, meshes)), turning)
 
 
 def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
@@ -412,7 +416,8 @@ def _bearing(
 
     A grounded bearing that is alike all round stands still in any frame.
     """
-    rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
+    rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
+    speed = coordinates.speeds[rotor.name] - (0.0 if rotor.carrier is None else coordinates.speeds[rotor.carrier])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
@@ -503,8 +508,11 @@ def _torque_support(
         if housing is None or support.seat not in housing.seats:
             raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
         row = row - coordinates.rows(housing.name, housing.seats[support.seat].T[5])
-    stiffness, damping = np.array([[support.stiffness]]), np.array([[support.damping]])
-    return LinearConnector(f"torque support of {support.shaft}", row[:, None], stiffness, damping)
+    if support.stiffness is None:
+        raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N m/rad]")
+    stiffness = np.array([[support.stiffness]])
+    name = f"torque support of {support.shaft}"
+    return LinearConnector(name, row[:, None], stiffness, support.damping_time * stiffness)
 
 
 def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatArray:
@@ -559,8 +567,8 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    relative = coordinates.speeds[mesh.driver.rotor] - _mesh_frame(coordinates, mesh)
-    frequency = mesh_frequency(relative, mesh.geometry.driver.teeth)
+    relative = geared_shafts(mesh).relative_speed(coordinates.speeds)
+    frequency = mesh_frequency(float(relative), abs(mesh.geometry.driver.teeth))
     name, contact, clearance = mesh.name, mesh.contact, 0.0
     if back:
         name, contact, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
@@ -582,8 +590,7 @@ def _contact(
 
 def _mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
     """Speed at which the line of centres of a mesh turns, that of the carrier of a planet in it [rad/s]."""
-    carriers = (coordinates.rotor(gear.rotor).carrier for gear in (mesh.driver, mesh.driven))
-    return next((coordinates.speeds[carrier] for carrier in carriers if carrier is not None), 0.0)
+    return 0.0 if mesh.carrier is None else coordinates.speeds[mesh.carrier]
 
 
 def _coordinate_loads(
@@ -745,16 +752,22 @@ def _require_thrust_carried(
     bearings: Sequence[MountedBearing],
     meshes: Sequence[GearMesh],
     torques: Sequence[AnyTorque],
+    held: Sequence[str],
 ) -> None:
     """Refuse helical gears that push a rotor without an axial coordinate or a bearing that holds it axially."""
     pairs = [
-        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        ThrustPair(
+            (mesh.driver.rotor, mesh.driven.rotor),
+            (mesh.driver.name, mesh.driven.name),
+            mesh.geometry,
+            mesh.carrier,
+        )
         for mesh in meshes
     ]
     names = {rotor.name for rotor in rotors}
     movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
     if all(name in names for pair in pairs for name in pair.rotors):
-        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable)
+        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable, held)
 
 
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:

@@ -130,30 +130,6 @@ class MountedBearing:
 
 
 @dataclass(frozen=True)
-class TorqueSupport:
-    """A spring that holds a shaft from rotation, such as the splines of a ring gear in the housing.
-
-    Attributes
-    ----------
-    shaft : str
-    at : float
-        Distance from the shaft's left end [m].
-    stiffness : float
-        [N m/rad].
-    damping : float
-        [N m s/rad].
-    seat : str or None
-        Seat of the housing that takes the torque; None for the ground.
-    """
-
-    shaft: str
-    at: float
-    stiffness: float
-    damping: float = 0.0
-    seat: str | None = None
-
-
-@dataclass(frozen=True)
 class MountedGear:
     """Place of a gear: its rotor, its middle from the rotor's left end, and the axis in the x-y plane [m].
 
@@ -201,6 +177,8 @@ class GearMesh:
         Slices by which flanks that carry evenly resist tilting, see
         :mod:`gearwhine.coupling.machine.mesh_face`. By default those of ``contact``; where it has none
         either, the mesh acts in the middle of its face alone.
+    carrier : str, optional
+        Rotor with which the axes of planets among the two turn; None where both axes stand still.
     """
 
     driver: MountedGear
@@ -211,6 +189,7 @@ class GearMesh:
     friction: float = 0.0
     behind_rims: float = 0.0
     faces: FaceSlices | None = None
+    carrier: str | None = None
 
     @property
     def name(self) -> str:

@@ -13,11 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
 from gearwhine.coupling.machine.components import HousingComponent, seat_in_section
 from gearwhine.coupling.machine.gear_bodies import GearBody
 from gearwhine.coupling.machine.loads import ShaftForce, Torque
-from gearwhine.coupling.machine.mounted_parts import MountedBearing, TorqueSupport
+from gearwhine.coupling.machine.mounted_parts import MountedBearing
 from gearwhine.coupling.statics.connector_equilibrium import ConnectedStructure
 from gearwhine.coupling.statics.operating_point import (
     BearingLoad,
@@ -181,7 +182,7 @@ class _StaticModel:
         self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
-        held = [LinearLaw(np.array([[support.stiffness]])) for support in torque_supports]
+        held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
         self.laws += held
         nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
