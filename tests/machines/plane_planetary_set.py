@@ -59,8 +59,8 @@ def plane_set(
         for end, at in (("left", 0.0), ("right", _LENGTH)):
             bearings.append(MountedBearing(Bearing(f"{name} {end}", at, law, damping * law), name, None))
 
-    def gear(name: str, shaft: str, teeth: int) -> None:
-        wheel = Gear(name, teeth, MODULE, pressure_angle, 0.02)
+    def gear(name: str, shaft: str, teeth: int, addendum: float = 1.0) -> None:
+        wheel = Gear(name, teeth, MODULE, pressure_angle, 0.02, addendum=addendum)
         gears.append(ShaftGear(wheel, shaft, _MIDDLE, inertia=(0.0, 0.0, 0.0), stiffens_shaft=False))
 
     def pair(driver: str, driven: str) -> GearPair:
@@ -79,7 +79,8 @@ def plane_set(
     held = "carrier"
     if with_ring:
         body("ring", "ring")
-        gear("ring gear", "ring", -(SUN_TEETH + 2 * PLANET_TEETH))
+        # Full-depth teeth of the ring would reach below the planets' involutes.
+        gear("ring gear", "ring", -(SUN_TEETH + 2 * PLANET_TEETH), addendum=0.8)
         pairs += [pair(f"planet gear {number}", "ring gear") for number in numbers]
         held = "ring"
     support = TorqueSupport(held, _MIDDLE, stiffness=RING_SUPPORT * radius[held] ** 2)
