@@ -23,12 +23,13 @@ ComplexArray = npt.NDArray[np.complex128]
 
 MASS = {"carrier": 5.43, "ring": 2.35, "sun": 0.4, "planet": 0.66}  # kg
 INERTIA = {"carrier": 6.29, "ring": 3.00, "sun": 0.39, "planet": 0.61}  # I / r², r the base radius or the distance, kg
+STEEL = ShaftMaterial(youngs_modulus=210e9, shear_modulus=81e9, density=7850.0)
 MESH_STIFFNESS, BEARING_STIFFNESS, RING_SUPPORT = 5e8, 1e8, 1e9  # N/m
 SUN_TEETH, PLANET_TEETH, MODULE = 24, 30, 2.5e-3
 DISTANCE = 0.5 * (SUN_TEETH + PLANET_TEETH) * MODULE
 
-# So stiff and light that the shafts are rigid bodies without mass of their own.
-_RIGID = ShaftMaterial(youngs_modulus=2e16, shear_modulus=8e15, density=1e-3)
+# So stiff and light that the shafts are rigid bodies without mass of their own; time integration needs real ones.
+RIGID = ShaftMaterial(youngs_modulus=2e16, shear_modulus=8e15, density=1e-3)
 _LENGTH, _MIDDLE = 0.1, 0.05
 
 
@@ -42,6 +43,7 @@ def plane_set(
     pressure_angle: float,
     with_ring: bool,
     damping: float = 0.0,
+    material: ShaftMaterial = RIGID,
 ) -> dict[str, Any]:
     """Parts of a machine: sun, carrier, planets at the angles and perhaps the ring; without it the carrier is held.
 
@@ -54,7 +56,7 @@ def plane_set(
 
     def body(kind: str, name: str, **where: Any) -> None:
         disc = Disc(_MIDDLE, MASS[kind], *[INERTIA[kind] * radius[kind] ** 2] * 2)
-        shafts.append(Shaft(Rotor(name, [Segment(_LENGTH, 0.03, 0.0, _RIGID)], [disc]), damping_ratio=0.0, **where))
+        shafts.append(Shaft(Rotor(name, [Segment(_LENGTH, 0.03, 0.0, material)], [disc]), damping_ratio=0.0, **where))
         law = 0.5 * np.diag([BEARING_STIFFNESS, BEARING_STIFFNESS, 0.0, 2e3, 2e3])
         for end, at in (("left", 0.0), ("right", _LENGTH)):
             bearings.append(MountedBearing(Bearing(f"{name} {end}", at, law, damping * law), name, None))
