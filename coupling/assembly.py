@@ -529,18 +529,25 @@ def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatA
 def _centrifugal_stiffness(
     coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
 ) -> LinearConnector:
-    """Torsional stiffness of a carrier by the centrifugal force m a f² of a planet on its pin, m a² f².
+    """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
 
-    The force stays radial where the carrier turns beyond its nominal rotation; along the pin's first direction it would
-    drive the carrier on.
+    The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
+    beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
+    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
     """
     carrier = coordinates.rotor(planet.carrier or "")
-    distance = math.hypot(*np.subtract(planet.axis, carrier.axis))
+    outward = np.subtract(planet.axis, carrier.axis)
+    distance = math.hypot(*outward)
     mass = float(np.sum(rotor_participation(planet, (0.0, 0.0, 0.0))[:, 0] ** 2))
-    place = planet.start + float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
-    direction = coordinates.rotation(carrier.name, carrier.station(place))[:, None]
-    law = np.array([[mass * distance**2 * frames.of(planet.name) ** 2]])
-    return LinearConnector(f"centrifugal force of {planet.name}", direction, law, np.zeros((1, 1)))
+    at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
+    station = carrier.station(planet.start + at)
+    along = np.array([-outward[1], outward[0]]) / distance
+    tangential = coordinates.rows(planet.name, along @ planet.motions(at)[:2])
+    tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
+    force = mass * distance * frames.of(planet.name) ** 2
+    law = force * np.array([[0.0, 1.0], [1.0, -distance]])
+    directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
+    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
 
 
 def _transports(

@@ -140,7 +140,14 @@ def independent_matrices(
         if with_ring:
             x, y = (-cosine * a + sine * o for a, o in zip(along, outward, strict=True))
             spring(MESH_STIFFNESS, planet=(x, y, -1.0), ring=(-x, -y, 1.0))
-        stiffness[2, 2] += MASS["planet"] * carrier_speed**2
+        # The centrifugal force N on a pin follows the carrier: its energy is N (θ u - a θ² / 2), here with a θ.
+        force = MASS["planet"] * carrier_speed**2
+        stiffness[2, 2] -= force
+        for axis, part in enumerate(along):
+            stiffness[first["planet"] + axis, 2] += force * part
+            stiffness[2, first["planet"] + axis] += force * part
+            stiffness[axis, 2] -= force * part
+            stiffness[2, axis] -= force * part
     return mass, coriolis, stiffness
 
 
