@@ -244,11 +244,13 @@ class _StaticModel:
         """Motion of a bearing's seat, (5, n): x, y, z and the rotations about x and y."""
         rows = np.zeros((5, self.size))
         part = self._part(mounted.rotor)
-        if part.carrier is not None:
-            carrier, z = self._part(part.carrier), part.start + mounted.bearing.at
-            at = min(max(z - carrier.start, 0.0), carrier.shaft.length)
-            section = self._section(part.carrier, at)
-            return seat_in_section(section, np.subtract(part.axis, carrier.axis), z - carrier.start - at)
+        holding = part.carrier or mounted.seat
+        if holding in self.first:
+            around, z = self._part(holding), part.start + mounted.bearing.at
+            at = min(max(z - around.start, 0.0), around.shaft.length)
+            return seat_in_section(
+                self._section(holding, at), np.subtract(part.axis, around.axis), z - around.start - at
+            )
         if mounted.seat is not None:
             assert self.housing is not None
             z = part.start + mounted.bearing.at
