@@ -555,8 +555,7 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             yield from _coaxial_findings(part, shaft, shafts[seat])
             continue
         if housing is None or seat not in seats:
-            expected = f"a seat of the housing, one of {seat_names}, another shaft on its axis, or None for the ground"
-            yield Finding(part, "seat", seat, expected)
+            yield Finding(part, "seat", seat, f"a seat of the housing, one of {seat_names}, or None for the ground")
         elif seat in housing.seat_axes:
             place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
             yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)
