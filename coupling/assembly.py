@@ -26,13 +26,14 @@ from gearwhine.coupling.description.gear_train import (
     require_meshing,
     turning_senses,
 )
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
 from gearwhine.coupling.gears.geometry.pair import mesh_frequency
 from gearwhine.coupling.gears.loaded.face_load import FaceTangent
-from gearwhine.coupling.machine.base_motion import base_loads, gravity_load
+from gearwhine.coupling.machine.base_motion import base_loads, gravity_load, rotor_participation
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.components import (
     Component,
@@ -50,6 +51,7 @@ from gearwhine.coupling.machine.connectors import (
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, stiffness_in_frame
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
@@ -90,6 +92,8 @@ class CoupledMachine:
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
+    torque_supports : tuple of TorqueSupport
+        Springs that hold shafts from rotation.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     mean_faces : MeanFaces or None
@@ -107,6 +111,7 @@ class CoupledMachine:
     system: CoupledSystem
     loads: MachineLoads = UNLOADED
     dashpots: tuple[ShaftDashpots, ...] = ()
+    torque_supports: tuple[TorqueSupport, ...] = ()
     speed_range: tuple[float, float] = (1.0, 1.0)
     mean_faces: "MeanFaces | None" = None
     speed_profile: SpeedProfile | None = None
@@ -217,6 +222,7 @@ class CoupledMachine:
             meshes=self.meshes,
             loads=self.loads.at_speed_ratio(speed / present),
             dashpots=self.dashpots,
+            torque_supports=self.torque_supports,
             speed_range=_about(self.speed_range, speed / present),
             mean_faces=self.mean_faces,
             speed_ratios=self.speed_ratios,
@@ -232,6 +238,7 @@ def assemble_machine(
     meshes: Sequence[GearMesh] = (),
     loads: MachineLoads = UNLOADED,
     dashpots: Sequence[ShaftDashpots] = (),
+    torque_supports: Sequence[TorqueSupport] = (),
     speed_range: tuple[float, float] = (1.0, 1.0),
     mean_faces: "MeanFaces | None" = None,
     speed_ratios: Mapping[str, Fraction] | None = None,
@@ -252,6 +259,8 @@ def assemble_machine(
         Loads; by default there are none.
     dashpots : sequence of ShaftDashpots
         Dashpots in the rotors' couplings.
+    torque_supports : sequence of TorqueSupport
+        Springs that hold shafts from rotation.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
         followed between them.
@@ -293,6 +302,8 @@ def assemble_machine(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
+    frames = Frames(components, _frame_speeds(rotors, bearings, meshes, speeds))
+    components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
     if speed_ratios is None:
         speed_ratios = gear_train(map(geared_shafts, meshes), [rotor.name for rotor in rotors]).ratios
@@ -303,9 +314,14 @@ def assemble_machine(
     _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques, held)
     pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
     bearing_connectors = [
-        _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings
+        _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range, frames) for mounted in bearings
     ]
-    within = []
+    within = [_torque_support(coordinates, housing, support) for support in torque_supports]
+    within += [
+        _centrifugal_stiffness(coordinates, rotor, bearings, frames)
+        for rotor in rotors
+        if rotor.carrier is not None and frames.of(rotor.name) != 0.0
+    ]
     for dashpot in dashpots:
         rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
@@ -325,7 +341,8 @@ def assemble_machine(
     contacts = [_contact(coordinates, *side) for side in sides]
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
-    acting = _coordinate_loads(coordinates, bearings, loads)
+    acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
+    acting.constant += _centrifugal_load(coordinates, frames)
     for linear, _ in bearing_connectors:
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
@@ -342,8 +359,15 @@ def assemble_machine(
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    with_faces, mean_faces = _with_faces(system, coordinates, flanks, mean_faces)
+    with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, mean_faces)
     system = with_balanced_friction(with_faces)
+    if frames.turn:
+        of_contacts = [_mesh_frame(coordinates, mesh) for mesh, _ in flanks]
+        of_linear = [_bearing_frame(mounted, coordinates.rotor(mounted.rotor), frames) for mounted in bearings]
+        for connector in system.linear[len(bearings) :]:
+            tilted = connector.of_contact
+            of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
+        system = frames.turned(system, of_linear, of_contacts)
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -352,6 +376,7 @@ def assemble_machine(
         system,
         loads,
         tuple(dashpots),
+        tuple(torque_supports),
         speed_range,
         mean_faces,
         speed_ratios=speed_ratios,
@@ -385,9 +410,14 @@ def _bearing(
     pedestals_by_name: dict[str, PedestalComponent],
     mounted: MountedBearing,
     speed_range: tuple[float, float],
+    frames: Frames,
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
-    """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
-    rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
+    """Assemble a bearing between shaft and seat, carrier, pedestal or ground: 5x5 stiffness and damping, or a law.
+
+    A grounded bearing that is alike all round stands still in any frame.
+    """
+    rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
+    speed = coordinates.speeds[rotor.name] - (0.0 if rotor.carrier is None else coordinates.speeds[rotor.carrier])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
@@ -397,12 +427,17 @@ def _bearing(
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     relative = coordinates.rows(rotor.name, rotor.motions(at))
-    if mounted.seat is not None:
+    if rotor.carrier is not None:
+        pin = coordinates.rotor(rotor.carrier).seat_motions(rotor.axis, rotor.start + at)
+        relative = relative - coordinates.rows(rotor.carrier, pin)
+    elif mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
             raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
         relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
     elif bearing.pedestal is not None:
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
+    elif frames.of(rotor.name) != 0.0 and _alike_all_round(mounted):
+        stiffness = stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
     nonlinear = None
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
@@ -419,6 +454,100 @@ def _bearing(
         bearing.name, relative[axes].T, stiffness[among], damping[among], table, axis_numbers, offset
     )
     return linear, nonlinear
+
+
+def _frame_speeds(
+    rotors: Sequence[RotorComponent],
+    bearings: Sequence[MountedBearing],
+    meshes: Sequence[GearMesh],
+    speeds: Mapping[str, float],
+) -> dict[str, float]:
+    """Speed of the frame of each rotor's coordinates [rad/s].
+
+    Planets and their carriers turn with the carrier. So does a sun or a ring whose other connectors are alike all
+    round: what joins it to the planets is constant there. All other parts stand still.
+    """
+    carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
+    frames = {name: speeds[carrier] for name, carrier in carriers.items()}
+    frames |= {carrier: speeds[carrier] for carrier in carriers.values()}
+    for rotor in rotors:
+        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
+        others = [set(pair) - {rotor.name} for pair in pairs if rotor.name in pair]
+        around = {carriers.get(other) for one in others for other in one}
+        if rotor.name in frames or len(around) != 1 or None in around:
+            continue
+        on_it = [mounted for mounted in bearings if mounted.rotor == rotor.name]
+        if all(_alike_all_round(mounted) for mounted in on_it):
+            frames[rotor.name] = speeds[carriers[next(iter(others[0]))]]
+    return frames
+
+
+def _alike_all_round(mounted: MountedBearing) -> bool:
+    """Whether a bearing stands on rigid ground and has a linear law that is the same in all directions."""
+    if mounted.seat is not None or mounted.law is not None or mounted.bearing.pedestal is not None:
+        return False
+    if mounted.offset is not None or mounted.bearing.speeds is not None:
+        return False
+    bearing = mounted.bearing
+    return is_isotropic(bearing.spatial_stiffness) and is_isotropic(bearing.spatial_damping)
+
+
+def _bearing_frame(mounted: MountedBearing, rotor: RotorComponent, frames: Frames) -> float:
+    """Speed at which a bearing turns [rad/s]: with its carrier, or with any frame where it is alike all round."""
+    if rotor.carrier is not None or _alike_all_round(mounted):
+        return frames.of(rotor.name)
+    return 0.0
+
+
+def _torque_support(
+    coordinates: MachineCoordinates, housing: HousingComponent | None, support: TorqueSupport
+) -> LinearConnector:
+    """Assemble the spring that holds a shaft from rotation against a seat or the ground."""
+    row = coordinates.rotation(support.shaft, support.at)
+    if support.seat is not None:
+        if housing is None or support.seat not in housing.seats:
+            raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
+        row = row - coordinates.rows(housing.name, housing.seats[support.seat].T[5])
+    if support.stiffness is None:
+        raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N m/rad]")
+    stiffness = np.array([[support.stiffness]])
+    name = f"torque support of {support.shaft}"
+    return LinearConnector(name, row[:, None], stiffness, support.damping_time * stiffness)
+
+
+def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatArray:
+    """Centrifugal forces of the planets on their coordinates, (n,): their axes circle with their carriers."""
+    load = np.zeros(coordinates.size)
+    for part in coordinates.components:
+        if isinstance(part, RotorComponent) and part.carrier is not None:
+            outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
+            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
+            load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
+    return load
+
+
+def _centrifugal_stiffness(
+    coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
+) -> LinearConnector:
+    """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
+
+    The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
+    beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
+    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
+    """
+    carrier = coordinates.rotor(planet.carrier or "")
+    outward = np.subtract(planet.axis, carrier.axis)
+    distance = math.hypot(*outward)
+    mass = float(np.sum(rotor_participation(planet, (0.0, 0.0, 0.0))[:, 0] ** 2))
+    at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
+    station = carrier.station(planet.start + at)
+    along = np.array([-outward[1], outward[0]]) / distance
+    tangential = coordinates.rows(planet.name, along @ planet.motions(at)[:2])
+    tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
+    force = mass * distance * frames.of(planet.name) ** 2
+    law = force * np.array([[0.0, 1.0], [1.0, -distance]])
+    directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
+    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
 
 
 def _transports(
@@ -464,6 +593,11 @@ def _contact(
         sliding=_sliding(coordinates, mesh, contact, sense),
         compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
+
+
+def _mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
+    """Speed at which the line of centres of a mesh turns, that of the carrier of a planet in it [rad/s]."""
+    return 0.0 if mesh.carrier is None else coordinates.speeds[mesh.carrier]
 
 
 def _coordinate_loads(
@@ -535,6 +669,7 @@ def _with_faces(
     system: CoupledSystem,
     coordinates: MachineCoordinates,
     flanks: Sequence[tuple[GearMesh, int]],
+    frames: Frames,
     known: MeanFaces | None = None,
 ) -> tuple[CoupledSystem, MeanFaces]:
     """Return the system with flanks that resist tilting and with load shuttling, and their faces.
@@ -551,7 +686,9 @@ def _with_faces(
     for number, (face, _, under, _) in mean.states.items():
         if under.force > 0.0:
             contact = system.contacts[number]
-            harmonics += face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+            frame = _mesh_frame(coordinates, flanks[number][0])
+            shuttling = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+            harmonics += [part for load in shuttling for part in frames.harmonics(load, frame)]
     return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
 
 
@@ -662,7 +799,7 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
 
 def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
     """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
-    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == 0.0:
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == _mesh_frame(coordinates, mesh):
         return None
     return sliding_flanks(
         coordinates,
@@ -693,6 +830,6 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
         if gear.eccentricity:
-            speed = coordinates.speeds[mounted.rotor]
+            speed = coordinates.speeds[mounted.rotor] - _mesh_frame(coordinates, mesh)
             errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)

@@ -247,7 +247,7 @@ class Machine:
         meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
         yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
         for shaft in self.shafts:
-            tips = [mounted.gear.tip_radius for mounted in self._gears_on(shaft.name)]
+            tips = [mounted.gear.outer_radius for mounted in self._gears_on(shaft.name)]
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
         for place, force in enumerate(self.forces):
             yield from force_findings(force, self.shaft(force.rotor).rotor, place)
@@ -322,6 +322,17 @@ class Machine:
         """Signed speed of a shaft in its bearing [rad/s], that of a planet relative to its carrier."""
         carrier = self.shaft(mounted.rotor).carrier
         return self.speeds[mounted.rotor] - (0.0 if carrier is None else self.speeds[carrier])
+
+    @property
+    def _torque_springs(self) -> list[TorqueSupport]:
+        """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""
+        return [
+            replace(support, stiffness=self.rotor(shaft.name).polar_inertia * (2.0 * shaft.mode_limit) ** 2)
+            if support.stiffness is None
+            else support
+            for support in self.torque_supports
+            for shaft in [self.shaft(support.shaft)]
+        ]
 
     @cached_property
     def support_torques(self) -> dict[str, float]:
@@ -543,6 +554,7 @@ class Machine:
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
+            torque_supports=self._torque_springs,
             speed_range=driving.speed_range,
             speed_ratios=self.train.ratios,
         )
@@ -587,6 +599,7 @@ class Machine:
                 self.gravity,
                 self.forces,
                 list(rims.values()) if pairs else (),
+                self._torque_springs,
             )
         except EquilibriumNotFoundError as error:
             of_location = (text for location in self.axial_locations for text in location.warnings)
@@ -888,12 +901,17 @@ class Machine:
                 moments_at.append(mounted.bearing.at)
                 if not mounted.law.floats:
                     thrusts_at.append(mounted.bearing.at)
+        pins = self._pins_on(shaft)
+        twisted_at = [*pins, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
+        moments_at += pins
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.bearing_speed(mounted)) for mounted in bearings],
             frequency_limit=limit,
             count=count,
-            gears_at=list(dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft)])),
+            gears_at=list(
+                dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft), *twisted_at])
+            ),
             forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
@@ -906,6 +924,7 @@ class Machine:
             damping_ratio=shaft.damping_ratio,
             axis=shaft.axis,
             bodies=[body for body in self.gear_bodies if body.gear in names],
+            carrier=shaft.carrier,
         )
 
     def _static_gears(
@@ -925,12 +944,32 @@ class Machine:
         places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [force.at for force in self.forces if force.rotor == shaft.name]
+        places += [support.at for support in self.torque_supports if support.shaft == shaft.name]
+        places += self._pins_on(shaft)
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
                     places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
-        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
+        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact, self._acceleration_on(shaft), shaft.carrier)
+
+    def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
+        """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
+        if shaft.carrier is None or self.speeds[shaft.carrier] == 0.0:
+            return None if self.gravity is None else tuple(self.gravity)
+        outward = np.subtract(shaft.axis, self.shaft(shaft.carrier).axis)
+        x, y = (self.speeds[shaft.carrier] ** 2 * outward).tolist()
+        fall = (0.0, 0.0, 0.0) if self.gravity is None else self.gravity
+        return x + fall[0], y + fall[1], fall[2]
+
+    def _pins_on(self, carrier: Shaft) -> list[float]:
+        """Stations of a carrier at the bearings of its planets, from its left end [m]."""
+        return [
+            min(max(planet.start + mounted.bearing.at - carrier.start, 0.0), carrier.rotor.length)
+            for planet in self.shafts
+            if planet.carrier == carrier.name
+            for mounted in self._bearings_on(planet.name)
+        ]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:
         return [mounted for mounted in self.bearings if mounted.rotor == shaft]

@@ -176,6 +176,8 @@ class RotorComponent(Component):
         Gears whose rims move on their hubs.
     damping_ratio : float
         Damping ratio of the shaft and the gears' bodies.
+    carrier : str or None
+        Rotor with which the shaft's axis turns, of a planet; ``axis`` is its place at t = 0.
     """
 
     modal: ModalRotor
@@ -186,6 +188,7 @@ class RotorComponent(Component):
     axis: tuple[float, float] = (0.0, 0.0)
     bodies: tuple[GearBody, ...] = ()
     damping_ratio: float = 0.0
+    carrier: str | None = None
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -194,6 +197,25 @@ class RotorComponent(Component):
     def motions(self, at: float) -> FloatArray:
         """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
         return self._section(at)[:5]
+
+    def station(self, z: float) -> float:
+        """Section of the rotor nearest to a place along z, from its left end [m]."""
+        return min(max(z - self.start, 0.0), float(self.modal.lateral.stations[-1]))
+
+    def seat_motions(self, axis: Sequence[float], z: float) -> FloatArray:
+        """Motion of a seat in this rotor, such as a planet's pin: x, y, z, rotations about x and y, shape (5, n).
+
+        The seat moves as one body with the section at z, or with the end of the rotor where that is nearer.
+
+        Parameters
+        ----------
+        axis : sequence of float
+            x and y of the seat's axis [m].
+        z : float
+            Place along the shafts [m].
+        """
+        at = self.station(z)
+        return seat_in_section(self._section(at), np.subtract(axis, self.axis), z - self.start - at)
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
@@ -306,6 +328,30 @@ class RotorComponent(Component):
         row[2 * self.plane_size] = 1.0 / self.modal.torsional.evaluate([0.0])[0, 0]
         row.setflags(write=False)
         return row
+
+
+def seat_in_section(section: FloatArray, arm: FloatArray, along: float) -> FloatArray:
+    """Motion of a seat that moves as one body with a section: x, y, z, rotations about x and y, shape (5, n).
+
+    Parameters
+    ----------
+    section : ndarray, shape (6, n)
+        Motion of the section along and about x, y, z by n coordinates.
+    arm : ndarray, shape (2,)
+        Place of the seat from the section's centre across the shaft [m].
+    along : float
+        Place along the shaft from the section [m].
+    """
+    x, y, z, about_x, about_y, turned = section
+    return np.array(
+        [
+            x + along * about_y - arm[1] * turned,
+            y - along * about_x + arm[0] * turned,
+            z + arm[1] * about_x - arm[0] * about_y,
+            about_x,
+            about_y,
+        ]
+    )
 
 
 def _component_findings(component: HousingComponent) -> Iterator[Finding]:
@@ -509,6 +555,7 @@ def rotor_component(
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
     bodies: Sequence[GearBody] = (),
+    carrier: str | None = None,
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -551,6 +598,8 @@ def rotor_component(
         x and y of the shaft's line [m], which matter where the base turns.
     bodies : sequence of GearBody
         Gears on the rotor whose rims move on their hubs.
+    carrier : str, optional
+        Rotor with which the shaft's axis turns.
     """
     lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
@@ -594,6 +643,7 @@ def rotor_component(
         axis=axis,
         bodies=tuple(bodies),
         damping_ratio=damping_ratio,
+        carrier=carrier,
     )
 
 

@@ -93,6 +93,18 @@ class FaceContactLaw:
 
 
 @dataclass(frozen=True, eq=False)
+class OffsetLaw:
+    """A law about a seat that stands off its place by an offset (d,) [m, rad], such as a planet's pin."""
+
+    law: ConnectorLaw
+    offset: FloatArray
+
+    def at(self, deflection: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, force and tangent."""
+        return self.law.at(deflection - self.offset)
+
+
+@dataclass(frozen=True, eq=False)
 class StaticBearing:
     """A bearing in the static model: its law, and the nominal stiffness (5, 5) that the search starts from."""
 
@@ -126,12 +138,30 @@ def _nominal_rolling(rolling: RollingBearing) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class StaticShaftPart:
-    """A shaft in the static model: its name, axis (x, y) [m], z of its left end [m] and its exact stiffness."""
+    """A shaft in the static model.
+
+    Attributes
+    ----------
+    name : str
+    axis : tuple of float
+        x and y of its axis [m].
+    start : float
+        z of its left end [m].
+    shaft : StaticShaft
+        Exact stiffness.
+    acceleration : tuple of float or None
+        Acceleration along x, y, z that acts on its mass as weight does: free fall, and of a planet's shaft the
+        centrifugal acceleration of its axis [m/s²].
+    carrier : str or None
+        Shaft in which its bearings sit, of a planet; None for seats of the housing and the ground.
+    """
 
     name: str
     axis: tuple[float, float]
     start: float
     shaft: StaticShaft
+    acceleration: tuple[float, ...] | None = None
+    carrier: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +257,7 @@ def static_pair(
     behind_rims : float
         Compliance of rims that are coordinates of the static machine, along the line of action [m/N].
     """
-    force = abs(torque) / geometry.driver.base_radius
+    force = abs(torque / geometry.driver.base_radius)
     tooth_stiffness = pair.stiffness
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness
