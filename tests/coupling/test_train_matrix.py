@@ -240,6 +240,8 @@ def test_senses_are_those_seen_from_the_carrier() -> None:
     assert train.senses == (-1, -1)
     speeds = {name: -3.0 * float(ratio) for name, ratio in train.ratios.items()}
     assert turning_senses(train.pairs, speeds) == [1, 1]
+    behind = [GearedShafts("pinion", "ring", (20, -70)), GearedShafts("ring", "wheel", (30, 20))]
+    assert turning_senses(behind, dict.fromkeys(("pinion", "ring", "wheel"), 0.0)) == [1, 1]
 
 
 teeth = st.integers(12, 90)
