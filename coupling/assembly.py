@@ -538,11 +538,13 @@ def _centrifugal_stiffness(
     carrier = coordinates.rotor(planet.carrier or "")
     outward = np.subtract(planet.axis, carrier.axis)
     distance = math.hypot(*outward)
-    mass = float(np.sum(rotor_participation(planet, (0.0, 0.0, 0.0))[:, 0] ** 2))
+    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2]
+    mass = float(np.sum(participation[:, 0] ** 2))
     at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
     station = carrier.station(planet.start + at)
     along = np.array([-outward[1], outward[0]]) / distance
-    tangential = coordinates.rows(planet.name, along @ planet.motions(at)[:2])
+    # The planet's motion is that of its centre of mass, so that the force is spread as the inertia that it balances.
+    tangential = coordinates.rows(planet.name, participation @ along / mass)
     tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
     force = mass * distance * frames.of(planet.name) ** 2
     law = force * np.array([[0.0, 1.0], [1.0, -distance]])
