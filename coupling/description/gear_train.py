@@ -263,12 +263,12 @@ class GearTrain:
             drives = ", ".join(map(repr, (self.first, *self.given)))
             candidates = [name for name in self.open_shafts if name not in self.planets] or list(self.open_shafts)
             missing = self.freedoms - 1 - len(self.given)
-            verb = "follows" if len(self.open_shafts) == 1 else "follow"
+            given = "1 speed is given, that" if not self.given else f"{1 + len(self.given)} speeds are given, those"
             yield (
-                f"the speed of {', '.join(map(repr, self.open_shafts))} {verb} from nothing: the train has "
-                f"{self.freedoms} degrees of freedom and {1 + len(self.given)} of them driven, by {drives}; expected "
-                f"{missing} more of {', '.join(map(repr, candidates))} held by a torque support, driven at a given "
-                "speed, or geared to another shaft"
+                f"the train has {self.freedoms} degrees of freedom and {given} of {drives}: "
+                f"{', '.join(map(repr, self.open_shafts))} turn freely; expected {missing} more of "
+                f"{', '.join(map(repr, candidates))} held by a torque support, driven at a given speed, or geared to "
+                "another shaft"
             )
 
     def sentence(self, wrong: Contradiction, label: str) -> str:

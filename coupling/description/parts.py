@@ -70,6 +70,8 @@ class Shaft:
     carrier : str, optional
         Name of the shaft with which the axis of this one turns, as that of a planet with its carrier; ``axis`` is its
         place at t = 0. None: the axis stands still.
+    pin_error : tuple of float
+        Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
     """
 
     rotor: Rotor
@@ -81,10 +83,11 @@ class Shaft:
     frequency_limit: float | None = None
     mode_count: int | None = None
     carrier: str | None = None
+    pin_error: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
-        keep_tuples(self, "axis", "unbalances")
+        keep_tuples(self, "axis", "unbalances", "pin_error")
         kind = Instance(Rotor, "a rotor")
         refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
         rules: dict[str, Rule] = {
@@ -95,6 +98,7 @@ class Shaft:
             "mode_count": Number(at_least=1, optional=True, whole=True),
             "bow": Instance(Bow, "a bow, or None", optional=True),
             "carrier": Text(optional=True),
+            "pin_error": Numbers(2),
         }
         part = ("shaft", self.name)
         if not self.name:
@@ -102,6 +106,9 @@ class Shaft:
         kinds = kind_findings(part, self, unbalances=ShaftUnbalance)
         refuse([*attribute_findings(part, self, **rules), *kinds], CouplingError)
         refuse(self._station_findings(), CouplingError)
+        if self.carrier is None and any(self.pin_error):
+            expected = "(0, 0) of a shaft without a carrier; a place of its own is `axis`"
+            refuse([Finding(part, "pin_error", self.pin_error, expected)], CouplingError)
 
     def _station_findings(self) -> Iterator[Finding]:
         """Yield unbalances and points of a bow beyond the ends of the rotor, and a bow that bends nothing."""
