@@ -550,7 +550,7 @@ class Machine:
             components,
             self.housing_component,
             speeds=self.speeds,
-            bearings=self.bearings,
+            bearings=[self._on_displaced_pin(mounted) for mounted in self.bearings],
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
@@ -592,7 +592,10 @@ class Machine:
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
-                [static_bearing(mounted, self.bearing_speed(mounted)) for mounted in self.bearings],
+                [
+                    static_bearing(mounted, self.bearing_speed(mounted), self._pin_displacement(mounted.rotor))
+                    for mounted in self.bearings
+                ],
                 pairs,
                 self.housing_component,
                 self.constant_torques,
@@ -966,6 +969,33 @@ class Machine:
         """Name of the shaft that holds a bearing: a planet's carrier, or one that is its seat; None for other seats."""
         name = self.shaft(mounted.rotor).carrier or mounted.seat
         return name if any(shaft.name == name for shaft in self.shafts) else None
+
+    def _pin_displacement(self, shaft: str) -> FloatArray | None:
+        """Displacement of a planet's pin by its error over x, y, z and the rotations about x, y; None without one."""
+        planet = self.shaft(shaft)
+        if planet.carrier is None or not any(planet.pin_error):
+            return None
+        x, y = np.subtract(planet.axis, self.shaft(planet.carrier).axis) / math.dist(
+            planet.axis, self.shaft(planet.carrier).axis
+        )
+        radial, tangential = planet.pin_error
+        return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
+
+    def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
+        """Return a bearing with the force of its pin's error where its law is linear about no load.
+
+        A law that is linear about the operating point has it in its offset.
+        """
+        displacement = self._pin_displacement(mounted.rotor)
+        if displacement is None or mounted.offset is not None:
+            return mounted
+        if mounted.law is not None:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected a "
+                "bearing that is linear about its load, or a pin_error of 0"
+            )
+        stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
+        return replace(mounted, offset=-stiffness @ displacement)
 
     def _seats_in(self, shaft: Shaft) -> list[float]:
         """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
