@@ -51,7 +51,7 @@ def test_rows_of_a_bore_read_its_harmonics_and_no_rigid_motion() -> None:
         expected = np.zeros(14)
         expected[4 * order - 2], expected[4 * order + 1] = 2.0, -0.5
         # Chords of 96 facets stand for the circle.
-        assert rows @ field.ravel() == pytest.approx(expected, abs=0.004)
+        assert rows @ field.ravel() == pytest.approx(expected, abs=0.01)
 
 
 def _ring_housing() -> HousingComponent:
