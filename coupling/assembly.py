@@ -363,7 +363,7 @@ def assemble_machine(
     system = with_balanced_friction(with_faces)
     if frames.turn:
         of_contacts = [_mesh_frame(coordinates, mesh) for mesh, _ in flanks]
-        of_linear = [_bearing_frame(mounted, coordinates.rotor(mounted.rotor), frames) for mounted in bearings]
+        of_linear = [_bearing_frame(mounted, coordinates, frames) for mounted in bearings]
         for connector in system.linear[len(bearings) :]:
             tilted = connector.of_contact
             of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
@@ -412,12 +412,13 @@ def _bearing(
     speed_range: tuple[float, float],
     frames: Frames,
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
-    """Assemble a bearing between shaft and seat, carrier, pedestal or ground: 5x5 stiffness and damping, or a law.
+    """Assemble a bearing between a shaft and a seat, another shaft, a pedestal or the ground: linear, or with a law.
 
     A grounded bearing that is alike all round stands still in any frame.
     """
     rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
-    speed = coordinates.speeds[rotor.name] - (0.0 if rotor.carrier is None else coordinates.speeds[rotor.carrier])
+    around = _shaft_around(mounted, coordinates)
+    speed = coordinates.speeds[rotor.name] - (0.0 if around is None else coordinates.speeds[around.name])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
@@ -427,9 +428,8 @@ def _bearing(
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     relative = coordinates.rows(rotor.name, rotor.motions(at))
-    if rotor.carrier is not None:
-        pin = coordinates.rotor(rotor.carrier).seat_motions(rotor.axis, rotor.start + at)
-        relative = relative - coordinates.rows(rotor.carrier, pin)
+    if around is not None:
+        relative = relative - coordinates.rows(around.name, around.seat_motions(rotor.axis, rotor.start + at))
     elif mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
             raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
@@ -456,6 +456,12 @@ def _bearing(
     return linear, nonlinear
 
 
+def _shaft_around(mounted: MountedBearing, coordinates: MachineCoordinates) -> RotorComponent | None:
+    """Return the shaft that holds a bearing: a planet's carrier, or one named as its seat; None for other seats."""
+    name = coordinates.rotor(mounted.rotor).carrier or mounted.seat
+    return coordinates.rotor(name) if name is not None and coordinates.is_rotor(name) else None
+
+
 def _frame_speeds(
     rotors: Sequence[RotorComponent],
     bearings: Sequence[MountedBearing],
@@ -476,9 +482,10 @@ def _frame_speeds(
         around = {carriers.get(other) for one in others for other in one}
         if rotor.name in frames or len(around) != 1 or None in around:
             continue
-        on_it = [mounted for mounted in bearings if mounted.rotor == rotor.name]
-        if all(_alike_all_round(mounted) for mounted in on_it):
-            frames[rotor.name] = speeds[carriers[next(iter(others[0]))]]
+        carrier = carriers[next(iter(others[0]))]
+        on_it = [mounted for mounted in bearings if rotor.name in (mounted.rotor, mounted.seat)]
+        if all(_alike_all_round(one) or {one.rotor, one.seat} == {rotor.name, carrier} for one in on_it):
+            frames[rotor.name] = speeds[carrier]
     return frames
 
 
@@ -492,11 +499,12 @@ def _alike_all_round(mounted: MountedBearing) -> bool:
     return is_isotropic(bearing.spatial_stiffness) and is_isotropic(bearing.spatial_damping)
 
 
-def _bearing_frame(mounted: MountedBearing, rotor: RotorComponent, frames: Frames) -> float:
-    """Speed at which a bearing turns [rad/s]: with its carrier, or with any frame where it is alike all round."""
-    if rotor.carrier is not None or _alike_all_round(mounted):
-        return frames.of(rotor.name)
-    return 0.0
+def _bearing_frame(mounted: MountedBearing, coordinates: MachineCoordinates, frames: Frames) -> float:
+    """Speed at which a bearing turns [rad/s]: with the shaft that holds it, or with any frame where it is isotropic."""
+    around = _shaft_around(mounted, coordinates)
+    if around is not None:
+        return frames.of(around.name)
+    return frames.of(mounted.rotor) if _alike_all_round(mounted) else 0.0
 
 
 def _torque_support(

@@ -334,9 +334,9 @@ class Machine:
         return tuple(float(shafts.relative_speed(self.speeds)) for shafts in self.train.pairs)
 
     def bearing_speed(self, mounted: MountedBearing) -> float:
-        """Signed speed of a shaft in its bearing [rad/s], that of a planet relative to its carrier."""
-        carrier = self.shaft(mounted.rotor).carrier
-        return self.speeds[mounted.rotor] - (0.0 if carrier is None else self.speeds[carrier])
+        """Signed speed of a shaft in its bearing [rad/s], relative to a shaft that holds it, as a planet's carrier."""
+        around = self.shaft_around(mounted)
+        return self.speeds[mounted.rotor] - (0.0 if around is None else self.speeds[around])
 
     @property
     def _torque_springs(self) -> list[TorqueSupport]:
@@ -565,7 +565,7 @@ class Machine:
             components,
             self.housing_component,
             speeds=self.speeds,
-            bearings=self.bearings,
+            bearings=[self._on_displaced_pin(mounted) for mounted in self.bearings],
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
@@ -607,7 +607,10 @@ class Machine:
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
-                [static_bearing(mounted, self.bearing_speed(mounted)) for mounted in self.bearings],
+                [
+                    static_bearing(mounted, self.bearing_speed(mounted), self._pin_displacement(mounted.rotor))
+                    for mounted in self.bearings
+                ],
                 pairs,
                 self.housing_component,
                 self.constant_torques,
@@ -916,9 +919,9 @@ class Machine:
                 moments_at.append(mounted.bearing.at)
                 if not mounted.law.floats:
                     thrusts_at.append(mounted.bearing.at)
-        pins = self._pins_on(shaft)
-        twisted_at = [*pins, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
-        moments_at += pins
+        seats = self._seats_in(shaft)
+        twisted_at = [*seats, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
+        moments_at += seats
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.bearing_speed(mounted)) for mounted in bearings],
@@ -960,7 +963,7 @@ class Machine:
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [force.at for force in self.forces if force.rotor == shaft.name]
         places += [support.at for support in self.torque_supports if support.shaft == shaft.name]
-        places += self._pins_on(shaft)
+        places += self._seats_in(shaft)
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
@@ -977,13 +980,45 @@ class Machine:
         fall = (0.0, 0.0, 0.0) if self.gravity is None else self.gravity
         return x + fall[0], y + fall[1], fall[2]
 
-    def _pins_on(self, carrier: Shaft) -> list[float]:
-        """Stations of a carrier at the bearings of its planets, from its left end [m]."""
+    def shaft_around(self, mounted: MountedBearing) -> str | None:
+        """Name of the shaft that holds a bearing: a planet's carrier, or one that is its seat; None for other seats."""
+        name = self.shaft(mounted.rotor).carrier or mounted.seat
+        return name if any(shaft.name == name for shaft in self.shafts) else None
+
+    def _pin_displacement(self, shaft: str) -> FloatArray | None:
+        """Displacement of a planet's pin by its error over x, y, z and the rotations about x, y; None without one."""
+        planet = self.shaft(shaft)
+        if planet.carrier is None or not any(planet.pin_error):
+            return None
+        x, y = np.subtract(planet.axis, self.shaft(planet.carrier).axis) / math.dist(
+            planet.axis, self.shaft(planet.carrier).axis
+        )
+        radial, tangential = planet.pin_error
+        return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
+
+    def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
+        """Return a bearing with the force of its pin's error where its law is linear about no load.
+
+        A law that is linear about the operating point has it in its offset.
+        """
+        displacement = self._pin_displacement(mounted.rotor)
+        if displacement is None or mounted.offset is not None:
+            return mounted
+        if mounted.law is not None:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected a "
+                "bearing that is linear about its load, or a pin_error of 0"
+            )
+        stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
+        return replace(mounted, offset=-stiffness @ displacement)
+
+    def _seats_in(self, shaft: Shaft) -> list[float]:
+        """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
         return [
-            min(max(planet.start + mounted.bearing.at - carrier.start, 0.0), carrier.rotor.length)
-            for planet in self.shafts
-            if planet.carrier == carrier.name
-            for mounted in self._bearings_on(planet.name)
+            min(max(held.start + mounted.bearing.at - shaft.start, 0.0), shaft.rotor.length)
+            for mounted in self.bearings
+            if self.shaft_around(mounted) == shaft.name
+            for held in [self.shaft(mounted.rotor)]
         ]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:

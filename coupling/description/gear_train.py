@@ -24,7 +24,7 @@ from gearwhine.coupling.description.train_matrix import SpeedRows, connected_sha
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
-from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
+from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, signed_distance, turning_sense
 from gearwhine.coupling.gears.geometry.profile import meshing_rotations
 from gearwhine.coupling.machine.coordinates import trains
 from gearwhine.coupling.machine.loads import (
@@ -884,9 +884,7 @@ def geometry_on_axes(
         Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
         the shafts.
     """
-    distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
-    if driver.is_internal or driven.is_internal:
-        distance = -distance
+    distance = signed_distance(driver, driven, hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
     require_one_plane(pair_label(driver.name, driven.name), places, (driver, driven))
     offset = places[1] - places[0]
     try:

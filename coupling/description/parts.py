@@ -558,8 +558,23 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             continue
         if mounted.bearing.pedestal is not None:
             yield pedestal_finding(part, seat, None)
+        if seat in shafts:
+            yield from _coaxial_findings(part, shaft, shafts[seat])
+            continue
         if housing is None or seat not in seats:
             yield Finding(part, "seat", seat, f"a seat of the housing, one of {seat_names}, or None for the ground")
         elif seat in housing.seat_axes:
             place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
             yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)
+
+
+def _coaxial_findings(part: Part, shaft: Shaft, around: Shaft) -> Iterator[Finding]:
+    """Yield a bearing between a shaft and itself, or one that is not on its axis or turns with another carrier."""
+    offset = hypot(*(a - b for a, b in zip(shaft.axis, around.axis, strict=True)))
+    if shaft is around or offset > LARGEST_OFFSET or around.carrier is not None:
+        expected = (
+            f'another shaft on the axis of "{shaft.name}"; the axis of "{around.name}" is {in_mm(offset)} off it'
+            if shaft is not around and around.carrier is None
+            else f'another shaft on the axis of "{shaft.name}" that is no planet'
+        )
+        yield Finding(part, "seat", around.name, expected)

@@ -14,8 +14,7 @@ from gearwhine.coupling.linear.frequency_response import response
 from gearwhine.coupling.linear.turning_response import TurningResponse
 from gearwhine.coupling.statics.mean_mesh import mean_contact
 from tests.machines.plane_planetary_set import (
-    PLANET_TEETH,
-    SUN_TEETH,
+    TEETH,
     eigenvalues,
     equal_angles,
     independent_matrices,
@@ -40,7 +39,7 @@ def _described(count: int, standing: tuple[str, ...] = (), damping: float = 0.0)
 def _assembled(machine: Machine, carrier_speed: float) -> CoupledMachine:
     """The machine with sun and carrier driven at two speeds."""
     ratios = {"sun": float(SUN_RATIO), "carrier": 1.0}
-    planet = 1.0 - (SUN_RATIO - 1.0) * SUN_TEETH / PLANET_TEETH
+    planet = 1.0 - (SUN_RATIO - 1.0) * TEETH[0] / TEETH[1]
     ratios |= {shaft.name: planet for shaft in machine.shafts if shaft.carrier}
     components = machine.rotor_components()
     return assemble_machine(

@@ -25,8 +25,9 @@ MASS = {"carrier": 5.43, "ring": 2.35, "sun": 0.4, "planet": 0.66}  # kg
 INERTIA = {"carrier": 6.29, "ring": 3.00, "sun": 0.39, "planet": 0.61}  # I / r², r the base radius or the distance, kg
 STEEL = ShaftMaterial(youngs_modulus=210e9, shear_modulus=81e9, density=7850.0)
 MESH_STIFFNESS, BEARING_STIFFNESS, RING_SUPPORT = 5e8, 1e8, 1e9  # N/m
-SUN_TEETH, PLANET_TEETH, MODULE = 24, 30, 2.5e-3
-DISTANCE = 0.5 * (SUN_TEETH + PLANET_TEETH) * MODULE
+TEETH = (24, 30)
+"""Teeth of sun and planets."""
+MODULE = 2.5e-3
 
 # So stiff and light that the shafts are rigid bodies without mass of their own; time integration needs real ones.
 RIGID = ShaftMaterial(youngs_modulus=2e16, shear_modulus=8e15, density=1e-3)
@@ -44,14 +45,15 @@ def plane_set(
     with_ring: bool,
     damping: float = 0.0,
     material: ShaftMaterial = RIGID,
+    teeth: tuple[int, int] = TEETH,
 ) -> dict[str, Any]:
     """Parts of a machine: sun, carrier, planets at the angles and perhaps the ring; without it the carrier is held.
 
     ``damping`` is that of bearings and meshes over their stiffness [s].
     """
-    radius = {"sun": SUN_TEETH, "planet": PLANET_TEETH, "ring": SUN_TEETH + 2 * PLANET_TEETH}
-    radius = {name: 0.5 * MODULE * teeth * math.cos(pressure_angle) for name, teeth in radius.items()}
-    radius["carrier"] = DISTANCE
+    numbers_of_teeth = {"sun": teeth[0], "planet": teeth[1], "ring": teeth[0] + 2 * teeth[1]}
+    radius = {name: 0.5 * MODULE * z * math.cos(pressure_angle) for name, z in numbers_of_teeth.items()}
+    distance = radius["carrier"] = 0.5 * MODULE * sum(teeth)
     shafts, bearings, gears = list[Shaft](), list[MountedBearing](), list[ShaftGear]()
 
     def body(kind: str, name: str, **where: Any) -> None:
@@ -61,8 +63,8 @@ def plane_set(
         for end, at in (("left", 0.0), ("right", _LENGTH)):
             bearings.append(MountedBearing(Bearing(f"{name} {end}", at, law, damping * law), name, None))
 
-    def gear(name: str, shaft: str, teeth: int, addendum: float = 1.0) -> None:
-        wheel = Gear(name, teeth, MODULE, pressure_angle, 0.02, addendum=addendum)
+    def gear(name: str, shaft: str, z: int, addendum: float = 1.0) -> None:
+        wheel = Gear(name, z, MODULE, pressure_angle, 0.02, addendum=addendum)
         gears.append(ShaftGear(wheel, shaft, _MIDDLE, inertia=(0.0, 0.0, 0.0), stiffens_shaft=False))
 
     def pair(driver: str, driven: str) -> GearPair:
@@ -70,19 +72,19 @@ def plane_set(
         return GearPair(driver, driven, stiffness=spring, misalignment=0.0, damping=damping * MESH_STIFFNESS)
 
     body("sun", "sun")
-    gear("sun gear", "sun", SUN_TEETH)
+    gear("sun gear", "sun", teeth[0])
     body("carrier", "carrier")
     numbers = range(1, len(angles) + 1)
     for number, angle in zip(numbers, angles, strict=True):
-        axis = (DISTANCE * math.cos(angle), DISTANCE * math.sin(angle))
+        axis = (distance * math.cos(angle), distance * math.sin(angle))
         body("planet", f"planet {number}", axis=axis, carrier="carrier")
-        gear(f"planet gear {number}", f"planet {number}", PLANET_TEETH)
+        gear(f"planet gear {number}", f"planet {number}", teeth[1])
     pairs = [pair("sun gear", f"planet gear {number}") for number in numbers]
     held = "carrier"
     if with_ring:
         body("ring", "ring")
         # Full-depth teeth of the ring would reach below the planets' involutes.
-        gear("ring gear", "ring", -(SUN_TEETH + 2 * PLANET_TEETH), addendum=0.8)
+        gear("ring gear", "ring", -numbers_of_teeth["ring"], addendum=0.8)
         pairs += [pair(f"planet gear {number}", "ring gear") for number in numbers]
         held = "ring"
     support = TorqueSupport(held, _MIDDLE, stiffness=RING_SUPPORT * radius[held] ** 2)

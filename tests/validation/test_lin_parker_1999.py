@@ -49,10 +49,10 @@ def _motions(system: CoupledSystem, shapes: npt.NDArray[np.complex128]) -> dict[
 
 
 def _in_plane(system: CoupledSystem, modes: CoupledModes) -> npt.NDArray[np.int64]:
-    """Modes that move the bodies in their plane; the tilts of their shafts are no part of the model."""
+    """Modes that move the bodies in their plane; tilts and bending of their shafts are no part of the model."""
     motions = _motions(system, modes.shapes)
     size = sum(np.abs(motion[:, :2]).sum(axis=1) + 0.05 * np.abs(motion[:, 2]) for motion in motions.values())
-    return np.flatnonzero(size > 1e-6 * size.max())
+    return np.flatnonzero((size > 1e-6 * size.max()) & (modes.frequencies_hz < 2e4))
 
 
 @pytest.mark.parametrize("count", [3, 4])
@@ -93,11 +93,12 @@ def _answer(system: CoupledSystem, errors: npt.NDArray[np.complex128], hz: float
 @pytest.mark.parametrize(
     ("count", "harmonic", "silent"),
     # Parker (2000): with k = harmonic · z_sun mod N, k = 0 drives rotational modes alone, k = 1 or N - 1 translational
-    # ones, others planet modes. The sun has 24 teeth.
+    # ones, others planet modes. Suns have 24 and 36 teeth.
     [(3, 1, "translation"), (4, 1, "translation"), (5, 1, "rotation"), (5, 2, "both"), (5, 5, "translation")],
 )
 def test_phasing_of_the_meshes_suppresses_what_parkers_rules_say(count: int, harmonic: int, silent: str) -> None:
-    parts = plane_set(equal_angles(count), pressure_angle=PRESSURE_ANGLE, with_ring=True, damping=1e-6)
+    teeth = (36, 24) if count == 5 else (24, 30)
+    parts = plane_set(equal_angles(count), pressure_angle=PRESSURE_ANGLE, with_ring=True, damping=1e-6, teeth=teeth)
     system = Machine(**parts).assembled.system
     phases = np.array([contact.phase for contact in system.contacts])
     phased = _answer(system, np.exp(2j * np.pi * harmonic * phases), 1300.0)

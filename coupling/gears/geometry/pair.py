@@ -46,6 +46,11 @@ from gearwhine.coupling.gears.errors import (
     require_finite,
 )
 from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.interference import (
+    addendum_without_fouling,
+    fouling_clearance,
+    radial_clearance,
+)
 from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
 from gearwhine.numerics.findings import Finding
 
@@ -79,6 +84,11 @@ def mesh_frequency(speed: float, teeth: int) -> float:
     return abs(speed) * abs(teeth) / (2.0 * math.pi)
 
 
+def signed_distance(driver: Gear, driven: Gear, apart: float) -> float:
+    """Centre distance of two gears from the distance of their axes [m]: negative with an internal gear (ISO 21771)."""
+    return -apart if driver.is_internal or driven.is_internal else apart
+
+
 def pair_label(driver: str, driven: str) -> str:
     """Name of a gear pair in messages, by the names of its gears."""
     return f"gear pair {driver!r} -> {driven!r}"
@@ -104,8 +114,8 @@ class GearPairGeometry:
         Unequal module, pressure angle or helix angle, or helices whose hands do not fit: opposite ones of external
         gears, equal ones with an internal gear; two internal gears.
     InterferenceError
-        Contact below the involute's start on either gear, a tip in the other's root, or teeth thicker than their
-        spaces.
+        Contact below the involute's start on either gear, a tip in the other's root, teeth thicker than their
+        spaces, or tips that foul each other beyond the path of contact of an internal pair.
     NoContactError
         Total contact ratio below one, which of spur gears is the transverse one.
     """
@@ -124,8 +134,8 @@ class GearPairGeometry:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What is unlikely of the pair: contact ratios."""
-        return tuple(_ratio_findings(self))
+        """What is unlikely of the pair: contact ratios, an internal pair that can be mounted along its axes alone."""
+        return (*_ratio_findings(self), *_mounting_findings(self))
 
     # ---------------------------------------------------------- working values
 
@@ -133,6 +143,11 @@ class GearPairGeometry:
     def is_internal(self) -> bool:
         """Whether one of the gears is internal."""
         return self.driver.is_internal or self.driven.is_internal
+
+    @property
+    def pinion_and_ring(self) -> tuple[Gear, Gear]:
+        """The external and the internal gear of an internal pair."""
+        return (self.driven, self.driver) if self.driver.is_internal else (self.driver, self.driven)
 
     def flank_sense(self, sense: int) -> int:
         """Sense s along which the driver pushes, where it turns counter-clockwise (sense 1) or clockwise (-1).
@@ -428,7 +443,7 @@ def _check_match(pair: GearPairGeometry) -> None:
             "gear meshes with an external one"
         )
     if pair.is_internal and pair.driver.teeth + pair.driven.teeth >= 0:
-        ring, pinion = (pair.driver, pair.driven) if pair.driver.is_internal else (pair.driven, pair.driver)
+        pinion, ring = pair.pinion_and_ring
         raise MismatchedGearsError(
             f"{pair.label}: the internal gear {ring.name!r} of {ring.tooth_count} teeth does not reach around "
             f"{pinion.name!r} of {pinion.teeth}; it needs more, by some 8 to 12 with teeth of full height"
@@ -526,6 +541,23 @@ def _check_contact(pair: GearPairGeometry) -> None:
             raise InterferenceError(
                 f"{pair.label}: the tip of {tip.name!r} hits the root of {rooted.name!r} by {-clearance * 1e3:.4g} mm"
             )
+    if pair.is_internal:
+        _check_fouling(pair)
+
+
+def _check_fouling(pair: GearPairGeometry) -> None:
+    """Raise where the teeth of an internal pair foul each other beyond the path of contact."""
+    pinion, ring = pair.pinion_and_ring
+    clearance = fouling_clearance(pinion, ring, pair.working_centre_distance)
+    if clearance >= 0.0:
+        return
+    addendum = addendum_without_fouling(pinion, ring, pair.working_centre_distance)
+    shorter = "" if addendum is None else f"an addendum of {ring.name!r} of at most {addendum:.4g}, or "
+    raise InterferenceError(
+        f"{pair.label}: the tips of the teeth foul each other by {-clearance * 1e3:.4g} mm where the tip circles "
+        f"cross, beyond the path of contact, with {ring.tooth_count - pinion.teeth} teeth between {pinion.teeth} and "
+        f"{ring.tooth_count}; {shorter}a greater difference avoids it"
+    )
 
 
 _MOST_IN_CONTACT = 20.0
@@ -543,6 +575,17 @@ def _ratio_findings(pair: GearPairGeometry) -> Iterator[Finding]:
     if pair.total_contact_ratio > _MOST_IN_CONTACT:
         expected = f"at most {_MOST_IN_CONTACT:g} pairs in contact at once"
         yield Finding(part, "total_contact_ratio", pair.total_contact_ratio, expected, "warning")
+
+
+def _mounting_findings(pair: GearPairGeometry) -> Iterator[Finding]:
+    """Yield a pinion that does not pass between the tips of its ring's teeth."""
+    if not pair.is_internal:
+        return
+    clearance = radial_clearance(*pair.pinion_and_ring, pair.working_centre_distance)
+    if clearance < 0.0:
+        overlap = f"the teeth overlap by {-clearance * 1e3:.4g} mm on the way"
+        expected = f"to be mounted along the axes: pushed in radially, {overlap}"
+        yield Finding(("gear pair", f"{pair.driver.name} -> {pair.driven.name}"), "", None, expected, "warning")
 
 
 def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowest: float) -> None:
