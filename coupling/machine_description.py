@@ -36,6 +36,7 @@ from gearwhine.coupling.description.gear_train import (
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
+    mesh_phases,
     require_balanced_outputs,
 )
 from gearwhine.coupling.description.parts import (
@@ -370,6 +371,24 @@ class Machine:
             places = shafts[0].start + driver.at, shafts[1].start + driven.at
             geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes, places))
         return tuple(geometries)
+
+    @cached_property
+    def mesh_phases(self) -> tuple[float, ...]:
+        """Phase of each gear pair at t = 0 [mesh periods].
+
+        Raises
+        ------
+        CouplingError
+            Where gears in a loop cannot be assembled.
+        """
+        lines = []
+        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True):
+            x, y = np.subtract(self.shaft(driven.shaft).axis, self.shaft(driver.shaft).axis)
+            side = -1.0 if geometry.is_internal else 1.0
+            lines.append(math.atan2(side * y, side * x))
+        names = [(pair.driver, pair.driven) for pair in self.gear_pairs]
+        drivers, drivens = [first for first, _ in names], [second for _, second in names]
+        return tuple(mesh_phases(drivers, drivens, self.pair_geometries, lines, self.turning_senses))
 
     @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:

@@ -352,7 +352,7 @@ class PlacedSet:
                     continue
                 apart = math.dist(self.places[shafts[0]], self.places[shafts[1]])
                 found.append(Clearance((first, second), apart - one.tip_radius - other.tip_radius))
-        return tuple(sorted(found, key=lambda one: one.gap))
+        return tuple(sorted(found, key=lambda one: round(one.gap, 9)))
 
     # ------------------------------------------------------------------- phasing
 
@@ -369,6 +369,19 @@ class PlacedSet:
         teeth = 0 if name is None else abs(self.gears[name].teeth)
         turns = [self.angle_from_first(group) / (2.0 * math.pi) for group in range(len(self.groups))]
         return tuple(_part_of_period(-sense * teeth * turn) for turn in turns)
+
+    def sense(self, kind: Literal["sun", "ring"], speeds: Mapping[str, float]) -> int:
+        """Sense in which sun or ring turns relative to the carrier, 1 counter-clockwise or -1; 1 at rest.
+
+        Parameters
+        ----------
+        kind : {"sun", "ring"}
+        speeds : mapping of str to float
+            Signed speed of each shaft [rad/s].
+        """
+        name = self.of.sun if kind == "sun" else self.of.ring
+        relative = 0.0 if name is None else speeds[self.shafts[name]] - speeds[self.of.carrier]
+        return -1 if relative < 0.0 else 1
 
     def excitation(self, harmonic: int, kind: Literal["sun", "ring"] | None = None) -> tuple[float, float]:
         """Sum of a mesh harmonic over equal groups, over that in phase: as a torque, and as a force across the axis.
@@ -436,12 +449,17 @@ class PlacedSet:
             severity: Literal["error", "warning"] = "error" if self.planets_in_one_piece else "warning"
             yield Finding(self._part, "planets", None, self._fitting_angles(), severity)
 
+    def _most_at_equal_angles(self, clearance: Clearance) -> int:
+        """Largest number of planets at equal angles that two neighbours leave room for."""
+        reach = max(math.hypot(*self.places[self.shafts[name]]) for name in clearance.gears)
+        tip = max(self.gears[name].tip_radius for name in clearance.gears)
+        return math.floor(math.pi / math.asin(tip / reach)) if tip < reach else 1
+
     def _room(self, clearance: Clearance) -> str:
         """Return what is expected of planets that touch."""
         first, second = (self.gears[name] for name in clearance.gears)
         places = [self.places[self.shafts[name]] for name in clearance.gears]
-        reach, tip = math.hypot(*places[0]), max(first.tip_radius, second.tip_radius)
-        most = math.floor(math.pi / math.asin(tip / reach)) if tip < reach else 1
+        reach, most = math.hypot(*places[0]), self._most_at_equal_angles(clearance)
         least = math.degrees(2.0 * math.asin(min((first.tip_radius + second.tip_radius) / (2.0 * reach), 1.0)))
         return (
             f"planets clear of each other: their axes are {in_mm(math.dist(*places))} apart, and their tip circles "
@@ -478,7 +496,8 @@ class PlacedSet:
         if len(set(angles)) < count or not self.is_evenly_spaced:
             other = ""
         else:
-            fitting = [n for n in range(2, _MOST_PLANETS + 1) if number % n == 0 and n != count]
+            most = min([_MOST_PLANETS, *(self._most_at_equal_angles(one) for one in self.clearances)])
+            fitting = [n for n in range(2, most + 1) if number % n == 0 and n != count]
             near = sorted(fitting, key=lambda n: abs(n - count))[:2]
             counts = f", {' or '.join(map(str, near))} of them," if near else ""
             low, high = number % count, count - number % count

@@ -33,7 +33,8 @@ def gear(name: str, on: str, teeth: int, **changes: Any) -> ShaftGear:
 
 def bearings(on: str) -> list[MountedBearing]:
     return [
-        MountedBearing(Bearing(f"{on} {at}", at, np.diag([1e8, 1e8]), np.zeros((2, 2))), on, None) for at in (0.01, 0.05)
+        MountedBearing(Bearing(f"{on} {at}", at, np.diag([1e8, 1e8]), np.zeros((2, 2))), on, None)
+        for at in (0.01, 0.05)
     ]
 
 
@@ -52,8 +53,9 @@ def set_parts(sun: int = 24, planet: int = 30, ring: int | None = None, held: st
     """Parts of a machine with one set; sun, ring and carrier are shafts and gears "s", "r" and "c"."""
     teeth = {"s": sun, "r": -(sun + 2 * planet) if ring is None else ring}
     path = how.pop("path", [("s", "p"), ("p", "r")])
-    # The shafts are apart along z but for their gears.
-    members = [shaft("s"), shaft("r", start=0.0), shaft("c", start=0.1)]
+    # The ring is in a drum, the carrier beside the gears.
+    drum = math.ceil(MODULE * (abs(teeth["r"]) + 12) * 1e3) * 1e-3
+    members = [shaft("s"), shaft("r", bore=drum), shaft("c", start=0.1)]
     made = planets(planet, how.pop("distance", 0.5 * MODULE * (sun + planet)), members[2], path, **how)
     return {
         "shafts": [*members, *made.shafts],
