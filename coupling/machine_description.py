@@ -1025,8 +1025,8 @@ class Machine:
             return mounted
         if mounted.law is not None:
             raise CouplingError(
-                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected a "
-                "bearing that is linear about its load, or a pin_error of 0"
+                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected "
+                "a bearing that is linear about its load, or a pin_error of 0"
             )
         stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
         return replace(mounted, offset=-stiffness @ displacement)
