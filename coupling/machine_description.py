@@ -227,7 +227,7 @@ class Machine:
         meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
         yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
         for shaft in self.shafts:
-            tips = [mounted.gear.tip_radius for mounted in self._gears_on(shaft.name)]
+            tips = [mounted.gear.outer_radius for mounted in self._gears_on(shaft.name)]
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
         for place, force in enumerate(self.forces):
             yield from force_findings(force, self.shaft(force.rotor).rotor, place)

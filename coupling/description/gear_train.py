@@ -1,8 +1,8 @@
 """Gear train: speed ratios, senses of rotation, power flow, mesh phases; checks that a train can exist.
 
-External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
-of the pair says, and the middles of their faces at most half of the narrower face apart along the shafts. A train at
-constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
+Gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂, z negative of an internal gear (ISO 21771); their
+shafts are as far apart as the geometry of the pair says, and the middles of their faces at most half of the narrower
+face apart along the shafts. A train at constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
 
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
@@ -21,7 +21,7 @@ from typing import Literal
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
-from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
+from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, signed_distance, turning_sense
 from gearwhine.coupling.gears.geometry.profile import meshing_rotations
 from gearwhine.coupling.machine.coordinates import trains
 from gearwhine.coupling.machine.loads import (
@@ -587,7 +587,7 @@ def _require_ratio(mesh: GearMesh, speeds: Mapping[str, float]) -> None:
 def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
     gears = mesh.driver, mesh.driven
     apart = hypot(gears[0].axis[0] - gears[1].axis[0], gears[0].axis[1] - gears[1].axis[1])
-    distance = mesh.geometry.working_centre_distance
+    distance = abs(mesh.geometry.working_centre_distance)
     if abs(apart - distance) > LARGEST_OFFSET:
         raise CouplingError(
             f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
@@ -630,7 +630,7 @@ def geometry_on_axes(
         Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
         the shafts.
     """
-    distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
+    distance = signed_distance(driver, driven, hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
     require_one_plane(pair_label(driver.name, driven.name), places, (driver, driven))
     offset = places[1] - places[0]
     try:
@@ -676,7 +676,7 @@ def mesh_phases(
         The gears' names, pair by pair.
     geometries : sequence of GearPairGeometry
     centre_lines : sequence of float
-        Angle from x of the line from the driver's centre to the driven gear's [rad].
+        Angle from x of the line from the driver's centre to the driven gear's, of an internal pair back [rad].
     senses : sequence of int
         +1 where the driver turns counter-clockwise, -1 where clockwise.
 
@@ -696,7 +696,8 @@ def mesh_phases(
             angle - gear.turn_along(middle)
             for angle, gear, middle in zip(met, (pair.driver, pair.driven), pair.common_middles, strict=True)
         ]
-        pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
+        along = pair.flank_sense(sense)
+        pitches = along * 2.0 * math.pi / pair.driver.teeth, -along * 2.0 * math.pi / pair.driven.teeth
         if driver in angles:
             phase = (angles[driver] - at_zero[0]) / pitches[0]
         elif driven in angles:

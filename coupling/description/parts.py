@@ -190,7 +190,7 @@ class ShaftGear:
     @property
     def in_one_piece(self) -> bool:
         """Whether gear and shaft deform as one piece over the face; else the gear stands on one section."""
-        return self.stiffens_shaft and self.gear.rim_thickness is None
+        return self.stiffens_shaft and self.gear.rim_thickness is None and not self.gear.is_internal
 
     @property
     def body_inertia(self) -> tuple[float, float, float]:

@@ -94,7 +94,7 @@ def axial_forces(
     senses = turning_senses([pair.rotors for pair in pairs], speeds)
     for number, (pair, sense) in enumerate(zip(pairs, senses, strict=True)):
         for rotor, gear in zip(pair.rotors, (pair.geometry.driver, pair.geometry.driven), strict=True):
-            moments[names.index(rotor), number] += sense * gear.base_radius
+            moments[names.index(rotor), number] += pair.geometry.flank_sense(sense) * gear.base_radius
     acting = np.array([torques.get(name, 0.0) for name in names])
     mesh_forces = np.linalg.lstsq(moments, acting, rcond=None)[0] if pairs else np.zeros(0)
     by_rotor: dict[str, list[tuple[str, float]]] = {}

@@ -237,7 +237,7 @@ def _over_hunting_period(machine: Machine, number: int, load: PairLoad) -> Loade
         return None
     # Inertias are for the damping alone.
     pair = replace(machine.gear_pairs[number], misalignment=0.0, face_gap=load.face_gap, damping=0.0)
-    torque = math.copysign(load.force * geometry.driver.base_radius, machine.pair_torques[number])
+    torque = math.copysign(load.force * abs(geometry.driver.base_radius), machine.pair_torques[number])
     speed = machine.speeds[load.pair.driver.shaft]
     return load_gear_pair(pair, geometry, torque=torque, inertias=(1.0, 1.0), speed=speed).hunting
 

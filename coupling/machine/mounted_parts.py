@@ -195,8 +195,10 @@ class GearMesh:
 
     @property
     def centre_line_angle(self) -> float:
-        """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+        """Angle from x of the line from the driver's centre to the driven gear's, of an internal pair back [rad]."""
         x, y = self._centre_line
+        if self.geometry.is_internal:
+            x, y = -x, -y
         return atan2(y, x)
 
     @property

@@ -227,7 +227,7 @@ def static_pair(
     behind_rims : float
         Compliance of rims that are coordinates of the static machine, along the line of action [m/N].
     """
-    force = abs(torque) / geometry.driver.base_radius
+    force = abs(torque / geometry.driver.base_radius)
     tooth_stiffness = pair.stiffness
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness

@@ -191,7 +191,7 @@ def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFindi
     seats = {} if housing is None else {seat.name: seat.diameter for seat in housing.seat}
     yield from machine_findings(shafts, gears, bearings, meshing, seats)
     for shaft, rotor in zip(shafts, parts.rotors, strict=True):
-        tip = max((mounted.gear.tip_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
+        tip = max((mounted.gear.outer_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
         yield from unbalance_findings(shaft, rotor, tip)
     by_name = {shaft.name: shaft.rotor for shaft in shafts}
     for place, force in enumerate(() if parts.operation is None else parts.operation.force):
