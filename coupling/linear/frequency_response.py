@@ -108,17 +108,14 @@ def response(
     w = np.asarray(frequencies, dtype=np.float64)
     if not np.all(np.isfinite(w)) or np.any(w == 0.0):
         raise CouplingError("frequencies that are 0 or not finite; expected others: a free machine drifts at 0")
-    state = mean_contact(system) if contact is None else contact
     if system.turns:
-        model = TurningResponse(system, state)
-        columns = [
-            model.respond(at, [({model.still: f}, {}) for f in load], [model.still])
-            for at, load in zip(w, loads, strict=True)
-        ]
-        return np.array([each[model.still] for each in columns]).reshape(loads.shape)
+        model = TurningResponse(system, mean_contact(system) if contact is None else contact)
+        excitations_at = ([({model.still: load}, {}) for load in at] for at in loads)
+        moved = [model.respond(at, each, [model.still]) for at, each in zip(w.tolist(), excitations_at, strict=True)]
+        return np.array([each[model.still] for each in moved]).reshape(loads.shape)
     if pairs is not None:
         return superposed(pairs, loads, w)
-    stiffness, damping = linear_matrices(system, state)
+    stiffness, damping = linear_matrices(system, mean_contact(system) if contact is None else contact)
     amplitudes = np.empty(loads.shape, dtype=np.complex128)
     for number, (frequency, load) in enumerate(zip(w, loads, strict=True)):
         dynamic = stiffness + 1j * frequency * damping

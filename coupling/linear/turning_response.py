@@ -272,8 +272,8 @@ class TurningResponse:
             for row, deflected in seen:
                 if alone is not None:
                     free[deflected] += alone[row]
-                for column, other in acting:
-                    between[deflected, :, other, :] += compliance[row, :, column, :]
+                for column, force in acting:
+                    between[deflected, :, force, :] += compliance[row, :, column, :]
         free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
         matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
         deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
