@@ -37,7 +37,7 @@ from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
 from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
-from gearwhine.coupling.linear.turning_response import TurningResponse
+from gearwhine.coupling.linear.turning_response import Excitation, TurningResponse
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
@@ -110,7 +110,7 @@ def response(
         raise CouplingError("frequencies that are 0 or not finite; expected others: a free machine drifts at 0")
     if system.turns:
         model = TurningResponse(system, mean_contact(system) if contact is None else contact)
-        excitations_at = ([({model.still: load}, {}) for load in at] for at in loads)
+        excitations_at: list[list[Excitation]] = [[({model.still: load}, {}) for load in at] for at in loads]
         moved = [model.respond(at, each, [model.still]) for at, each in zip(w.tolist(), excitations_at, strict=True)]
         return np.array([each[model.still] for each in moved]).reshape(loads.shape)
     if pairs is not None:
