@@ -645,7 +645,7 @@ def load_document(title: str, solved: "SolvedLoad") -> dict[str, Any]:
 
 LOAD_OPTIONS = (
     Option(("over_torque",), ("load_torque",), "load-over-torque.png"),
-    Option(("carrier_turns",), ("carrier_angle",), "load-carrier-turn.png"),
+    Option(("carrier_turns",), ("carrier_angle",), "load-carrier-turn-*.png"),
     Option(
         ("sensitivity", "sensor_lines", "loudest_lines", "loudest_lines_db_a", "lines_without"),
         ("influence", "sensor_line", "loudest_line"),
@@ -744,6 +744,8 @@ _PICTURES = (
     Picture(
         "load-sensitivity", "Material added on blue places lowers the misalignment of the pair, on red ones raises it."
     ),
+    Picture("load-planetary", "Front view of the set: mesh forces on the planets and their forces on the pins."),
+    Picture("load-carrier-turn", "Load share of each planet over a turn of the carrier."),
     Picture("load-over-torque", "Misalignment, K_Hβ, mesh stiffness and transmission error over the torque."),
 )
 
