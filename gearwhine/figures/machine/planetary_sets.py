@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 
 from gearwhine.coupling.description.planetary import PlacedSet
@@ -132,7 +133,7 @@ def draw_carrier_turn(title: str, turn: CarrierTurn) -> Figure:
     figure = sheet(HEAD + _HEIGHT + FOOT, title, "static equilibrium at each angle of the carrier")
     axes = panel(figure, FOOT, _HEIGHT)
     degrees = np.append(np.degrees(turn.angles), 360.0)
-    handles = []
+    handles = list[Line2D]()
     for one in turn.sets[0]:
         shares = turn.load_shares(one.name)
         closed = np.vstack([shares, shares[:1]])
