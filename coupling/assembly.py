@@ -9,7 +9,7 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -48,6 +48,7 @@ from gearwhine.coupling.machine.connectors import (
     NonlinearConnector,
     Sliding,
     SpeedTable,
+    TurningPart,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
@@ -55,7 +56,8 @@ from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, st
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
+from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -368,6 +370,13 @@ def assemble_machine(
             tilted = connector.of_contact
             of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
         system = frames.turned(system, of_linear, of_contacts)
+        rims = [
+            tuple(_turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
+        ]
+        contacts_on_rims = zip(system.contacts, rims, strict=True)
+        system = replace(
+            system, contacts=tuple(replace(one, turning=(*one.turning, *parts)) for one, parts in contacts_on_rims)
+        )
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -839,7 +848,34 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
         compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
+        direction += sum(part for part, _ in _deformed_rim(coordinates, mounted, flank))
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor] - _mesh_frame(coordinates, mesh)
             errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)
+
+
+def _deformed_rim(
+    coordinates: MachineCoordinates, mounted: MountedGear, flank: FlankMotion
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Parts of the compression by the bore that a ring's rim follows, by the orders of its circumference, (n,) both.
+
+    See :meth:`gearwhine.coupling.machine.components.HousingComponent.ring_harmonics`.
+    """
+    housing = next((part for part in coordinates.components if isinstance(part, HousingComponent)), None)
+    if mounted.rim_seat is None or housing is None:
+        return []
+    place = math.atan2(flank.arm[1], flank.arm[0])
+    return [
+        (flank.side * coordinates.rows(housing.name, cosine), flank.side * coordinates.rows(housing.name, sine))
+        for cosine, sine in housing.ring_harmonics(mounted.rim_seat, flank.push, place)
+    ]
+
+
+def _turning_rims(coordinates: MachineCoordinates, mesh: GearMesh, sense: int, frame: float) -> Iterator[TurningPart]:
+    """Yield the parts by which the deformation of a ring's bore moves the flanks of a mesh that turns in it."""
+    line = mesh.line_of_action(sense)
+    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
+        for order, (cosine, sine) in enumerate(_deformed_rim(coordinates, mounted, flank)):
+            if order and frame != 0.0:
+                yield TurningPart(order * frame, cosine[:, None], sine[:, None])

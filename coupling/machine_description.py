@@ -987,7 +987,9 @@ class Machine:
                 if gear.shaft == shaft.name:
                     places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
-        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact, self._acceleration_on(shaft), shaft.carrier)
+        acceleration = self._acceleration_on(shaft)
+        place = shaft.name, shaft.axis, shaft.start
+        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat)
 
     def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
         """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
@@ -1085,7 +1087,7 @@ class Machine:
             modal = next(part.modal for part in components if part.name == shaft.name)
             width = loaded.geometry.face_width
             missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
-            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing, shaft.rim_seat))
         bodies = {body.gear: body for part in components for body in part.bodies}
         behind = _behind_rims(loaded.pair, loaded.geometry, bodies)
         contact = law_between_rims(loaded.contact, behind)

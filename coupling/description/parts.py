@@ -70,6 +70,9 @@ class Shaft:
     carrier : str, optional
         Name of the shaft with which the axis of this one turns, as that of a planet with its carrier; ``axis`` is its
         place at t = 0. None: the axis stands still.
+    rim_seat : str, optional
+        Seat of the housing, with ``ring_orders``, whose bore the rim of the ring gear on this shaft follows as it
+        deforms; by default the rim moves as one body with the shaft.
     pin_error : tuple of float
         Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
     """
@@ -84,6 +87,7 @@ class Shaft:
     mode_count: int | None = None
     carrier: str | None = None
     pin_error: tuple[float, float] = (0.0, 0.0)
+    rim_seat: str | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
@@ -99,6 +103,7 @@ class Shaft:
             "bow": Instance(Bow, "a bow, or None", optional=True),
             "carrier": Text(optional=True),
             "pin_error": Numbers(2),
+            "rim_seat": Text(optional=True),
         }
         part = ("shaft", self.name)
         if not self.name:
@@ -545,6 +550,12 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             expected = f"a seat of the housing, one of {seat_names}, or None for the ground"
             yield Finding(("machine", ""), f"torque_supports.{number}.seat", support.seat, expected)
     shafts = {shaft.name: shaft for shaft in machine.shafts}
+    rings = () if housing is None else tuple(housing.ring_motions)
+    for shaft in machine.shafts:
+        if shaft.rim_seat is not None and shaft.rim_seat not in rings:
+            names = ", ".join(map(repr, rings)) or "none"
+            expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+            yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:

@@ -5,6 +5,7 @@ housing's modes, and two of each pedestal. Connectors are bearings, gear pairs a
 (:mod:`gearwhine.coupling.statics.static_model`).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -288,6 +289,11 @@ class _StaticModel:
                 rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
                 twist[number] += turned
             rows[-1] += flank.tilting(middle)
+            seat = self._part(gear.shaft).rim_seat
+            if seat is not None and self.housing is not None:
+                place = math.atan2(flank.arm[1], flank.arm[0])
+                deformed = sum(part for part, _ in self.housing.ring_harmonics(seat, flank.push, place))
+                rows[:-1, self.housing_first : self.housing_first + self.housing.size] += flank.side * deformed
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
                 rows[:-1] += flank.across(rim) + flank.turning(rim[5])

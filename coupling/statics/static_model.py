@@ -185,6 +185,8 @@ class StaticShaftPart:
         centrifugal acceleration of its axis [m/s²].
     carrier : str or None
         Shaft in which its bearings sit, of a planet; None for seats of the housing and the ground.
+    rim_seat : str or None
+        Seat of the housing whose bore the rim of its ring gear follows.
     """
 
     name: str
@@ -193,6 +195,7 @@ class StaticShaftPart:
     shaft: StaticShaft
     acceleration: tuple[float, ...] | None = None
     carrier: str | None = None
+    rim_seat: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,7 +59,9 @@ def plane_set(
 
     def body(kind: str, name: str, **where: Any) -> None:
         disc = Disc(_MIDDLE, MASS[kind], *[INERTIA[kind] * radius[kind] ** 2] * 2)
-        shafts.append(Shaft(Rotor(name, [Segment(_LENGTH, diameter, 0.0, material)], [disc]), damping_ratio=0.0, **where))
+        shafts.append(
+            Shaft(Rotor(name, [Segment(_LENGTH, diameter, 0.0, material)], [disc]), damping_ratio=0.0, **where)
+        )
         law = 0.5 * np.diag([BEARING_STIFFNESS, BEARING_STIFFNESS, 0.0, 2e3, 2e3])
         for end, at in (("left", 0.0), ("right", _LENGTH)):
             bearings.append(MountedBearing(Bearing(f"{name} {end}", at, law, damping * law), name, None))
