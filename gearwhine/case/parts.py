@@ -36,6 +36,7 @@ from gearwhine.coupling.description.parts import LATERAL_LIMIT_HZ, inertia_with_
 from gearwhine.coupling.description.planetary import PlacedSet, SetParts, placed_set, set_findings
 from gearwhine.coupling.gears import Gear as BuiltGear
 from gearwhine.coupling.gears import GearPairGeometry, StiffnessModel, stiffness_model
+from gearwhine.coupling.gears.geometry.pair import signed_distance
 from gearwhine.coupling.gears.loaded.gear_pair import GearPair as BuiltPair
 from gearwhine.coupling.machine.bearing_laws import BearingLaw
 from gearwhine.coupling.machine.loads import Torque
@@ -381,7 +382,8 @@ class Parts:
             distance = distance_of_axes(first.axis, second.axis)
             offset = (second.start + driven.at) - (first.start + driver.at)
         offset = offset if abs(offset) > LARGEST_OFFSET else 0.0
-        return GearPairGeometry(self.gears[pair.driver], self.gears[pair.driven], distance, offset)
+        gears = self.gears[pair.driver], self.gears[pair.driven]
+        return GearPairGeometry(*gears, None if distance is None else signed_distance(*gears, distance), offset)
 
     def rotating_inertias(self, pair: GearPair) -> tuple[float, float]:
         """Return the polar inertia that rotates with driver and driven gear [kg m²], with the discs at their places."""

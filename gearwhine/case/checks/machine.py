@@ -267,6 +267,7 @@ def _check_pair(
     from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, geometry_on_axes, plane_findings
     from gearwhine.coupling.gears import GearError, GearPairGeometry
     from gearwhine.coupling.gears.errors import StiffnessModelError
+    from gearwhine.coupling.gears.geometry.pair import signed_distance
     from gearwhine.coupling.gears.stiffness.models import require_model_fit
 
     try:
@@ -295,7 +296,7 @@ def _check_pair(
         if rotors[0] is not None and rotors[1] is not None:
             geometry_on_axes(*gears, (rotors[0].name, rotors[1].name), (rotors[0].axis, rotors[1].axis))
         elif distance is not None:
-            GearPairGeometry(*gears, distance)
+            GearPairGeometry(*gears, signed_distance(*gears, distance))
     except GearError as error:
         yield Finding(("gear_pair", index), f"a centre distance that fits; {error}", UNSAID)
 
@@ -310,9 +311,11 @@ def _unequal_teeth(index: int, driver: Gear, driven: Gear) -> Iterator[Finding]:
         (math.degrees(driver.helix_angle), math.degrees(driven.helix_angle)),
     )
     sizes = ((gear.tooth_module, gear.pressure_angle, gear.helix_angle) for gear in (driver, driven))
-    unequal = mismatched_sizes(*sizes)
+    internal = driver.teeth < 0 or driven.teeth < 0
+    unequal = mismatched_sizes(*sizes, internal=internal)
     if "helix_angle" in unequal:
-        size, values = "equal helix angle and opposite hands", [f"{angle:+g} deg" for angle in helices]
+        hands = "one hand with an internal gear" if internal else "opposite hands"
+        size, values = f"equal helix angle and {hands}", [f"{angle:+g} deg" for angle in helices]
     elif "pressure_angle" in unequal:
         size, values = "one pressure angle", [f"{angle:g} deg" for angle in pressures]
     elif "module" in unequal:
@@ -538,6 +541,7 @@ def _check_flow(draft: Draft, operation: Operation, train: GearTrain) -> Iterato
 def _has_designed_backlash(draft: Draft, pair: GearPair) -> bool:
     """Whether tooth thicknesses and centre distance leave a backlash; gears that do not mesh are other findings."""
     from gearwhine.coupling.gears import GearError, GearPairGeometry
+    from gearwhine.coupling.gears.geometry.pair import signed_distance
 
     driver, driven = draft.gear(pair.driver), draft.gear(pair.driven)
     if driver is None or driven is None:
@@ -547,7 +551,9 @@ def _has_designed_backlash(draft: Draft, pair: GearPair) -> bool:
     if rotors[0] is not None and rotors[1] is not None:
         distance = distance_of_axes(rotors[0].axis, rotors[1].axis)
     try:
-        geometry = GearPairGeometry(driver.build(), driven.build(), distance)
+        gears = driver.build(), driven.build()
+        signed = None if distance is None else signed_distance(*gears, distance)
+        geometry = GearPairGeometry(*gears, signed)
     except GearError:
         return True
     return geometry.designed_backlash is not None
