@@ -36,6 +36,7 @@ from gearwhine.coupling.description.gear_train import (
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
+    mesh_phases,
     require_balanced_outputs,
 )
 from gearwhine.coupling.description.parts import (
@@ -51,6 +52,7 @@ from gearwhine.coupling.description.parts import (
     rotor_with_gears,
     station_findings,
 )
+from gearwhine.coupling.description.planetary import PlacedSet, PlanetarySet, SetMember, placed_set, set_findings
 from gearwhine.coupling.description.solids import force_findings, machine_findings, unbalance_findings
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
@@ -174,6 +176,8 @@ class Machine:
         Shaft that turns at ``speed`` and takes ``torque`` in, in place of the first driver's.
     given_speeds : sequence of GivenSpeed
         Speeds of further driven shafts, as of a differential with two inputs.
+    planetary_sets : sequence of PlanetarySet
+        Planetary sets, by the names of their parts, for what is checked and told of sets.
 
     Raises
     ------
@@ -207,6 +211,7 @@ class Machine:
     torque_supports: Sequence[TorqueSupport] = ()
     input_shaft: str | None = None
     given_speeds: Sequence[GivenSpeed] = ()
+    planetary_sets: Sequence[PlanetarySet] = ()
 
     def __repr__(self) -> str:
         """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""
@@ -219,10 +224,10 @@ class Machine:
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
-        keep_tuples(self, "torque_supports", "given_speeds")
+        keep_tuples(self, "torque_supports", "given_speeds", "planetary_sets")
         refuse(_type_findings(self), CouplingError)
         refuse(name_findings(self), CouplingError)
-        refuse(carrier_findings(self), CouplingError)
+        refuse([*carrier_findings(self), *set_findings(self.planetary_sets, self)], CouplingError)
         refuse([*station_findings(self), *bearing_findings(self, self.housing_component)], CouplingError)
         refuse(self._reach_findings(), CouplingError)
         _ = self.speeds, self.pair_geometries, self.constant_torques
@@ -255,6 +260,8 @@ class Machine:
             yield from gravity_findings(self.gravity)
         for mounted in self.gears:
             yield from mounted.gear.findings
+        for placed in self.placed_sets:
+            yield from placed.findings()
         rows = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
         for pair, geometry, torque, speed in rows:
             yield from pair.findings(geometry)
@@ -284,6 +291,15 @@ class Machine:
             given={given.shaft: self._given_ratio(given) for given in self.given_speeds},
             first=self.input_shaft,
         )
+
+    @cached_property
+    def placed_sets(self) -> tuple[PlacedSet, ...]:
+        """The planetary sets with their gears at their places: assembly, clearance, phasing."""
+        return tuple(placed_set(one, self) for one in self.planetary_sets)
+
+    def members_of(self, placed: PlacedSet) -> tuple[SetMember, ...]:
+        """Speed, torque and power of the members of a planetary set."""
+        return placed.members(self.train, self.pair_torques, self.speed)
 
     def _geared_shafts(self, pair: GearPair) -> GearedShafts:
         """Shafts that a pair connects, with the carrier that carries an axis of them."""
@@ -355,6 +371,24 @@ class Machine:
             places = shafts[0].start + driver.at, shafts[1].start + driven.at
             geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes, places))
         return tuple(geometries)
+
+    @cached_property
+    def mesh_phases(self) -> tuple[float, ...]:
+        """Phase of each gear pair at t = 0 [mesh periods].
+
+        Raises
+        ------
+        CouplingError
+            Where gears in a loop cannot be assembled.
+        """
+        lines = []
+        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True):
+            x, y = np.subtract(self.shaft(driven.shaft).axis, self.shaft(driver.shaft).axis)
+            side = -1.0 if geometry.is_internal else 1.0
+            lines.append(math.atan2(side * y, side * x))
+        names = [(pair.driver, pair.driven) for pair in self.gear_pairs]
+        drivers, drivens = [first for first, _ in names], [second for _, second in names]
+        return tuple(mesh_phases(drivers, drivens, self.pair_geometries, lines, self.turning_senses))
 
     @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:
@@ -1107,6 +1141,7 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
         "ripple": Ripple,
         "torque_supports": TorqueSupport,
         "given_speeds": GivenSpeed,
+        "planetary_sets": PlanetarySet,
     }
     yield from kind_findings(part, machine, **kinds)
     rules: dict[str, Rule] = {

@@ -912,7 +912,8 @@ def plane_findings(part: Part, places: Sequence[float], gears: Sequence[Gear]) -
         yield Finding(part, "driven", None, expected)
 
 
-_MISFIT = 1e-3  # largest misfit over the pitch that may come from rounding of the axes
+LARGEST_MISFIT = 1e-3
+"""Largest misfit of teeth in a loop of gears that may come from rounding of the axes, over the pitch."""
 
 
 def mesh_phases(
@@ -962,7 +963,7 @@ def mesh_phases(
             stands = zero + phase * pitch
             # A whole number of pitches is the same place.
             misfit = (angles.setdefault(gear, stands) - stands) / pitch
-            if abs(misfit - round(misfit)) > _MISFIT:
+            if abs(misfit - round(misfit)) > LARGEST_MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "

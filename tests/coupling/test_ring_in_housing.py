@@ -93,7 +93,7 @@ def test_motion_by_harmonic_balance_satisfies_the_equations_in_time() -> None:
     assert model.rates == pytest.approx([2.0 * carrier, 3.0 * carrier]) or model.rates == pytest.approx([carrier])
     number = next(n for n, contact in enumerate(system.contacts) if contact.name == "planet gear 1 -> ring gear")
     w = 2.0 * np.pi * 950.0
-    motion = model.respond(w, *model.mesh_error_load(number, w))
+    motion = {order: moved[0] for order, moved in model.respond(w, [model.mesh_error(number, w)]).items()}
     times = np.linspace(0.0, 2.0 * np.pi / carrier, 9)
     orders = [(w + model.shift(order), q) for order, q in motion.items()]
     for time in times:
