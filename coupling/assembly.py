@@ -9,30 +9,31 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from gearwhine.coupling.description.gear_train import (
-    GearedShafts,
     gear_train,
+    geared_names,
+    geared_shafts,
     mesh_phases,
     require_balance,
     require_meshing,
     turning_senses,
 )
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import ToothContact
 from gearwhine.coupling.gears.contact.sliding_friction import sliding_friction
 from gearwhine.coupling.gears.geometry.pair import mesh_frequency
 from gearwhine.coupling.gears.loaded.face_load import FaceTangent
-from gearwhine.coupling.machine.base_motion import base_loads, gravity_load
+from gearwhine.coupling.machine.base_motion import base_loads, gravity_load, rotor_participation
 from gearwhine.coupling.machine.bearing_laws import RollingLaw
 from gearwhine.coupling.machine.components import (
     Component,
@@ -47,13 +48,16 @@ from gearwhine.coupling.machine.connectors import (
     NonlinearConnector,
     Sliding,
     SpeedTable,
+    TurningPart,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
+from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, stiffness_in_frame
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
+from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -90,12 +94,16 @@ class CoupledMachine:
     loads : MachineLoads
     dashpots : tuple of ShaftDashpots
         Dashpots in the rotors' couplings.
+    torque_supports : tuple of TorqueSupport
+        Springs that hold shafts from rotation.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of its nominal speeds.
     mean_faces : MeanFaces or None
         Faces of its meshes under the mean load, for the machine at other speeds.
     speed_profile : SpeedProfile or None
         Speed over time of the run that it is assembled for; None at constant speed.
+    speed_ratios : mapping of str to Fraction
+        Speed of each shaft of the leading rotor's train over that one's, which comes first; exact and signed.
     """
 
     rotors: tuple[RotorComponent, ...]
@@ -105,9 +113,11 @@ class CoupledMachine:
     system: CoupledSystem
     loads: MachineLoads = UNLOADED
     dashpots: tuple[ShaftDashpots, ...] = ()
+    torque_supports: tuple[TorqueSupport, ...] = ()
     speed_range: tuple[float, float] = (1.0, 1.0)
     mean_faces: "MeanFaces | None" = None
     speed_profile: SpeedProfile | None = None
+    speed_ratios: Mapping[str, Fraction] = field(default_factory=dict)
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -117,21 +127,12 @@ class CoupledMachine:
     @property
     def leading_rotor(self) -> str:
         """The rotor whose speed stands for the machine's: that of the first driver, or the first of all."""
-        return self.meshes[0].driver.rotor if self.meshes else self.rotors[0].name
+        return next(iter(self.speed_ratios)) if self.speed_ratios else self.rotors[0].name
 
     @property
     def speed(self) -> float:
         """Signed speed of the leading rotor [rad/s]."""
         return self.speeds[self.leading_rotor]
-
-    @cached_property
-    def speed_ratios(self) -> dict[str, Fraction]:
-        """Speed of each shaft of the leading rotor's train over that one's, exact and signed."""
-        pairs = [
-            GearedShafts(mesh.driver.rotor, mesh.driven.rotor, (mesh.geometry.driver.teeth, mesh.geometry.driven.teeth))
-            for mesh in self.meshes
-        ]
-        return dict(gear_train(pairs, [rotor.name for rotor in self.rotors]).ratios)
 
     @property
     def input_torque(self) -> float:
@@ -143,8 +144,8 @@ class CoupledMachine:
     def train_inertia(self) -> float:
         """Polar inertia of the leading rotor's train, reduced to that rotor: Σ J (Ω / Ω_lead)² [kg m²]."""
         speeds, lead = self.speeds, self.leading_rotor
-        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in self.meshes]
-        train = next(train for train in trains([rotor.name for rotor in self.rotors], pairs) if lead in train)
+        names = [rotor.name for rotor in self.rotors]
+        train = next(train for train in trains(names, geared_names(self.meshes)) if lead in train)
         return sum(
             float(rotor.turning @ rotor.turning) * (speeds[rotor.name] / speeds[lead]) ** 2
             for rotor in self.rotors
@@ -181,7 +182,7 @@ class CoupledMachine:
     def face(self, number: int, contact: ToothContact) -> MeshFace:
         """Face of the flanks of a contact of the system, by its number, with another tooth contact in its place."""
         place, back = self.flanks(number)
-        sense = _senses(self.meshes, self.speeds)[place] * (-1 if back else 1)
+        sense = _senses(self.meshes, self.speeds, self.speed_ratios)[place] * (-1 if back else 1)
         return _face(MachineCoordinates(self.system.components, self.speeds), self.meshes[place], sense, contact)
 
     def shuttling(self, number: int, contact: ToothContact, force: float) -> tuple[FloatArray, list[HarmonicLoad]]:
@@ -223,8 +224,10 @@ class CoupledMachine:
             meshes=self.meshes,
             loads=self.loads.at_speed_ratio(speed / present),
             dashpots=self.dashpots,
+            torque_supports=self.torque_supports,
             speed_range=_about(self.speed_range, speed / present),
             mean_faces=self.mean_faces,
+            speed_ratios=self.speed_ratios,
         )
 
 
@@ -237,8 +240,10 @@ def assemble_machine(
     meshes: Sequence[GearMesh] = (),
     loads: MachineLoads = UNLOADED,
     dashpots: Sequence[ShaftDashpots] = (),
+    torque_supports: Sequence[TorqueSupport] = (),
     speed_range: tuple[float, float] = (1.0, 1.0),
     mean_faces: "MeanFaces | None" = None,
+    speed_ratios: Mapping[str, Fraction] | None = None,
 ) -> CoupledMachine:
     """Assemble the coupled system of components that exist already.
 
@@ -256,11 +261,16 @@ def assemble_machine(
         Loads; by default there are none.
     dashpots : sequence of ShaftDashpots
         Dashpots in the rotors' couplings.
+    torque_supports : sequence of TorqueSupport
+        Springs that hold shafts from rotation.
     speed_range : tuple of float
         Lowest and highest speed that the machine runs at, as parts of ``speeds``: bearings' tables over speed are
         followed between them.
     mean_faces : MeanFaces, optional
         Faces under the mean load of the machine at another speed, which are taken where nothing of them has changed.
+    speed_ratios : mapping of str to Fraction, optional
+        Speed of each rotor over that of the leading one, which comes first. By default they follow from the meshes,
+        the driver of the first one leading; held rotors and second inputs do not follow.
 
     Raises
     ------
@@ -294,23 +304,33 @@ def assemble_machine(
     without = [rotor.name for rotor in rotors if rotor.name not in speeds]
     if without:
         raise CouplingError(f"no speed for {', '.join(without)}; expected one for every rotor")
+    frames = Frames(components, _frame_speeds(rotors, bearings, meshes, speeds))
+    components = tuple(in_frame(part, speeds.get(part.name, 0.0), frames.of(part.name)) for part in components)
     coordinates = MachineCoordinates(components, speeds)
+    if speed_ratios is None:
+        speed_ratios = gear_train(map(geared_shafts, meshes), [rotor.name for rotor in rotors]).ratios
 
     require_meshing(meshes, {rotor.name: rotor.start for rotor in rotors}, speeds)
     require_balance(meshes, loads.torques, speeds)
-    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques)
+    held = [name for name, ratio in speed_ratios.items() if not ratio]
+    _require_thrust_carried(rotors, speeds, bearings, meshes, loads.torques, held)
     pedestals_by_name = {pedestal.name: pedestal for pedestal in pedestals}
     bearing_connectors = [
-        _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range) for mounted in bearings
+        _bearing(coordinates, housing, pedestals_by_name, mounted, speed_range, frames) for mounted in bearings
     ]
-    within = []
+    within = [_torque_support(coordinates, housing, support) for support in torque_supports]
+    within += [
+        _centrifugal_stiffness(coordinates, rotor, bearings, frames)
+        for rotor in rotors
+        if rotor.carrier is not None and frames.of(rotor.name) != 0.0
+    ]
     for dashpot in dashpots:
         rows, connector = shaft_dashpots(dashpot, coordinates.rotor(dashpot.rotor), speeds[dashpot.rotor], speed_range)
         within.append(replace(connector, directions=coordinates.rows(dashpot.rotor, rows).T))
     for rotor in rotors:
         within += _transports(coordinates, rotor, speeds[rotor.name], speed_range)
 
-    senses = _senses(meshes, speeds)
+    senses = _senses(meshes, speeds, speed_ratios)
     phases = mesh_phases(
         [mesh.driver.name for mesh in meshes],
         [mesh.driven.name for mesh in meshes],
@@ -323,7 +343,8 @@ def assemble_machine(
     contacts = [_contact(coordinates, *side) for side in sides]
     contacts += [_contact(coordinates, *side, back=True) for side in with_back]
 
-    acting = _coordinate_loads(coordinates, bearings, loads)
+    acting = frames.loads(_coordinate_loads(coordinates, bearings, loads))
+    acting.constant += _centrifugal_load(coordinates, frames)
     for linear, _ in bearing_connectors:
         if linear.offset is not None:
             acting.constant -= linear.directions @ linear.offset
@@ -335,15 +356,27 @@ def assemble_machine(
         load=acting.constant,
         harmonic_loads=tuple(acting.harmonic),
         timed_loads=tuple(acting.timed),
-        acceleration_load=coordinates.acceleration_load(
-            [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], loads.drives
-        ),
+        acceleration_load=coordinates.acceleration_load(geared_names(meshes), loads.drives),
         nonlinear=tuple(nonlinear for _, nonlinear in bearing_connectors if nonlinear is not None),
     )
     system = with_loaded_flanks(system, _back_contacts(meshes))
     flanks = [(mesh, sense) for mesh, sense, _ in sides] + [(mesh, -sense) for mesh, sense, _ in with_back]
-    with_faces, mean_faces = _with_faces(system, coordinates, flanks, mean_faces)
+    with_faces, mean_faces = _with_faces(system, coordinates, flanks, frames, mean_faces)
     system = with_balanced_friction(with_faces)
+    if frames.turn:
+        of_contacts = [_mesh_frame(coordinates, mesh) for mesh, _ in flanks]
+        of_linear = [_bearing_frame(mounted, coordinates, frames) for mounted in bearings]
+        for connector in system.linear[len(bearings) :]:
+            tilted = connector.of_contact
+            of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
+        system = frames.turned(system, of_linear, of_contacts)
+        rims = [
+            tuple(_turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
+        ]
+        contacts_on_rims = zip(system.contacts, rims, strict=True)
+        system = replace(
+            system, contacts=tuple(replace(one, turning=(*one.turning, *parts)) for one, parts in contacts_on_rims)
+        )
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -352,14 +385,18 @@ def assemble_machine(
         system,
         loads,
         tuple(dashpots),
+        tuple(torque_supports),
         speed_range,
         mean_faces,
+        speed_ratios=speed_ratios,
     )
 
 
-def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float]) -> list[int]:
-    """Sense of rotation of the driver of each mesh."""
-    return turning_senses([(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes], speeds)
+def _senses(meshes: Sequence[GearMesh], speeds: dict[str, float], ratios: Mapping[str, Fraction]) -> list[int]:
+    """Sense of rotation of the driver of each mesh, seen from its carrier; at rest that in which it would turn."""
+    at_rest = any(mesh.carrier for mesh in meshes) and not any(speeds.values())
+    turning = {name: float(ratio) for name, ratio in ratios.items()} if at_rest else speeds
+    return turning_senses(list(map(geared_shafts, meshes)), turning)
 
 
 def _about(speed_range: tuple[float, float], ratio: float) -> tuple[float, float]:
@@ -382,9 +419,15 @@ def _bearing(
     pedestals_by_name: dict[str, PedestalComponent],
     mounted: MountedBearing,
     speed_range: tuple[float, float],
+    frames: Frames,
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
-    """Assemble a bearing between shaft and seat, pedestal or ground: its 5x5 stiffness and damping, or its own law."""
-    rotor, at, speed = coordinates.rotor(mounted.rotor), mounted.bearing.at, coordinates.speeds[mounted.rotor]
+    """Assemble a bearing between a shaft and a seat, another shaft, a pedestal or the ground: linear, or with a law.
+
+    A grounded bearing that is alike all round stands still in any frame.
+    """
+    rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
+    around = _shaft_around(mounted, coordinates)
+    speed = coordinates.speeds[rotor.name] - (0.0 if around is None else coordinates.speeds[around.name])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
@@ -394,12 +437,16 @@ def _bearing(
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     relative = coordinates.rows(rotor.name, rotor.motions(at))
-    if mounted.seat is not None:
+    if around is not None:
+        relative = relative - coordinates.rows(around.name, around.seat_motions(rotor.axis, rotor.start + at))
+    elif mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
             raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
         relative = relative - coordinates.rows(housing.name, housing.seat_motions(mounted.seat, rotor.start + at))
     elif bearing.pedestal is not None:
         relative[:2] -= coordinates.rows(bearing.name, pedestals_by_name[bearing.name].motion)
+    elif frames.of(rotor.name) != 0.0 and _alike_all_round(mounted):
+        stiffness = stiffness_in_frame(stiffness, damping, frames.of(rotor.name))
     nonlinear = None
     if mounted.law is not None:
         moving = axes[np.any(relative[axes] != 0.0, axis=1)]
@@ -416,6 +463,110 @@ def _bearing(
         bearing.name, relative[axes].T, stiffness[among], damping[among], table, axis_numbers, offset
     )
     return linear, nonlinear
+
+
+def _shaft_around(mounted: MountedBearing, coordinates: MachineCoordinates) -> RotorComponent | None:
+    """Return the shaft that holds a bearing: a planet's carrier, or one named as its seat; None for other seats."""
+    name = coordinates.rotor(mounted.rotor).carrier or mounted.seat
+    return coordinates.rotor(name) if name is not None and coordinates.is_rotor(name) else None
+
+
+def _frame_speeds(
+    rotors: Sequence[RotorComponent],
+    bearings: Sequence[MountedBearing],
+    meshes: Sequence[GearMesh],
+    speeds: Mapping[str, float],
+) -> dict[str, float]:
+    """Speed of the frame of each rotor's coordinates [rad/s].
+
+    Planets and their carriers turn with the carrier. So does a sun or a ring whose other connectors are alike all
+    round: what joins it to the planets is constant there. All other parts stand still.
+    """
+    carriers = {rotor.name: rotor.carrier for rotor in rotors if rotor.carrier is not None}
+    frames = {name: speeds[carrier] for name, carrier in carriers.items()}
+    frames |= {carrier: speeds[carrier] for carrier in carriers.values()}
+    for rotor in rotors:
+        pairs = [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]
+        others = [set(pair) - {rotor.name} for pair in pairs if rotor.name in pair]
+        around = {carriers.get(other) for one in others for other in one}
+        if rotor.name in frames or len(around) != 1 or None in around:
+            continue
+        carrier = carriers[next(iter(others[0]))]
+        on_it = [mounted for mounted in bearings if rotor.name in (mounted.rotor, mounted.seat)]
+        if all(_alike_all_round(one) or {one.rotor, one.seat} == {rotor.name, carrier} for one in on_it):
+            frames[rotor.name] = speeds[carrier]
+    return frames
+
+
+def _alike_all_round(mounted: MountedBearing) -> bool:
+    """Whether a bearing stands on rigid ground and has a linear law that is the same in all directions."""
+    if mounted.seat is not None or mounted.law is not None or mounted.bearing.pedestal is not None:
+        return False
+    if mounted.offset is not None or mounted.bearing.speeds is not None:
+        return False
+    bearing = mounted.bearing
+    return is_isotropic(bearing.spatial_stiffness) and is_isotropic(bearing.spatial_damping)
+
+
+def _bearing_frame(mounted: MountedBearing, coordinates: MachineCoordinates, frames: Frames) -> float:
+    """Speed at which a bearing turns [rad/s]: with the shaft that holds it, or with any frame where it is isotropic."""
+    around = _shaft_around(mounted, coordinates)
+    if around is not None:
+        return frames.of(around.name)
+    return frames.of(mounted.rotor) if _alike_all_round(mounted) else 0.0
+
+
+def _torque_support(
+    coordinates: MachineCoordinates, housing: HousingComponent | None, support: TorqueSupport
+) -> LinearConnector:
+    """Assemble the spring that holds a shaft from rotation against a seat or the ground."""
+    row = coordinates.rotation(support.shaft, support.at)
+    if support.seat is not None:
+        if housing is None or support.seat not in housing.seats:
+            raise CouplingError(f"torque support of {support.shaft!r}: no seat {support.seat!r} in the housing")
+        row = row - coordinates.rows(housing.name, housing.seats[support.seat].T[5])
+    if support.stiffness is None:
+        raise CouplingError(f"torque support of {support.shaft!r} without a stiffness; expected one [N m/rad]")
+    stiffness = np.array([[support.stiffness]])
+    name = f"torque support of {support.shaft}"
+    return LinearConnector(name, row[:, None], stiffness, support.damping_time * stiffness)
+
+
+def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatArray:
+    """Centrifugal forces of the planets on their coordinates, (n,): their axes circle with their carriers."""
+    load = np.zeros(coordinates.size)
+    for part in coordinates.components:
+        if isinstance(part, RotorComponent) and part.carrier is not None:
+            outward = np.subtract(part.axis, coordinates.rotor(part.carrier).axis)
+            participation = rotor_participation(part, (0.0, 0.0, 0.0))[:, :2]
+            load += coordinates.rows(part.name, participation @ (frames.of(part.name) ** 2 * outward))
+    return load
+
+
+def _centrifugal_stiffness(
+    coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
+) -> LinearConnector:
+    """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
+
+    The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
+    beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
+    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
+    """
+    carrier = coordinates.rotor(planet.carrier or "")
+    outward = np.subtract(planet.axis, carrier.axis)
+    distance = math.hypot(*outward)
+    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2]
+    mass = float(np.sum(participation[:, 0] ** 2))
+    at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
+    station = carrier.station(planet.start + at)
+    along = np.array([-outward[1], outward[0]]) / distance
+    # The planet's motion is that of its centre of mass, so that the force is spread as the inertia that it balances.
+    tangential = coordinates.rows(planet.name, participation @ along / mass)
+    tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
+    force = mass * distance * frames.of(planet.name) ** 2
+    law = force * np.array([[0.0, 1.0], [1.0, -distance]])
+    directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
+    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
 
 
 def _transports(
@@ -442,7 +593,8 @@ def _contact(
     coordinates: MachineCoordinates, mesh: GearMesh, sense: int, phase: float, *, back: bool = False
 ) -> ContactConnector:
     """Assemble the tooth contact of a mesh's drive or back flanks; the driver rotates in the given sense."""
-    frequency = mesh_frequency(coordinates.speeds[mesh.driver.rotor], mesh.geometry.driver.teeth)
+    relative = geared_shafts(mesh).relative_speed(coordinates.speeds)
+    frequency = mesh_frequency(float(relative), abs(mesh.geometry.driver.teeth))
     name, contact, clearance = mesh.name, mesh.contact, 0.0
     if back:
         name, contact, clearance = f"{name}, back", mesh.contact.back_flanks, mesh.backlash or 0.0
@@ -460,6 +612,11 @@ def _contact(
         sliding=_sliding(coordinates, mesh, contact, sense),
         compression_limit=_GREATEST_COMPRESSION * mesh.geometry.driver.module,
     )
+
+
+def _mesh_frame(coordinates: MachineCoordinates, mesh: GearMesh) -> float:
+    """Speed at which the line of centres of a mesh turns, that of the carrier of a planet in it [rad/s]."""
+    return 0.0 if mesh.carrier is None else coordinates.speeds[mesh.carrier]
 
 
 def _coordinate_loads(
@@ -531,6 +688,7 @@ def _with_faces(
     system: CoupledSystem,
     coordinates: MachineCoordinates,
     flanks: Sequence[tuple[GearMesh, int]],
+    frames: Frames,
     known: MeanFaces | None = None,
 ) -> tuple[CoupledSystem, MeanFaces]:
     """Return the system with flanks that resist tilting and with load shuttling, and their faces.
@@ -547,7 +705,9 @@ def _with_faces(
     for number, (face, _, under, _) in mean.states.items():
         if under.force > 0.0:
             contact = system.contacts[number]
-            harmonics += face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+            frame = _mesh_frame(coordinates, flanks[number][0])
+            shuttling = face.shuttling(under.force, contact.phase, contact.mesh_frequency)[1]
+            harmonics += [part for load in shuttling for part in frames.harmonics(load, frame)]
     return replace(_on_faces(system, mean.states, slope_is_found=True), harmonic_loads=tuple(harmonics)), mean
 
 
@@ -618,16 +778,22 @@ def _require_thrust_carried(
     bearings: Sequence[MountedBearing],
     meshes: Sequence[GearMesh],
     torques: Sequence[AnyTorque],
+    held: Sequence[str],
 ) -> None:
     """Refuse helical gears that push a rotor without an axial coordinate or a bearing that holds it axially."""
     pairs = [
-        ThrustPair((mesh.driver.rotor, mesh.driven.rotor), (mesh.driver.name, mesh.driven.name), mesh.geometry)
+        ThrustPair(
+            (mesh.driver.rotor, mesh.driven.rotor),
+            (mesh.driver.name, mesh.driven.name),
+            mesh.geometry,
+            mesh.carrier,
+        )
         for mesh in meshes
     ]
     names = {rotor.name for rotor in rotors}
     movable = {rotor.name for rotor in rotors if rotor.modal.axial is not None}
     if all(name in names for pair in pairs for name in pair.rotors):
-        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable)
+        require_thrust_carried(pairs, bearings, speeds, largest_torques(torques), movable, held)
 
 
 def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]) -> SpeedTable | None:
@@ -652,7 +818,7 @@ def _over_speed(bearing: Bearing, speed: float, speed_range: tuple[float, float]
 
 def _sliding(coordinates: MachineCoordinates, mesh: GearMesh, contact: ToothContact, sense: int) -> Sliding | None:
     """Sliding of one side of the teeth, with the law ``contact``; None without friction, or where nothing turns."""
-    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == 0.0:
+    if mesh.friction == 0.0 or coordinates.speeds[mesh.driver.rotor] == _mesh_frame(coordinates, mesh):
         return None
     return sliding_flanks(
         coordinates,
@@ -682,7 +848,34 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
         compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
+        direction += sum(part for part, _ in _deformed_rim(coordinates, mounted, flank))
         if gear.eccentricity:
-            speed = coordinates.speeds[mounted.rotor]
+            speed = coordinates.speeds[mounted.rotor] - _mesh_frame(coordinates, mesh)
             errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)
+
+
+def _deformed_rim(
+    coordinates: MachineCoordinates, mounted: MountedGear, flank: FlankMotion
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Parts of the compression by the bore that a ring's rim follows, by the orders of its circumference, (n,) both.
+
+    See :meth:`gearwhine.coupling.machine.components.HousingComponent.ring_harmonics`.
+    """
+    housing = next((part for part in coordinates.components if isinstance(part, HousingComponent)), None)
+    if mounted.rim_seat is None or housing is None:
+        return []
+    place = math.atan2(flank.arm[1], flank.arm[0])
+    return [
+        (flank.side * coordinates.rows(housing.name, cosine), flank.side * coordinates.rows(housing.name, sine))
+        for cosine, sine in housing.ring_harmonics(mounted.rim_seat, flank.push, place)
+    ]
+
+
+def _turning_rims(coordinates: MachineCoordinates, mesh: GearMesh, sense: int, frame: float) -> Iterator[TurningPart]:
+    """Yield the parts by which the deformation of a ring's bore moves the flanks of a mesh that turns in it."""
+    line = mesh.line_of_action(sense)
+    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
+        for order, (cosine, sine) in enumerate(_deformed_rim(coordinates, mounted, flank)):
+            if order and frame != 0.0:
+                yield TurningPart(order * frame, cosine[:, None], sine[:, None])

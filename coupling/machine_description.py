@@ -11,6 +11,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -29,17 +30,21 @@ from gearwhine.coupling.description.excitation import Run, machine_driving, unba
 from gearwhine.coupling.description.gear_train import (
     GearedShafts,
     GearTrain,
+    GivenSpeed,
     Output,
     carrying_flanks,
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
+    mesh_phases,
     require_balanced_outputs,
 )
 from gearwhine.coupling.description.parts import (
     Shaft,
     ShaftGear,
+    TorqueSupport,
     bearing_findings,
+    carrier_findings,
     carrying_length,
     gear_inertia_on_shaft,
     inertia_with_discs,
@@ -47,6 +52,7 @@ from gearwhine.coupling.description.parts import (
     rotor_with_gears,
     station_findings,
 )
+from gearwhine.coupling.description.planetary import PlacedSet, PlanetarySet, SetMember, placed_set, set_findings
 from gearwhine.coupling.description.solids import force_findings, machine_findings, unbalance_findings
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
@@ -112,6 +118,7 @@ from gearwhine.numerics.findings import (
     Number,
     Numbers,
     Rule,
+    Text,
     attribute_findings,
     kind_findings,
     refuse,
@@ -122,6 +129,8 @@ from gearwhine.rotors.analyses.static_stiffness import static_shaft
 from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
+
+_LARGEST_TERM = 1_000_000  # of a speed ratio of two drives, which no teeth fix
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,6 +147,7 @@ class Machine:
         The driver of the first one turns at ``speed`` and takes ``torque`` in.
     speed : float
         Signed speed of the first driver's shaft about z [rad/s]; of every shaft where there are no gear pairs.
+        Where that shaft is held or a planet, the carrier is in its place, see ``input_shaft``.
     torque : float
         Driving torque on the first driver's shaft [N m]; negative where it brakes.
     outputs : sequence of Output
@@ -160,15 +170,24 @@ class Machine:
         Motion of the ground under bearings and the housing's supports.
     gravity : sequence of float, optional
         Acceleration of free fall along x, y, z [m/s²]; parts have no weight by default.
+    torque_supports : sequence of TorqueSupport
+        Shafts held from turning, such as the ring of a planetary set.
+    input_shaft : str, optional
+        Shaft that turns at ``speed`` and takes ``torque`` in, in place of the first driver's.
+    given_speeds : sequence of GivenSpeed
+        Speeds of further driven shafts, as of a differential with two inputs.
+    planetary_sets : sequence of PlanetarySet
+        Planetary sets, by the names of their parts, for what is checked and told of sets.
 
     Raises
     ------
     CouplingError
         Where a name is given twice or unknown, no gear pair turns a shaft, a loop of pairs locks, gears are a pair
-        twice, both gears of a pair sit on one shaft, faces are not in one plane, outputs do not balance the torque or
-        nothing takes it, a part is beyond the end of its shaft, power flows from driven to driver, a bearing sits in a
-        seat that the housing does not have or that it misses, its table does not hold its speed, or nothing carries the
-        thrust of helical gears.
+        twice, both gears of a pair sit on one shaft, a carrier does not carry its planets, members of the train are
+        driven against each other or left without a drive, faces are not in one plane, outputs do not balance the torque
+        or nothing takes it, a part is beyond the end of its shaft, power flows from driven to driver, a bearing sits in
+        a seat that the housing does not have or that it misses, its table does not hold its speed, or nothing carries
+        the thrust of helical gears.
     gearwhine.coupling.gears.GearError
         Where the gears of a pair do not fit each other at the distance of their shafts.
     """
@@ -189,6 +208,10 @@ class Machine:
     load: TorqueLine | None = None
     base: BaseMotion | None = None
     gravity: Sequence[float] | None = None
+    torque_supports: Sequence[TorqueSupport] = ()
+    input_shaft: str | None = None
+    given_speeds: Sequence[GivenSpeed] = ()
+    planetary_sets: Sequence[PlanetarySet] = ()
 
     def __repr__(self) -> str:
         """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""
@@ -201,8 +224,10 @@ class Machine:
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
+        keep_tuples(self, "torque_supports", "given_speeds", "planetary_sets")
         refuse(_type_findings(self), CouplingError)
         refuse(name_findings(self), CouplingError)
+        refuse([*carrier_findings(self), *set_findings(self.planetary_sets, self)], CouplingError)
         refuse([*station_findings(self), *bearing_findings(self, self.housing_component)], CouplingError)
         refuse(self._reach_findings(), CouplingError)
         _ = self.speeds, self.pair_geometries, self.constant_torques
@@ -215,7 +240,7 @@ class Machine:
         for mounted in self.bearings:
             speeds = mounted.bearing.speeds
             if speeds is not None:
-                part, turning = ("bearing", mounted.bearing.name), abs(self.speeds[mounted.rotor])
+                part, turning = ("bearing", mounted.bearing.name), abs(self.bearing_speed(mounted))
                 yield from table_findings_of_speeds(part, mounted.rotor, speeds.tolist(), [turning])
 
     @cached_property
@@ -235,9 +260,11 @@ class Machine:
             yield from gravity_findings(self.gravity)
         for mounted in self.gears:
             yield from mounted.gear.findings
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+        for placed in self.placed_sets:
+            yield from placed.findings()
+        rows = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
+        for pair, geometry, torque, speed in rows:
             yield from pair.findings(geometry)
-            speed = self.speeds[self._gears_of(pair)[0].shaft]
             yield from operation_findings(geometry, torque, speed)
 
     @cached_property
@@ -255,12 +282,40 @@ class Machine:
     @cached_property
     def train(self) -> GearTrain:
         """The gear train."""
-        geared = [self._gears_of(pair) for pair in self.gear_pairs]
-        pairs = [
-            GearedShafts(driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth))
-            for driver, driven in geared
-        ]
-        return gear_train(pairs, [shaft.name for shaft in self.shafts])
+        names = [shaft.name for shaft in self.shafts]
+        return gear_train(
+            map(self._geared_shafts, self.gear_pairs),
+            names,
+            held=dict.fromkeys(support.shaft for support in self.torque_supports),
+            planets=[shaft.name for shaft in self.shafts if shaft.carrier is not None],
+            given={given.shaft: self._given_ratio(given) for given in self.given_speeds},
+            first=self.input_shaft,
+        )
+
+    @cached_property
+    def placed_sets(self) -> tuple[PlacedSet, ...]:
+        """The planetary sets with their gears at their places: assembly, clearance, phasing."""
+        return tuple(placed_set(one, self) for one in self.planetary_sets)
+
+    def members_of(self, placed: PlacedSet) -> tuple[SetMember, ...]:
+        """Speed, torque and power of the members of a planetary set."""
+        return placed.members(self.train, self.pair_torques, self.speed)
+
+    def _geared_shafts(self, pair: GearPair) -> GearedShafts:
+        """Shafts that a pair connects, with the carrier that carries an axis of them."""
+        driver, driven = self._gears_of(pair)
+        carriers = [self.shaft(gear.shaft).carrier for gear in (driver, driven)]
+        return GearedShafts(
+            driver.shaft, driven.shaft, (driver.gear.teeth, driven.gear.teeth), carriers[0] or carriers[1]
+        )
+
+    def _given_ratio(self, given: GivenSpeed) -> Fraction:
+        """Speed of a further driven shaft over that of the first driver, a fraction of terms below a million."""
+        if self.speed == 0.0:
+            part = ("given speed", given.shaft)
+            expected = "a speed of the first driver other than 0, over which a second speed is taken"
+            refuse([Finding(part, "speed", given.speed, expected)], CouplingError)
+        return Fraction(given.speed / self.speed).limit_denominator(_LARGEST_TERM)
 
     @cached_property
     def speeds(self) -> dict[str, float]:
@@ -268,6 +323,37 @@ class Machine:
         names = [shaft.name for shaft in self.shafts]
         ratios = self.train.turning_ratios(names, [pair.label for pair in self.gear_pairs])
         return {name: self.speed * float(ratios[name]) for name in names}
+
+    @cached_property
+    def turning_senses(self) -> tuple[int, ...]:
+        """Sense of rotation of each pair's driver, 1 or -1, relative to the carrier of a planet among the two."""
+        return tuple(turning_sense(self.speed) * sense for sense in self.train.senses)
+
+    @cached_property
+    def mesh_speeds(self) -> tuple[float, ...]:
+        """Signed speed of each pair's driver [rad/s], relative to the carrier of a planet among the two."""
+        return tuple(float(shafts.relative_speed(self.speeds)) for shafts in self.train.pairs)
+
+    def bearing_speed(self, mounted: MountedBearing) -> float:
+        """Signed speed of a shaft in its bearing [rad/s], relative to a shaft that holds it, as a planet's carrier."""
+        around = self.shaft_around(mounted)
+        return self.speeds[mounted.rotor] - (0.0 if around is None else self.speeds[around])
+
+    @property
+    def _torque_springs(self) -> list[TorqueSupport]:
+        """Torque supports with a stiffness; behind a rigid one the shaft swings at twice the limit of its modes."""
+        return [
+            replace(support, stiffness=self.rotor(shaft.name).polar_inertia * (2.0 * shaft.mode_limit) ** 2)
+            if support.stiffness is None
+            else support
+            for support in self.torque_supports
+            for shaft in [self.shaft(support.shaft)]
+        ]
+
+    @cached_property
+    def support_torques(self) -> dict[str, float]:
+        """Mean torque about z by which each held shaft is held [N m]."""
+        return self.train.support_torques(self.train.torques_along(self.constant_torques, self.speed), self.speed)
 
     @cached_property
     def mesh_frequencies(self) -> tuple[float, ...]:
@@ -287,11 +373,29 @@ class Machine:
         return tuple(geometries)
 
     @cached_property
+    def mesh_phases(self) -> tuple[float, ...]:
+        """Phase of each gear pair at t = 0 [mesh periods].
+
+        Raises
+        ------
+        CouplingError
+            Where gears in a loop cannot be assembled.
+        """
+        lines = []
+        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True):
+            x, y = np.subtract(self.shaft(driven.shaft).axis, self.shaft(driver.shaft).axis)
+            side = -1.0 if geometry.is_internal else 1.0
+            lines.append(math.atan2(side * y, side * x))
+        names = [(pair.driver, pair.driven) for pair in self.gear_pairs]
+        drivers, drivens = [first for first, _ in names], [second for _, second in names]
+        return tuple(mesh_phases(drivers, drivens, self.pair_geometries, lines, self.turning_senses))
+
+    @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:
         """Torques about z that act from outside: the input first, then the outputs, by default at right ends."""
         if not self.gear_pairs:
             self._require_balance_of_each_shaft()
-        first = self.train.pairs[0].driver if self.gear_pairs else None
+        first = self.train.first if self.gear_pairs else None
         refuse(
             (
                 Finding(("machine", ""), f"outputs.{place}.shaft", first, output_elsewhere(first))
@@ -306,7 +410,9 @@ class Machine:
     def torques_from_outside(self, torque: float) -> tuple[Torque, ...]:
         """Return the torques about z by an input torque [N m], which the outputs take in their proportions."""
         ends = {shaft.name: shaft.rotor.length for shaft in self.shafts}
-        return self.train.applied_torques(torque, self.speed, self.outputs, self.torque_at, ends=ends)
+        return self.train.applied_torques(
+            torque, self.speed, self.outputs, self.torque_at, ends=ends, given=self.given_speeds
+        )
 
     @cached_property
     def pair_torques(self) -> tuple[float, ...]:
@@ -403,13 +509,13 @@ class Machine:
         Flanks whose misalignment is None take that of the operating point, see :attr:`assembled`.
         """
         loaded, pairs = [], self._aligned.gear_pairs
-        for pair, geometry, torque in zip(pairs, self.pair_geometries, self.pair_torques, strict=True):
+        rows = zip(pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
+        for pair, geometry, torque, speed in rows:
             progress(f"gear pair {pair.driver} -> {pair.driven}")
             driver, driven = (
                 inertia_with_discs(gear, self.shaft(gear.shaft).rotor, self._gears_on(gear.shaft))
                 for gear in self._gears_of(pair)
             )
-            speed = self.speeds[self._gears_of(pair)[0].shaft]
             loaded.append(load_gear_pair(pair, geometry, torque=torque, inertias=(driver, driven), speed=speed))
         return tuple(loaded)
 
@@ -478,11 +584,13 @@ class Machine:
             components,
             self.housing_component,
             speeds=self.speeds,
-            bearings=self.bearings,
+            bearings=[self._on_displaced_pin(mounted) for mounted in self.bearings],
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
+            torque_supports=self._torque_springs,
             speed_range=driving.speed_range,
+            speed_ratios=self.train.ratios,
         )
         return replace(assembled, speed_profile=driving.speed_profile)
 
@@ -506,25 +614,29 @@ class Machine:
         alone = [replace(body, twist=None, shift=None) for body in self.gear_bodies if body not in shared]
         rims = {body.gear: body for body in (*shared, *alone) if body in shared or body.plates}
         carrying = any(torque.value != 0.0 for torque in self.constant_torques)
-        for pair, geometry, torque in zip(self.gear_pairs, self.pair_geometries, self.pair_torques, strict=True):
+        operated = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.turning_senses, strict=True)
+        for pair, geometry, torque, rotation in operated:
             if not carrying:
                 continue
             driver, driven = self._gears_of(pair)
             axes = self.shaft(driver.shaft).axis, self.shaft(driven.shaft).axis
-            rotation = turning_sense(self.speeds[driver.shaft])
             gears = self._static_gears((driver, driven), geometry)
             behind = _behind_rims(pair, geometry, rims)
             pairs.append(static_pair(pair, geometry, gears, axes, rotation, torque, behind))
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
-                [static_bearing(mounted, self.speeds[mounted.rotor]) for mounted in self.bearings],
+                [
+                    static_bearing(mounted, self.bearing_speed(mounted), self._pin_displacement(mounted.rotor))
+                    for mounted in self.bearings
+                ],
                 pairs,
                 self.housing_component,
                 self.constant_torques,
                 self.gravity,
                 self.forces,
                 list(rims.values()) if pairs else (),
+                self._torque_springs,
             )
         except EquilibriumNotFoundError as error:
             of_location = (text for location in self.axial_locations for text in location.warnings)
@@ -768,12 +880,11 @@ class Machine:
             Naming the shafts, the gears and the forces [N].
         """
         pairs = [
-            ThrustPair((driver.shaft, driven.shaft), (driver.name, driven.name), geometry)
-            for (driver, driven), geometry in zip(
-                map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True
-            )
+            ThrustPair((shafts.driver, shafts.driven), (pair.driver, pair.driven), geometry, shafts.carrier)
+            for shafts, pair, geometry in zip(self.train.pairs, self.gear_pairs, self.pair_geometries, strict=True)
         ]
-        require_thrust_carried(pairs, self.bearings, self.speeds, largest_torques(self.constant_torques))
+        largest = largest_torques(self.constant_torques)
+        require_thrust_carried(pairs, self.bearings, self.speeds, largest, held=self.train.held)
 
     def _require_balance_of_each_shaft(self) -> None:
         """Refuse torques that no gear pair leads away and that do not balance on their own shaft.
@@ -827,12 +938,17 @@ class Machine:
                 moments_at.append(mounted.bearing.at)
                 if not mounted.law.floats:
                     thrusts_at.append(mounted.bearing.at)
+        seats = self._seats_in(shaft)
+        twisted_at = [*seats, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
+        moments_at += seats
         modal = modal_rotor(
             self.rotor(shaft.name),
-            [mounted.bearing.at_speed(self.speeds[shaft.name]) for mounted in bearings],
+            [mounted.bearing.at_speed(self.bearing_speed(mounted)) for mounted in bearings],
             frequency_limit=limit,
             count=count,
-            gears_at=list(dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft)])),
+            gears_at=list(
+                dict.fromkeys([*(at for at, _ in loaded_at), *self._ends_of_shared_faces(shaft), *twisted_at])
+            ),
             forces_at=[*(force.at for force in forces), *([] if shaft.bow is None else shaft.bow.at.tolist())],
             moments_at=moments_at,
             thrusts_at=thrusts_at,
@@ -845,6 +961,7 @@ class Machine:
             damping_ratio=shaft.damping_ratio,
             axis=shaft.axis,
             bodies=[body for body in self.gear_bodies if body.gear in names],
+            carrier=shaft.carrier,
         )
 
     def _static_gears(
@@ -864,12 +981,66 @@ class Machine:
         places = [mounted.bearing.at for mounted in self._bearings_on(shaft.name)]
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [force.at for force in self.forces if force.rotor == shaft.name]
+        places += [support.at for support in self.torque_supports if support.shaft == shaft.name]
+        places += self._seats_in(shaft)
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
                     places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
-        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact)
+        acceleration = self._acceleration_on(shaft)
+        place = shaft.name, shaft.axis, shaft.start
+        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat)
+
+    def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
+        """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
+        if shaft.carrier is None or self.speeds[shaft.carrier] == 0.0:
+            return None if self.gravity is None else tuple(self.gravity)
+        outward = np.subtract(shaft.axis, self.shaft(shaft.carrier).axis)
+        x, y = (self.speeds[shaft.carrier] ** 2 * outward).tolist()
+        fall = (0.0, 0.0, 0.0) if self.gravity is None else self.gravity
+        return x + fall[0], y + fall[1], fall[2]
+
+    def shaft_around(self, mounted: MountedBearing) -> str | None:
+        """Name of the shaft that holds a bearing: a planet's carrier, or one that is its seat; None for other seats."""
+        name = self.shaft(mounted.rotor).carrier or mounted.seat
+        return name if any(shaft.name == name for shaft in self.shafts) else None
+
+    def _pin_displacement(self, shaft: str) -> FloatArray | None:
+        """Displacement of a planet's pin by its error over x, y, z and the rotations about x, y; None without one."""
+        planet = self.shaft(shaft)
+        if planet.carrier is None or not any(planet.pin_error):
+            return None
+        x, y = np.subtract(planet.axis, self.shaft(planet.carrier).axis) / math.dist(
+            planet.axis, self.shaft(planet.carrier).axis
+        )
+        radial, tangential = planet.pin_error
+        return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
+
+    def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
+        """Return a bearing with the force of its pin's error where its law is linear about no load.
+
+        A law that is linear about the operating point has it in its offset.
+        """
+        displacement = self._pin_displacement(mounted.rotor)
+        if displacement is None or mounted.offset is not None:
+            return mounted
+        if mounted.law is not None:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected "
+                "a bearing that is linear about its load, or a pin_error of 0"
+            )
+        stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
+        return replace(mounted, offset=-stiffness @ displacement)
+
+    def _seats_in(self, shaft: Shaft) -> list[float]:
+        """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
+        return [
+            min(max(held.start + mounted.bearing.at - shaft.start, 0.0), shaft.rotor.length)
+            for mounted in self.bearings
+            if self.shaft_around(mounted) == shaft.name
+            for held in [self.shaft(mounted.rotor)]
+        ]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:
         return [mounted for mounted in self.bearings if mounted.rotor == shaft]
@@ -917,7 +1088,7 @@ class Machine:
             modal = next(part.modal for part in components if part.name == shaft.name)
             width = loaded.geometry.face_width
             missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
-            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing, shaft.rim_seat))
         bodies = {body.gear: body for part in components for body in part.bodies}
         behind = _behind_rims(loaded.pair, loaded.geometry, bodies)
         contact = law_between_rims(loaded.contact, behind)
@@ -931,6 +1102,7 @@ class Machine:
             loaded.pair.friction,
             behind_rims=behind,
             faces=loaded.tilting_faces,
+            carrier=self._geared_shafts(loaded.pair).carrier,
         )
 
 
@@ -956,7 +1128,9 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
     """Yield parts of a wrong kind, and numbers that are none."""
     part = ("machine", "")
     number = Number()
-    yield from attribute_findings(part, machine, speed=number, torque=number, torque_at=number)
+    yield from attribute_findings(
+        part, machine, speed=number, torque=number, torque_at=number, input_shaft=Text(optional=True)
+    )
     kinds: dict[str, type] = {
         "shafts": Shaft,
         "bearings": MountedBearing,
@@ -965,6 +1139,9 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
         "outputs": Output,
         "forces": ShaftForce,
         "ripple": Ripple,
+        "torque_supports": TorqueSupport,
+        "given_speeds": GivenSpeed,
+        "planetary_sets": PlanetarySet,
     }
     yield from kind_findings(part, machine, **kinds)
     rules: dict[str, Rule] = {

@@ -12,12 +12,15 @@ Gears that close a loop must fit: where teeth would clash, they cannot be assemb
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from math import hypot
 from typing import Literal
 
+from gearwhine.coupling.description.train_matrix import GearedShafts as GearedShafts
+from gearwhine.coupling.description.train_matrix import SpeedRows, connected_shafts, dependent_rows, least_flows
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
@@ -53,6 +56,7 @@ LARGEST_IMBALANCE = 0.01
 """Largest imbalance of the power of a train, relative."""
 
 _RATIO_ROUNDING = 1e-9
+_INTERNAL_SENSE = "an internal gear and its pinion turn the same way"
 _NO_TORQUE = 1e-9  # part of the input torque below which the torque of a gear pair is rounding
 
 
@@ -61,42 +65,20 @@ EQUAL_MESHES = "equal meshes"
 
 
 @dataclass(frozen=True)
-class GearedShafts:
-    """Two shafts that a gear pair connects.
-
-    Attributes
-    ----------
-    driver, driven : str
-        Names of the shafts.
-    teeth : tuple of int
-        Tooth numbers of the driver and of the driven gear.
-    """
-
-    driver: str
-    driven: str
-    teeth: tuple[int, int]
-
-    @property
-    def ratio(self) -> Fraction:
-        """Speed of the driven shaft over that of the driver, negative: external gears turn opposite ways."""
-        return Fraction(-self.teeth[0], self.teeth[1])
-
-
-@dataclass(frozen=True)
 class Contradiction:
-    """A gear pair that closes a loop in which the shafts cannot turn.
+    """A connection with which the shafts cannot turn.
 
     Attributes
     ----------
-    pair : int
-        Index of the pair.
+    pair : int or None
+        Index of the gear pair; None where the speed that a shaft is given is at fault.
     shaft : str
         Shaft that would have to turn at two speeds.
     ratio, other : Fraction
-        Speed of that shaft over that of the first driver by the other pairs, and by this pair.
+        Speed of that shaft over that of the first driver by the other connections, and by this one.
     """
 
-    pair: int
+    pair: int | None
     shaft: str
     ratio: Fraction
     other: Fraction
@@ -141,6 +123,33 @@ class Output:
 
 
 @dataclass(frozen=True)
+class GivenSpeed:
+    """Speed of a second driven shaft, as of a differential; its torque follows from the balance of the train.
+
+    Attributes
+    ----------
+    shaft : str
+    speed : float
+        Signed speed about z [rad/s].
+    at : float, optional
+        Distance of its torque from the shaft's left end [m]; None: the right end.
+    """
+
+    shaft: str
+    speed: float
+    at: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check that speed and place are numbers."""
+        rules: dict[str, Rule] = {
+            "shaft": Text(),
+            "speed": Number(unit="rad/s"),
+            "at": Number(at_least=0.0, optional=True, unit="m"),
+        }
+        refuse(attribute_findings(("given speed", str(self.shaft)), self, **rules), CouplingError)
+
+
+@dataclass(frozen=True)
 class GearTrain:
     """Gear train: pairs and the speed ratios that follow from them; see :func:`gear_train`.
 
@@ -148,43 +157,71 @@ class GearTrain:
     ----------
     pairs : tuple of GearedShafts
     ratios : mapping of str to Fraction
-        Signed speed of each shaft over that of the first driver; shafts that no pair leads to are absent.
+        Signed speed of each shaft over that of the first driver, which comes first; shafts whose speed does not follow
+        are absent.
     contradictions : tuple of Contradiction
         Empty in a train that can turn.
+    first : str
+        Shaft of the first driver, at which the torque comes in.
+    held : tuple of str
+        Shafts that are held and stand still.
+    planets : tuple of str
+        Shafts whose axes turn with a carrier.
+    given : tuple of str
+        Further shafts whose speeds are given.
+    open_shafts : tuple of str
+        Connected shafts whose speeds do not follow.
+    freedoms : int
+        Degrees of freedom: number of speeds that have to be given.
+    speed_shares : mapping of str to mapping
+        Speed of each shaft in ``ratios`` as its sum over the speeds of the first driver and of ``given``.
     """
 
     pairs: tuple[GearedShafts, ...]
     ratios: Mapping[str, Fraction]
     contradictions: tuple[Contradiction, ...]
+    first: str
+    held: tuple[str, ...] = ()
+    planets: tuple[str, ...] = ()
+    given: tuple[str, ...] = ()
+    open_shafts: tuple[str, ...] = ()
+    freedoms: int = 1
+    speed_shares: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
 
     @property
     def output_shafts(self) -> tuple[str, ...]:
-        """Shafts that drive no other: the power leaves there unless outputs are given."""
-        drivers = {pair.driver for pair in self.pairs}
-        return tuple(shaft for shaft in self.ratios if shaft not in drivers)
+        """Shafts that drive no other: the power leaves there unless outputs are given.
+
+        A planet has no end to take power from, a shaft at rest none to give.
+        """
+        closed = {pair.driver for pair in self.pairs}.union(self.planets, self.given)
+        if self.pairs:
+            closed.add(self.first)
+        return tuple(shaft for shaft, ratio in self.ratios.items() if shaft not in closed and ratio)
 
     @property
     def force_origins(self) -> tuple[str, ...]:
         """What the mean force of each pair follows from: the torques alone, or in a loop of pairs `EQUAL_MESHES`."""
         return tuple(EQUAL_MESHES if shares else "torques" for shares in self.shares_torque)
 
-    @property
+    @cached_property
     def shares_torque(self) -> tuple[bool, ...]:
-        """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split."""
-        return tuple(self._is_in_loop(number) for number in range(len(self.pairs)))
+        """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split.
 
-    def _is_in_loop(self, number: int) -> bool:
-        """Whether other pairs lead from the driver of a pair to its driven shaft."""
-        reached, start = {self.pairs[number].driver}, 0
-        others = [{pair.driver, pair.driven} for other, pair in enumerate(self.pairs) if other != number]
-        while len(reached) > start:
-            start = len(reached)
-            for shafts in others:
-                reached |= shafts if shafts & reached else set()
-        return self.pairs[number].driven in reached
+        Planets of a set are in loops through sun, ring and carrier.
+        """
+        balancing = self._balancing
+        rows = [{shaft: value for shaft, value in pair.row.items() if shaft in balancing} for pair in self.pairs]
+        return dependent_rows(rows)
+
+    @property
+    def _balancing(self) -> list[str]:
+        """Shafts whose torques have to balance: all but those whose drive or support gives what is missing."""
+        supported = {self.first, *self.held, *self.given}
+        return [shaft for shaft in self.ratios if shaft not in supported]
 
     def turning_ratios(self, shafts: Sequence[str], labels: Sequence[str]) -> Mapping[str, Fraction]:
-        """Speed ratios of a train in which every shaft turns.
+        """Speed ratios of a train in which the speed of every shaft follows from the drives.
 
         Parameters
         ----------
@@ -196,21 +233,63 @@ class GearTrain:
         Raises
         ------
         CouplingError
-            Where a shaft is in no gear pair that the first driver turns, or a loop of pairs cannot turn.
+            Where the first driver cannot turn, a shaft is in no gear pair that it turns, pairs, held shafts and given
+            speeds contradict each other, or speeds are left open.
         """
-        for wrong in self.contradictions:
-            raise CouplingError(
-                f"{labels[wrong.pair]} closes a loop that cannot turn: shaft {wrong.shaft!r} would turn at "
-                f"{float(wrong.ratio):.6g} of the first driver's speed by the other pairs, and at "
-                f"{float(wrong.other):.6g} by this one"
+        for problem in self.problems(shafts, labels):
+            raise CouplingError(problem)
+        return self.ratios
+
+    def problems(self, shafts: Sequence[str], labels: Sequence[str]) -> Iterator[str]:
+        """Yield sentences on what keeps a train from turning, as :meth:`turning_ratios`."""
+        if self.first in (*self.planets, *self.held):
+            why = "a planet, whose axis turns with its carrier" if self.first in self.planets else "held"
+            candidates = [name for name in shafts if name not in (*self.planets, *self.held)]
+            yield (
+                f"the torque comes in on shaft {self.first!r}, which is {why}; expected an input on a shaft that turns "
+                f"about a fixed axis, one of {', '.join(map(repr, candidates))}"
             )
-        idle = [name for name in shafts if name not in self.ratios]
+            return
+        for wrong in self.contradictions:
+            yield self.sentence(wrong, "gear pairs" if wrong.pair is None else labels[wrong.pair])
+        connected = {*self.ratios, *self.open_shafts}
+        idle = [name for name in shafts if name not in connected]
         if idle:
-            raise CouplingError(
-                f"no gear pair leads from shaft {self.pairs[0].driver!r}, the first driver, to "
+            yield (
+                f"no gear pair leads from shaft {self.first!r}, the first driver, to "
                 f"{', '.join(map(repr, idle))}; expected a pair that turns each shaft"
             )
-        return self.ratios
+        if self.open_shafts:
+            drives = ", ".join(map(repr, (self.first, *self.given)))
+            candidates = [name for name in self.open_shafts if name not in self.planets] or list(self.open_shafts)
+            missing = self.freedoms - 1 - len(self.given)
+            given = "1 speed is given, that" if not self.given else f"{1 + len(self.given)} speeds are given, those"
+            yield (
+                f"the train has {self.freedoms} degrees of freedom and {given} of {drives}: "
+                f"{', '.join(map(repr, self.open_shafts))} turn freely; expected {missing} more of "
+                f"{', '.join(map(repr, candidates))} held by a torque support, driven at a given speed, or geared to "
+                "another shaft"
+            )
+
+    def sentence(self, wrong: Contradiction, label: str) -> str:
+        """Return a contradiction as a sentence; ``label`` names the pair."""
+        shaft, ratio, other = repr(wrong.shaft), float(wrong.ratio), float(wrong.other)
+        if wrong.pair is None:
+            return (
+                f"shaft {shaft} is given {other:.6g} of the first driver's speed, and turns at {ratio:.6g} of it by "
+                "the gear pairs: two shafts are driven against each other; expected one of them driven, or a train "
+                "with another degree of freedom"
+            )
+        if self.held:
+            return (
+                f"{label} cannot turn: shaft {shaft} would turn at {ratio:.6g} of the first driver's speed by the "
+                f"other connections, and at {other:.6g} by this one; expected one of the held shafts "
+                f"({', '.join(map(repr, self.held))}) free, or teeth in the ratio of these speeds"
+            )
+        return (
+            f"{label} closes a loop that cannot turn: shaft {shaft} would turn at {ratio:.6g} of the first driver's "
+            f"speed by the other pairs, and at {other:.6g} by this one"
+        )
 
     def pair_torques(self, torques: Mapping[str, float]) -> tuple[float, ...]:
         """Mean torque that each pair takes from its driver [N m].
@@ -223,22 +302,72 @@ class GearTrain:
         Returns
         -------
         tuple of float
-            Positive where power flows from driver to driven.
+            Positive where power flows from driver to driven, seen from the carrier where there is one.
 
         Notes
         -----
         Speeds fix the power through every pair of a tree. Where pairs form a loop, the smallest flows that balance are
-        taken, which is what equal contacts carry: f = Bᵀ p with B Bᵀ p = P, B the incidence matrix of the train's
-        graph and P the power that enters each shaft over the speed of the first driver.
+        taken, which is what equal contacts carry, see :func:`~.train_matrix.least_flows`: B is the constraint matrix,
+        each column times the speed of its shaft and each row over the speed of its mesh, and P the power that enters
+        each shaft, both over the speed of the first driver. The shaft of the first driver, held shafts and those with
+        given speeds take what is left.
         """
         if not self.pairs:
             return ()
-        entering = {shaft: torques.get(shaft, 0.0) * abs(float(ratio)) for shaft, ratio in self.ratios.items()}
-        potential = _potentials(self.pairs, entering)
-        return tuple(
-            (potential[pair.driver] - potential[pair.driven]) / abs(float(self.ratios[pair.driver]))
-            for pair in self.pairs
-        )
+        speeds, leaving = self.ratios, dict[str, float]()
+        for shaft in self._balancing:
+            leaving[shaft] = torques.get(shaft, 0.0) * float(abs(speeds[shaft]) or 1)
+        # A shaft at rest balances its torque in place of its power, teeth without relative motion their force.
+        turning = [self._mesh_turning(number) for number in range(len(self.pairs))]
+        rows = [
+            {
+                shaft: float(value * (speeds[shaft] or 1) / (pair.teeth[0] * relative))
+                for shaft, value in pair.row.items()
+            }
+            for pair, relative in zip(self.pairs, turning, strict=True)
+        ]
+        flows = least_flows(rows, leaving)
+        return tuple(flow / float(abs(relative)) for flow, relative in zip(flows, turning, strict=True))
+
+    def _mesh_turning(self, number: int) -> Fraction:
+        """Speed of a pair's driver relative to its carrier, over that of the first driver; its sense if it rests."""
+        return Fraction(self.pairs[number].relative_speed(self.ratios)) or Fraction(self.senses[number])
+
+    @cached_property
+    def senses(self) -> tuple[int, ...]:
+        """Sense of rotation of each pair's driver relative to its carrier where the first driver turns about +z."""
+        return tuple(turning_senses(self.pairs, {name: float(ratio) for name, ratio in self.ratios.items()}))
+
+    def support_torques(self, torques: Mapping[str, float], speed: float) -> dict[str, float]:
+        """Torque about z by which each held shaft is held [N m].
+
+        Parameters
+        ----------
+        torques : mapping of str to float
+            External torques, as of :meth:`pair_torques`.
+        speed : float
+            Signed speed of the first driver's shaft [rad/s].
+        """
+        sense = math.copysign(1.0, speed)
+        on_shafts = self.mesh_torques(self.pair_torques(torques), speed)
+        return {
+            name: -sum((each.get(name, 0.0) for each in on_shafts), sense * torques.get(name, 0.0))
+            for name in self.held
+        }
+
+    def mesh_torques(self, pair_torques: Sequence[float], speed: float) -> list[dict[str, float]]:
+        """Torques about z of each mesh on its shafts, carrier included [N m].
+
+        Parameters
+        ----------
+        pair_torques : sequence of float
+            See :meth:`pair_torques`.
+        speed : float
+            Signed speed of the first driver's shaft [rad/s].
+        """
+        senses = [math.copysign(1.0, speed) * sense for sense in self.senses]
+        rows = zip(self.pairs, pair_torques, senses, strict=True)
+        return [pair.torques(sense * torque) for pair, torque, sense in rows]
 
     def applied_torques(
         self,
@@ -248,11 +377,13 @@ class GearTrain:
         at: float = 0.0,
         *,
         ends: Mapping[str, float],
+        given: Sequence[GivenSpeed] = (),
     ) -> tuple[Torque, ...]:
-        """Torques from outside: the input first, then the outputs; they balance through the gears.
+        """Torques from outside: the input first, then the outputs, then further drives; they balance by the gears.
 
         The input drives the first driver's shaft in its sense of rotation, or without pairs the first output's shaft;
-        outputs work against the rotation of theirs, see :func:`shared_torques`.
+        outputs work against the rotation of theirs, see :func:`shared_torques`. Shafts whose speed is given have the
+        torque that their own motion, all other drives at rest, balances: virtual work.
 
         Parameters
         ----------
@@ -265,15 +396,34 @@ class GearTrain:
             Station of the input torque [m].
         ends : mapping of str to float
             Length of each shaft [m]: the default station of an output.
+        given : sequence of GivenSpeed
+            Drives of the shafts ``given`` of the train, for their stations.
         """
         if torque == 0.0 or not (self.pairs or outputs):
             return ()
-        first = self.pairs[0].driver if self.pairs else outputs[0].shaft
+        first = self.first if self.pairs else outputs[0].shaft
         applied = [Torque(first, at, math.copysign(1.0, speed) * torque)]
-        for output, value in shared_torques(self, torque, outputs):
+        shared = shared_torques(self, torque, outputs)
+        for output, value in shared:
             place = ends[output.shaft] if output.at is None else output.at
             applied.append(Torque(output.shaft, place, -self.rotation_sense(output.shaft, speed) * value))
+        for drive in given:
+            place = ends[drive.shaft] if drive.at is None else drive.at
+            balancing = sum(value * self.torque_ratio(output.shaft, drive.shaft) for output, value in shared)
+            applied.append(Torque(drive.shaft, place, math.copysign(1.0, speed) * balancing))
         return tuple(applied)
+
+    def torque_ratio(self, shaft: str, drive: str | None = None) -> float:
+        """Torque about +z on a drive, by default the first driver, that balances a unit torque on a shaft.
+
+        The unit torque acts against the rotation of the shaft where the first driver turns about +z. The others of the
+        drives stand still.
+        """
+        ratio = self.ratios[shaft]
+        if shaft not in self.speed_shares:
+            return abs(float(ratio))
+        share = self.speed_shares[shaft].get(self.first if drive is None else drive, Fraction(0))
+        return math.copysign(1.0, ratio) * float(share)
 
     def rotation_sense(self, shaft: str, speed: float) -> float:
         """Sense of rotation of a shaft about z, 1 or -1, at a speed of the first driver's shaft [rad/s].
@@ -284,7 +434,9 @@ class GearTrain:
 
     def mesh_frequencies(self, speed: float) -> tuple[float, ...]:
         """Tooth-mesh frequency of each pair [Hz] at a speed of the first driver's shaft [rad/s]."""
-        return tuple(mesh_frequency(speed * float(self.ratios[pair.driver]), pair.teeth[0]) for pair in self.pairs)
+        return tuple(
+            mesh_frequency(speed * float(pair.relative_speed(self.ratios)), abs(pair.teeth[0])) for pair in self.pairs
+        )
 
     def mean_pair_torques(self, applied: Sequence[Torque], speed: float) -> tuple[float, ...]:
         """Mean torque that each pair takes from its driver [N m], under torques about z; see :meth:`pair_torques`.
@@ -295,62 +447,112 @@ class GearTrain:
         speed : float
             Signed speed of the first driver's shaft [rad/s].
         """
+        return self.pair_torques(self.torques_along(applied, speed))
+
+    def torques_along(self, applied: Sequence[Torque], speed: float) -> dict[str, float]:
+        """Torques about z in the sense in which their shafts turn, by shaft [N m], as :meth:`pair_torques` takes them.
+
+        Parameters
+        ----------
+        applied : sequence of Torque
+        speed : float
+            Signed speed of the first driver's shaft [rad/s].
+        """
         along = dict.fromkeys(self.ratios, 0.0)
         for torque in applied:
             along[torque.rotor] += torque.value * self.rotation_sense(torque.rotor, speed)
-        return self.pair_torques(along)
+        return along
 
 
-def gear_train(pairs: Iterable[GearedShafts], shafts: Iterable[str] = ()) -> GearTrain:
-    """Follow tooth ratios from the driver of the first pair through all pairs; without pairs all shafts are as fast."""
-    pairs = tuple(pairs)
-    ratios = {pairs[0].driver: Fraction(1)} if pairs else dict.fromkeys(shafts, Fraction(1))
-    contradictions: dict[int, Contradiction] = {}
-    waiting = list(enumerate(pairs))
-    while waiting:
-        left = []
-        for place, pair in waiting:
-            first, second = ratios.get(pair.driver), ratios.get(pair.driven)
-            if first is not None and second is not None:
-                if second != first * pair.ratio:
-                    contradictions[place] = Contradiction(place, pair.driven, second, first * pair.ratio)
-            elif first is not None:
-                ratios[pair.driven] = first * pair.ratio
-            elif second is not None:
-                ratios[pair.driver] = second / pair.ratio
-            else:
-                left.append((place, pair))
-        if len(left) == len(waiting):
-            break
-        waiting = left
-    return GearTrain(pairs, ratios, tuple(contradictions[place] for place in sorted(contradictions)))
+def gear_train(
+    pairs: Iterable[GearedShafts],
+    shafts: Iterable[str] = (),
+    *,
+    held: Iterable[str] = (),
+    planets: Iterable[str] = (),
+    given: Mapping[str, Fraction] | None = None,
+    first: str | None = None,
+) -> GearTrain:
+    """Solve the constraint matrix of a gear train for the speeds of its shafts; without pairs all are as fast.
 
-
-def _potentials(pairs: Sequence[GearedShafts], entering: Mapping[str, float]) -> dict[str, float]:
-    """Solve L p = P on the graph of a connected train, p of its first shaft zero.
-
-    The Laplacian L = B Bᵀ is positive definite without the first shaft, so elimination needs no pivoting.
+    Parameters
+    ----------
+    pairs : iterable of GearedShafts
+    shafts : iterable of str
+        Names of all shafts.
+    held : iterable of str
+        Shafts that are held.
+    planets : iterable of str
+        Shafts whose axes turn with a carrier.
+    given : mapping of str to Fraction, optional
+        Speeds of further driven shafts over that of the first driver.
+    first : str, optional
+        Shaft at which the torque comes in. By default that of the first pair's driver, or where that one is held or a
+        planet, the first pair's carrier.
     """
-    shafts = list(entering)
-    place = {shaft: index for index, shaft in enumerate(shafts)}
-    size = len(shafts)
-    rows = [[0.0] * size + [entering[shaft]] for shaft in shafts]
-    for pair in pairs:
-        i, j = place[pair.driver], place[pair.driven]
-        rows[i][i] += 1.0
-        rows[j][j] += 1.0
-        rows[i][j] -= 1.0
-        rows[j][i] -= 1.0
-    for pivot in range(size - 1, 0, -1):
-        for row in range(pivot):
-            factor = rows[row][pivot] / rows[pivot][pivot]
-            if factor != 0.0:
-                rows[row] = [a - factor * b for a, b in zip(rows[row], rows[pivot], strict=True)]
-    solution = [0.0] * size
-    for row in range(1, size):
-        substituted = sum(rows[row][column] * solution[column] for column in range(row))
-        solution[row] = (rows[row][size] - substituted) / rows[row][row]
-    return dict(zip(shafts, solution, strict=True))
+    pairs, held, planets, speeds = tuple(pairs), tuple(held), tuple(planets), dict(given or {})
+    names = list(shafts)
+    if not pairs:
+        first = names[0] if first is None and names else first or ""
+        return GearTrain((), dict.fromkeys(names, Fraction(1)), (), first, held, planets, tuple(speeds))
+    if first is None:
+        first = pairs[0].driver
+        if pairs[0].carrier is not None and first in (*held, *planets):
+            first = pairs[0].carrier
+    drives = {first: Fraction(1)} | speeds
+    rows = SpeedRows(list(drives))
+    for name in held:
+        rows.add({name: Fraction(1)})
+    order, wrong = list[str](), list[int]()
+    for number in _adding_order(pairs, rows):
+        if not rows.add(pairs[number].row):
+            wrong.append(number)
+        order += [shaft for shaft in pairs[number].row if shaft not in order]
+    connected = connected_shafts([pair.row for pair in pairs], first)
+    found = [shaft for shaft in (first, *order) if shaft in connected and rows.is_determined(shaft)]
+    ratios = {shaft: rows.at(shaft, drives) for shaft in found}
+    contradictions = [_contradiction(number, pairs[number], rows, drives) for number in sorted(wrong)]
+    contradictions += [
+        Contradiction(None, name, ratios[name], ratio)
+        for name, ratio in speeds.items()
+        if name in rows.dependent and name in ratios
+    ]
+    independent = {free for shaft in connected for free in rows.shares(shaft)}
+    return GearTrain(
+        pairs,
+        ratios,
+        tuple(contradictions),
+        first,
+        held,
+        planets,
+        tuple(speeds),
+        tuple(shaft for shaft in order if shaft in connected and shaft not in ratios),
+        len(independent),
+        {shaft: dict(rows.shares(shaft)) for shaft in found},
+    )
+
+
+def _adding_order(pairs: Sequence[GearedShafts], rows: SpeedRows) -> Iterator[int]:
+    """Yield pairs whose row fixes or checks one speed, in rounds from the drives on; if there is none, the next.
+
+    Then the pair that closes a loop is the one that is found to contradict the others.
+    """
+    left = list(range(len(pairs)))
+    while left:
+        before = len(left)
+        for number in tuple(left):
+            if sum(not rows.is_determined(shaft) for shaft in pairs[number].row) <= 1:
+                left.remove(number)
+                yield number
+        if len(left) == before:
+            yield left.pop(0)
+
+
+def _contradiction(number: int, pair: GearedShafts, rows: SpeedRows, drives: Mapping[str, Fraction]) -> Contradiction:
+    """Speed of the driven shaft by the other connections, and by this pair from its driver and carrier."""
+    driver, driven = rows.at(pair.driver, drives), rows.at(pair.driven, drives)
+    carried = Fraction(0) if pair.carrier is None else rows.at(pair.carrier, drives)
+    return Contradiction(number, pair.driven, driven, carried + pair.ratio * (driver - carried))
 
 
 def shared_torques(train: GearTrain, torque: float, outputs: Sequence[Output]) -> list[tuple[Output, float]]:
@@ -366,19 +568,19 @@ def shared_torques(train: GearTrain, torque: float, outputs: Sequence[Output]) -
         Torque at the first driver, in the sense in which it turns [N m].
     outputs : sequence of Output
     """
-    ratios = {shaft: float(ratio) for shaft, ratio in train.ratios.items()}
     outputs = list(outputs) or [Output(shaft) for shaft in train.output_shafts]
     if not any(output.torque for output in outputs):
         outputs = [
-            Output(output.shaft, torque / len(outputs) / abs(ratios[output.shaft]), output.at) for output in outputs
+            Output(output.shaft, torque / len(outputs) / abs(float(train.ratios[output.shaft])), output.at)
+            for output in outputs
         ]
-    power = sum((output.torque or 0.0) * abs(ratios[output.shaft]) for output in outputs)
+    power = output_torque(train, outputs)
     return [(output, (output.torque or 0.0) * torque / power) for output in outputs]
 
 
 def output_torque(train: GearTrain, outputs: Sequence[Output]) -> float:
     """Torque of the outputs, reduced to the first driver by the tooth ratios [N m]."""
-    return sum((output.torque or 0.0) * abs(float(train.ratios[output.shaft])) for output in outputs)
+    return sum((output.torque or 0.0) * train.torque_ratio(output.shaft) for output in outputs)
 
 
 def is_balanced(entering: float, leaving: float) -> bool:
@@ -397,9 +599,11 @@ def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[
     Raises
     ------
     CouplingError
-        Where only some outputs have torques, there is no input for them, or their power is off by more than one in a
-        hundred.
+        Where an output is on a shaft that gives no power, no shaft is left for one, only some outputs have torques,
+        there is no input for them, or their power is off by more than one in a hundred.
     """
+    if train.pairs and torque != 0.0:
+        _require_turning_outputs(train, outputs)
     with_torque = [output for output in outputs if output.torque is not None]
     if not with_torque:
         return
@@ -415,6 +619,29 @@ def require_balanced_outputs(train: GearTrain, torque: float, outputs: Sequence[
         raise CouplingError(
             f"outputs that amount to {leaving:g} N m at the first driver; expected outputs that balance the input "
             f"torque of {torque:g} N m through the tooth ratios"
+        )
+
+
+def _require_turning_outputs(train: GearTrain, outputs: Sequence[Output]) -> None:
+    """Refuse a train with nothing to take the input, and outputs where nothing can be taken."""
+    names = [output.shaft for output in outputs] or list(train.output_shafts)
+    turning = ", ".join(repr(name) for name, ratio in train.ratios.items() if ratio and name not in train.planets)
+    for name in names:
+        if name in train.planets:
+            raise CouplingError(
+                f"an output on shaft {name!r}, a planet, whose axis turns with its carrier; expected one of {turning}"
+            )
+        if not train.ratios[name]:
+            raise CouplingError(f"an output on shaft {name!r}, which stands still; expected one of {turning}")
+    if not names:
+        raise CouplingError(
+            "no shaft where the torque leaves: each drives another, is held or is a planet; expected outputs"
+        )
+    if train.given and sum(train.torque_ratio(name) for name in names) <= 0.0:
+        raise CouplingError(
+            f"outputs on {', '.join(map(repr, names))}, which at these speeds drive the first driver, "
+            f"{train.first!r}, in place of being driven by it; expected a negative torque of an input that brakes, or "
+            "the input on a shaft that drives"
         )
 
 
@@ -480,29 +707,52 @@ def carrying_flanks(pair_torques: Sequence[float], torque: float) -> list[Litera
     return flanks
 
 
-def turning_senses(pairs: Sequence[tuple[str, str]], speeds: Mapping[str, float]) -> list[int]:
-    """Return the sense of rotation of each pair's driver, 1 or -1.
+def turning_senses(pairs: Sequence[GearedShafts], speeds: Mapping[str, float]) -> list[int]:
+    """Return the sense of rotation of each pair's driver relative to its carrier, 1 or -1.
 
-    Gears in mesh turn opposite ways, at rest too. There the first pair of a train has the sense that
+    Seen from the carrier external gears in mesh turn opposite ways, an internal gear and its pinion the same way, at
+    rest too. There the first pair of a train has the sense that
     :func:`gearwhine.coupling.gears.geometry.pair.turning_sense` gives its driver, and the others follow.
 
     Parameters
     ----------
-    pairs : sequence of tuple of str
-        Rotors of driver and driven.
+    pairs : sequence of GearedShafts
     speeds : mapping of str to float
-        Signed speed of each rotor [rad/s].
+        Signed speed of each shaft, or its part of another's [rad/s].
     """
-    senses = {name: turning_sense(speed) for name, speed in speeds.items() if speed != 0.0}
-    for number in connected_order(pairs, senses):
-        driver, driven = pairs[number]
+    seen = [[(shaft, pair.carrier) for shaft in (pair.driver, pair.driven)] for pair in pairs]
+    senses = dict[tuple[str, str | None], int]()
+    for shaft, carrier in (member for members in seen for member in members):
+        carried = 0.0 if carrier is None else speeds[carrier]
+        relative = speeds[shaft] - carried
+        if abs(relative) > _RATIO_ROUNDING * abs(carried):
+            senses[shaft, carrier] = turning_sense(relative)
+    for number in connected_order(seen, senses):
+        driver, driven = seen[number]
+        other = -1 if math.prod(pairs[number].teeth) > 0 else 1
         if driver not in senses:
-            senses[driver] = -senses[driven] if driven in senses else turning_sense(speeds[driver])
-        senses.setdefault(driven, -senses[driver])
-    return [senses[driver] for driver, _ in pairs]
+            senses[driver] = other * senses[driven] if driven in senses else turning_sense(speeds[driver[0]])
+        senses.setdefault(driven, other * senses[driver])
+    return [senses[driver] for driver, _ in seen]
 
 
-def connected_order(pairs: Sequence[tuple[str, str]], known: Iterable[str] = ()) -> Iterator[int]:
+def geared_shafts(mesh: GearMesh) -> GearedShafts:
+    """Return the rotors of a mesh as the shafts of a train."""
+    teeth = mesh.geometry.driver.teeth, mesh.geometry.driven.teeth
+    return GearedShafts(mesh.driver.rotor, mesh.driven.rotor, teeth, mesh.carrier)
+
+
+def geared_names(meshes: Iterable[GearMesh]) -> list[tuple[str, str]]:
+    """Names of rotors that meshes connect, in twos: driver and driven, driver and carrier."""
+    return [
+        (mesh.driver.rotor, other)
+        for mesh in meshes
+        for other in (mesh.driven.rotor, mesh.carrier)
+        if other is not None
+    ]
+
+
+def connected_order(pairs: Sequence[Sequence[Hashable]], known: Iterable[Hashable] = ()) -> Iterator[int]:
     """Yield indices of all pairs, first those that share a name with a pair before; ``known`` names come before all.
 
     The first of the others begins a new group of connected pairs.
@@ -550,7 +800,7 @@ def require_balance(meshes: Sequence[GearMesh], torques: Sequence[AnyTorque], sp
     """
     varying = {torque.rotor for torque in torques if not isinstance(torque, Torque | TorqueRipple)}
     total = largest_torques(torques)
-    for train in trains(list(speeds), [(mesh.driver.rotor, mesh.driven.rotor) for mesh in meshes]):
+    for train in trains(list(speeds), geared_names(meshes)):
         if len(train) < 2 or varying.intersection(train):
             continue
         powers = {name: total.get(name, 0.0) * speeds[name] for name in train}
@@ -568,19 +818,23 @@ def _require_ratio(mesh: GearMesh, speeds: Mapping[str, float]) -> None:
     rotors = mesh.driver.rotor, mesh.driven.rotor
     if rotors[0] == rotors[1]:
         raise CouplingError(f"{mesh.label}: both gears are on rotor {rotors[0]!r}; expected the driven one on another")
-    first, second = (speeds[name] for name in rotors)
-    teeth = mesh.geometry.driver.teeth, mesh.geometry.driven.teeth
+    shafts = geared_shafts(mesh)
+    carried = 0.0 if shafts.carrier is None else speeds[shafts.carrier]
+    first, second = (speeds[name] - carried for name in rotors)
+    teeth = shafts.teeth
     needed = -first * teeth[0] / teeth[1]
-    if abs(second - needed) <= _RATIO_ROUNDING * abs(needed):
+    if abs(second - needed) <= _RATIO_ROUNDING * max(abs(needed), abs(carried)):
         return
-    if first * second > 0.0:
+    if first * second * math.prod(teeth) > 0.0:
+        same, expected = ("the same way", "opposite") if math.prod(teeth) > 0 else ("opposite ways", "equal")
         raise CouplingError(
-            f"{mesh.label}: rotors {rotors[0]!r} and {rotors[1]!r} turn the same way; expected speeds of opposite "
-            "signs, since external gears turn opposite ways"
+            f"{mesh.label}: rotors {rotors[0]!r} and {rotors[1]!r} turn {same}; expected speeds of {expected} "
+            f"signs, since {'external gears turn opposite ways' if math.prod(teeth) > 0 else _INTERNAL_SENSE}"
         )
+    relative = "" if shafts.carrier is None else f" relative to carrier {shafts.carrier!r}"
     raise CouplingError(
-        f"{mesh.label}: rotor {rotors[1]!r} turns at {second:.6g} rad/s; expected {needed:.6g} rad/s, by {teeth[0]} "
-        f"and {teeth[1]} teeth with rotor {rotors[0]!r} at {first:.6g} rad/s"
+        f"{mesh.label}: rotor {rotors[1]!r} turns at {second:.6g} rad/s{relative}; expected {needed:.6g} rad/s, by "
+        f"{teeth[0]} and {teeth[1]} teeth with rotor {rotors[0]!r} at {first:.6g} rad/s"
     )
 
 
@@ -658,7 +912,8 @@ def plane_findings(part: Part, places: Sequence[float], gears: Sequence[Gear]) -
         yield Finding(part, "driven", None, expected)
 
 
-_MISFIT = 1e-3  # largest misfit over the pitch that may come from rounding of the axes
+LARGEST_MISFIT = 1e-3
+"""Largest misfit of teeth in a loop of gears that may come from rounding of the axes, over the pitch."""
 
 
 def mesh_phases(
@@ -708,7 +963,7 @@ def mesh_phases(
             stands = zero + phase * pitch
             # A whole number of pitches is the same place.
             misfit = (angles.setdefault(gear, stands) - stands) / pitch
-            if abs(misfit - round(misfit)) > _MISFIT:
+            if abs(misfit - round(misfit)) > LARGEST_MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import hypot, pi
 from typing import Protocol
 
 from gearwhine.coupling.description.arrangement import SeatPlace, pedestal_finding, seat_findings
-from gearwhine.coupling.description.gear_train import Output
+from gearwhine.coupling.description.gear_train import LARGEST_OFFSET, GearTrain, GivenSpeed, Output
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear
 from gearwhine.coupling.gears.geometry.blank import CoreLength, blank_around
@@ -25,6 +25,7 @@ from gearwhine.numerics.findings import (
     Rule,
     Text,
     attribute_findings,
+    in_mm,
     kind_findings,
     refuse,
 )
@@ -66,6 +67,14 @@ class Shaft:
         default.
     mode_count : int, optional
         Number of retained modes of each kind, in place of the limit.
+    carrier : str, optional
+        Name of the shaft with which the axis of this one turns, as that of a planet with its carrier; ``axis`` is its
+        place at t = 0. None: the axis stands still.
+    rim_seat : str, optional
+        Seat of the housing, with ``ring_orders``, whose bore the rim of the ring gear on this shaft follows as it
+        deforms; by default the rim moves as one body with the shaft.
+    pin_error : tuple of float
+        Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
     """
 
     rotor: Rotor
@@ -76,10 +85,13 @@ class Shaft:
     bow: Bow | None = None
     frequency_limit: float | None = None
     mode_count: int | None = None
+    carrier: str | None = None
+    pin_error: tuple[float, float] = (0.0, 0.0)
+    rim_seat: str | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
-        keep_tuples(self, "axis", "unbalances")
+        keep_tuples(self, "axis", "unbalances", "pin_error")
         kind = Instance(Rotor, "a rotor")
         refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
         rules: dict[str, Rule] = {
@@ -89,6 +101,9 @@ class Shaft:
             "frequency_limit": Number(above=0.0, optional=True, unit="rad/s"),
             "mode_count": Number(at_least=1, optional=True, whole=True),
             "bow": Instance(Bow, "a bow, or None", optional=True),
+            "carrier": Text(optional=True),
+            "pin_error": Numbers(2),
+            "rim_seat": Text(optional=True),
         }
         part = ("shaft", self.name)
         if not self.name:
@@ -96,6 +111,9 @@ class Shaft:
         kinds = kind_findings(part, self, unbalances=ShaftUnbalance)
         refuse([*attribute_findings(part, self, **rules), *kinds], CouplingError)
         refuse(self._station_findings(), CouplingError)
+        if self.carrier is None and any(self.pin_error):
+            expected = "(0, 0) of a shaft without a carrier; a place of its own is `axis`"
+            refuse([Finding(part, "pin_error", self.pin_error, expected)], CouplingError)
 
     def _station_findings(self) -> Iterator[Finding]:
         """Yield unbalances and points of a bow beyond the ends of the rotor, and a bow that bends nothing."""
@@ -198,6 +216,44 @@ class ShaftGear:
         return self.gear.inertia if self.inertia is None else self.inertia
 
 
+@dataclass(frozen=True)
+class TorqueSupport:
+    """A support that holds a shaft from turning, such as the spline or the bolts of a ring gear.
+
+    Attributes
+    ----------
+    shaft : str
+        Name of the shaft.
+    at : float
+        Distance from the shaft's left end [m].
+    stiffness : float, optional
+        Torque about z over rotation [N m/rad]; None: rigid.
+    seat : str, optional
+        Seat of the housing that takes the torque; None: the ground.
+    damping_time : float
+        Damping over stiffness [s].
+    """
+
+    shaft: str
+    at: float = 0.0
+    stiffness: float | None = None
+    seat: str | None = None
+    damping_time: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check every number; "ground", the word of a case, is no seat."""
+        if self.seat == "ground":
+            object.__setattr__(self, "seat", None)
+        rules: dict[str, Rule] = {
+            "shaft": Text(),
+            "at": Number(at_least=0.0, unit="m"),
+            "stiffness": Number(above=0.0, optional=True, unit="N m/rad"),
+            "seat": Text(optional=True),
+            "damping_time": Number(at_least=0.0, unit="s"),
+        }
+        refuse(attribute_findings(("torque support", str(self.shaft)), self, **rules), CouplingError)
+
+
 class MachineParts(Protocol):
     """The lists of parts in a machine, see :class:`gearwhine.coupling.Machine`."""
 
@@ -234,6 +290,26 @@ class MachineParts(Protocol):
     @property
     def forces(self) -> Sequence[ShaftForce]:
         """Constant forces on the shafts."""
+        ...
+
+    @property
+    def torque_supports(self) -> Sequence[TorqueSupport]:
+        """Supports that hold shafts from turning."""
+        ...
+
+    @property
+    def given_speeds(self) -> Sequence[GivenSpeed]:
+        """Speeds of further driven shafts."""
+        ...
+
+    @property
+    def input_shaft(self) -> str | None:
+        """Shaft at which the torque comes in; None: that of the first driver."""
+        ...
+
+    @property
+    def train(self) -> GearTrain:
+        """The gear train."""
         ...
 
 
@@ -382,6 +458,15 @@ def name_findings(machine: MachineParts) -> Iterator[Finding]:
     needed += [(part, "driven", "gear", pair.driven) for part, pair in pairs]
     needed += [(whole, f"outputs.{n}.shaft", "shaft", output.shaft) for n, output in enumerate(machine.outputs)]
     needed += [(whole, f"forces.{n}.rotor", "shaft", force.rotor) for n, force in enumerate(machine.forces)]
+    needed += [
+        (whole, f"torque_supports.{n}.shaft", "shaft", one.shaft) for n, one in enumerate(machine.torque_supports)
+    ]
+    needed += [(whole, f"given_speeds.{n}.shaft", "shaft", one.shaft) for n, one in enumerate(machine.given_speeds)]
+    needed += [
+        (("shaft", one.name), "carrier", "shaft", one.carrier) for one in machine.shafts if one.carrier is not None
+    ]
+    if machine.input_shaft is not None:
+        needed.append((whole, "input_shaft", "shaft", machine.input_shaft))
     for part, attribute, kind, name in needed:
         if name not in kinds[kind]:
             named = ", ".join(map(repr, kinds[kind])) or "there is none"
@@ -407,26 +492,100 @@ def station_findings(machine: MachineParts) -> Iterator[Finding]:
             stations.append((("machine", ""), f"outputs.{place}.at", output.shaft, output.at))
     for place, force in enumerate(machine.forces):
         stations.append((("machine", ""), f"forces.{place}.at", force.rotor, force.at))
+    for place, support in enumerate(machine.torque_supports):
+        stations.append((("machine", ""), f"torque_supports.{place}.at", support.shaft, support.at))
+    for place, drive in enumerate(machine.given_speeds):
+        if drive.at is not None:
+            stations.append((("machine", ""), f"given_speeds.{place}.at", drive.shaft, drive.at))
     if machine.gear_pairs:
-        first = next(gear.shaft for gear in machine.gears if gear.name == machine.gear_pairs[0].driver)
-        stations.append((("machine", ""), "torque_at", first, machine.torque_at))
+        stations.append((("machine", ""), "torque_at", machine.train.first, machine.torque_at))
     for part, attribute, shaft, at in stations:
         yield from rotors[shaft].station_findings(part, attribute, at)
 
 
-def bearing_findings(machine: MachineParts, housing: HousingComponent | None) -> Iterator[Finding]:
-    """Yield bearings in seats that the housing does not have or that they miss, and pedestals in seats."""
-    seats = () if housing is None else tuple(housing.seats)
+def carrier_findings(machine: MachineParts) -> Iterator[Finding]:
+    """Yield planets whose carrier cannot carry them or that have no bearing, and meshes that a carrier pulls apart."""
     shafts = {shaft.name: shaft for shaft in machine.shafts}
+    shaft_of = {gear.name: shafts[gear.shaft] for gear in machine.gears}
+    planets = [shaft for shaft in machine.shafts if shaft.carrier is not None]
+    for planet in planets:
+        part, carrier = ("shaft", planet.name), shafts[planet.carrier or ""]
+        if carrier is planet or carrier.carrier is not None:
+            fixed = ", ".join(repr(name) for name, one in shafts.items() if one.carrier is None) or "there is none"
+            expected = f"a shaft whose own axis stands still ({fixed})"
+            yield Finding(part, "carrier", planet.carrier, expected)
+        if not any(mounted.rotor == planet.name for mounted in machine.bearings):
+            expected = f'a bearing on its pin, a MountedBearing with rotor "{planet.name}" and seat "{carrier.name}"'
+            yield Finding(part, "carrier", planet.carrier, expected)
+    for place, support in enumerate(machine.torque_supports):
+        if shafts[support.shaft].carrier is not None:
+            expected = f'a shaft whose axis stands still, such as its carrier "{shafts[support.shaft].carrier}"'
+            yield Finding(("machine", ""), f"torque_supports.{place}.shaft", support.shaft, expected)
+    for pair in machine.gear_pairs:
+        part = ("gear pair", f"{pair.driver} -> {pair.driven}")
+        sides = shaft_of[pair.driver], shaft_of[pair.driven]
+        carriers = {side.carrier for side in sides} - {None}
+        if len(carriers) > 1:
+            names = " and ".join(f'"{side.carrier}"' for side in sides)
+            yield Finding(part, "driven", pair.driven, f"planets of one carrier; their axes turn with {names}")
+        for side, carrier in ((side, shafts[name or ""]) for side in sides for name in carriers):
+            apart = hypot(side.axis[0] - carrier.axis[0], side.axis[1] - carrier.axis[1])
+            if side.carrier is None and apart > LARGEST_OFFSET:
+                expected = (
+                    f'an axis on that of carrier "{carrier.name}", about which its planets turn; it is {in_mm(apart)} '
+                    "off it"
+                )
+                yield Finding(("shaft", side.name), "axis", side.axis, expected)
+
+
+def bearing_findings(machine: MachineParts, housing: HousingComponent | None) -> Iterator[Finding]:
+    """Yield bearings and supports in seats that the housing does not have or that they miss, and pedestals in seats.
+
+    A planet's bearings sit on its carrier.
+    """
+    seats = () if housing is None else tuple(housing.seats)
+    seat_names = ", ".join(map(repr, seats)) or "none"
+    for number, support in enumerate(machine.torque_supports):
+        if support.seat is not None and support.seat not in seats:
+            expected = f"a seat of the housing, one of {seat_names}, or None for the ground"
+            yield Finding(("machine", ""), f"torque_supports.{number}.seat", support.seat, expected)
+    shafts = {shaft.name: shaft for shaft in machine.shafts}
+    rings = () if housing is None else tuple(housing.ring_motions)
+    for shaft in machine.shafts:
+        if shaft.rim_seat is not None and shaft.rim_seat not in rings:
+            names = ", ".join(map(repr, rings)) or "none"
+            expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+            yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
+        if shaft.carrier is not None:
+            where = f'on the carrier, seat None or "{shaft.carrier}", since the axis of "{shaft.name}" turns with it'
+            if seat not in (None, shaft.carrier):
+                yield Finding(part, "seat", seat, f"a bearing {where}")
+            if mounted.bearing.pedestal is not None:
+                yield Finding(part, "pedestal", None, f"no pedestal under a bearing {where}")
+            continue
         if seat is None:
             continue
         if mounted.bearing.pedestal is not None:
             yield pedestal_finding(part, seat, None)
+        if seat in shafts:
+            yield from _coaxial_findings(part, shaft, shafts[seat])
+            continue
         if housing is None or seat not in seats:
-            names = ", ".join(map(repr, seats)) or "none"
-            yield Finding(part, "seat", seat, f"a seat of the housing, one of {names}, or None for the ground")
+            yield Finding(part, "seat", seat, f"a seat of the housing, one of {seat_names}, or None for the ground")
         elif seat in housing.seat_axes:
             place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
             yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)
+
+
+def _coaxial_findings(part: Part, shaft: Shaft, around: Shaft) -> Iterator[Finding]:
+    """Yield a bearing between a shaft and itself, or one that is not on its axis or turns with another carrier."""
+    offset = hypot(*(a - b for a, b in zip(shaft.axis, around.axis, strict=True)))
+    if shaft is around or offset > LARGEST_OFFSET or around.carrier is not None:
+        expected = (
+            f'another shaft on the axis of "{shaft.name}"; the axis of "{around.name}" is {in_mm(offset)} off it'
+            if shaft is not around and around.carrier is None
+            else f'another shaft on the axis of "{shaft.name}" that is no planet'
+        )
+        yield Finding(part, "seat", around.name, expected)

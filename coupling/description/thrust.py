@@ -6,12 +6,13 @@ on which their axial parts do not cancel needs a bearing that holds it along its
 coordinate, and the thrust would vanish from the model.
 """
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwhine.coupling.description.gear_train import turning_senses
+from gearwhine.coupling.description.train_matrix import GearedShafts
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import GearPairGeometry
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
@@ -21,11 +22,29 @@ _CANCELLED = 1e-6  # part of the largest axial force of a gear on the rotor that
 
 @dataclass(frozen=True)
 class ThrustPair:
-    """A gear pair in the thrust balance: its rotors, the names of its gears, and their geometry."""
+    """A gear pair in the thrust balance: its rotors, its gears' names, geometry, and the carrier of a planet."""
 
     rotors: tuple[str, str]
     gears: tuple[str, str]
     geometry: GearPairGeometry
+    carrier: str | None = None
+
+    @property
+    def shafts(self) -> GearedShafts:
+        """The rotors as shafts of a train."""
+        return GearedShafts(*self.rotors, (self.geometry.driver.teeth, self.geometry.driven.teeth), self.carrier)
+
+    @property
+    def arms(self) -> dict[str, float]:
+        """Moment about z on each rotor, carrier included, by a unit force that resists a driver turning about +z [m].
+
+        A carrier gets by its planets' bearings what balances the moments on the gears about their own axes.
+        """
+        radii = [gear.base_radius for gear in (self.geometry.driver, self.geometry.driven)]
+        arms = dict(zip(self.rotors, radii, strict=True))
+        if self.carrier is not None:
+            arms[self.carrier] = arms.get(self.carrier, 0.0) - sum(radii)
+        return arms
 
 
 @dataclass(frozen=True)
@@ -72,7 +91,10 @@ def _holds_axially(mounted: MountedBearing, speed: float) -> bool:
 
 
 def axial_forces(
-    pairs: Sequence[ThrustPair], speeds: Mapping[str, float], torques: Mapping[str, float]
+    pairs: Sequence[ThrustPair],
+    speeds: Mapping[str, float],
+    torques: Mapping[str, float],
+    held: Collection[str] = (),
 ) -> dict[str, AxialForces]:
     """Axial forces of helical gears on each rotor that has any, at constant torques.
 
@@ -84,17 +106,20 @@ def axial_forces(
         Signed speed of each rotor [rad/s].
     torques : mapping of str to float
         Torque about z on each rotor [N m]; a rotor without one is free to turn.
+    held : collection of str
+        Rotors that are held from turning, which take any torque.
 
     Notes
     -----
     Where several paths share a torque the least-squares forces are taken: equal pairs carry equal parts.
     """
-    names = list(dict.fromkeys(name for pair in pairs for name in pair.rotors))
+    names = list(dict.fromkeys(name for pair in pairs for name in pair.arms if name not in held))
     moments = np.zeros((len(names), len(pairs)))
-    senses = turning_senses([pair.rotors for pair in pairs], speeds)
+    senses = turning_senses([pair.shafts for pair in pairs], speeds)
     for number, (pair, sense) in enumerate(zip(pairs, senses, strict=True)):
-        for rotor, gear in zip(pair.rotors, (pair.geometry.driver, pair.geometry.driven), strict=True):
-            moments[names.index(rotor), number] += pair.geometry.flank_sense(sense) * gear.base_radius
+        for rotor, arm in pair.arms.items():
+            if rotor not in held:
+                moments[names.index(rotor), number] += pair.geometry.flank_sense(sense) * arm
     acting = np.array([torques.get(name, 0.0) for name in names])
     mesh_forces = np.linalg.lstsq(moments, acting, rcond=None)[0] if pairs else np.zeros(0)
     by_rotor: dict[str, list[tuple[str, float]]] = {}
@@ -117,6 +142,7 @@ def require_thrust_carried(
     speeds: Mapping[str, float],
     torques: Mapping[str, float],
     movable: Container[str] | None = None,
+    held: Collection[str] = (),
 ) -> None:
     """Refuse helical gears that push a rotor which no bearing holds along its axis.
 
@@ -128,13 +154,15 @@ def require_thrust_carried(
         All bearings; those with axial stiffness carry thrust.
     movable : container of str, optional
         Rotors with an axial coordinate; by default all.
+    held : collection of str
+        Rotors that are held from turning.
 
     Raises
     ------
     CouplingError
         Naming the rotors, the gears and the forces [N].
     """
-    forces = axial_forces(pairs, speeds, torques)
+    forces = axial_forces(pairs, speeds, torques, held)
     held_rotors = axially_held(bearings, speeds, forces)
     loose = [
         f"rotor {rotor!r}: its gears {', '.join(map(repr, dict.fromkeys(axial.gears)))} push it along its axis with "

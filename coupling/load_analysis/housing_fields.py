@@ -31,7 +31,6 @@ def housing_fields(housing: HousingModes, point: OperatingPoint, adjoints: Seque
     assert point.housing is not None
     described = housing.housing
     every = np.arange(len(housing.mesh.points))
-    gravity = point.shafts[0].gravity
     return StaticSensitivity(
         housing.mesh,
         element_constants(housing.mesh, described.material, described.materials),
@@ -39,5 +38,5 @@ def housing_fields(housing: HousingModes, point: OperatingPoint, adjoints: Seque
         np.array([housing.modes.displacement(adjoint.housing, every) for adjoint in adjoints]),
         {load.name: load.force for load in point.bearings},
         {load.name: np.array([adjoint.force(load.name) for adjoint in adjoints]) for load in point.bearings},
-        np.zeros(3) if gravity is None else np.array(gravity),
+        np.zeros(3) if point.gravity is None else np.array(point.gravity),
     )

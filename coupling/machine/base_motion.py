@@ -141,7 +141,7 @@ def participations(components: Sequence[Component], point: Point, places: dict[s
     rows = []
     for component in components:
         if isinstance(component, RotorComponent):
-            rows.append(_of_rotor(component, point))
+            rows.append(rotor_participation(component, point))
         elif isinstance(component, HousingComponent):
             if component.participation is None:
                 raise CouplingError(f"{component.name}: expected its participation in the motions of its base")
@@ -164,7 +164,8 @@ def _about(participation: FloatArray, point: Point) -> FloatArray:
     return moved
 
 
-def _of_rotor(rotor: RotorComponent, point: Point) -> FloatArray:
+def rotor_participation(rotor: RotorComponent, point: Point) -> FloatArray:
+    """Participation of a rotor's coordinates in rigid motions about a point, (n, 6), as `participations`."""
     participation = rotor.modal.participation
     if participation is None:
         raise CouplingError(f"{rotor.name}: expected its participation in the motions of its base")

@@ -106,6 +106,9 @@ class HousingComponent(Component):
         Distance along z from a seat's centre within which a bearing sits in it [m], where it is known.
     displacement_field : HousingField or None
         Mesh and shapes of its coordinates, which sound needs; None of a reduced housing.
+    ring_motions : mapping of str to ndarray, shape (n, 2 + 4 orders)
+        Deformation of each bore with a ring gear by the coordinates: a₀, c₀, and a_n, b_n, c_n, d_n of each order, see
+        :func:`gearwhine.housing.model.patches.ring_matrix`.
 
     Raises
     ------
@@ -125,6 +128,7 @@ class HousingComponent(Component):
     warnings: tuple[ResultWarning, ...] = ()
     seat_reach: Mapping[str, float] = field(default_factory=dict)
     displacement_field: HousingField | None = None
+    ring_motions: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that the matrices and motions are those of a housing."""
@@ -145,6 +149,35 @@ class HousingComponent(Component):
         arm = z - self.seat_z[seat]
         # A rotation about y moves a point beyond the centre towards +z along +x, one about x along -y.
         return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
+
+    def ring_harmonics(self, seat: str, push: Sequence[float], angle: float) -> list[tuple[FloatArray, FloatArray]]:
+        """Motion of ring teeth along a push that turns, by the deformation of their bore: (n,) and (n,) of each order.
+
+        Parameters
+        ----------
+        seat : str
+        push : (x, y)
+            Unit vector at the angle of the tooth contact at first; it turns with the contact.
+        angle : float
+            Angle of the contact from x about the bore's axis at first [rad].
+
+        Returns
+        -------
+        list of two ndarray
+            Parts A_n and B_n of the motion Σ A_n cos nα + B_n sin nα at α beyond the first angle, from order 0 on.
+        """
+        radial = push[0] * math.cos(angle) + push[1] * math.sin(angle)
+        tangential = push[1] * math.cos(angle) - push[0] * math.sin(angle)
+        rows = self.ring_motions[seat].T
+        parts = [(radial * rows[0] + tangential * rows[1], np.zeros(self.size))]
+        for order in range(1, (len(rows) - 2) // 4 + 1):
+            a, b, c, d = rows[4 * order - 2 : 4 * order + 2]
+            cosine, sine = radial * a + tangential * c, radial * b + tangential * d
+            turn = order * angle
+            parts.append(
+                (cosine * math.cos(turn) + sine * math.sin(turn), sine * math.cos(turn) - cosine * math.sin(turn))
+            )
+        return parts
 
 
 @dataclass(frozen=True)
@@ -176,6 +209,8 @@ class RotorComponent(Component):
         Gears whose rims move on their hubs.
     damping_ratio : float
         Damping ratio of the shaft and the gears' bodies.
+    carrier : str or None
+        Rotor with which the shaft's axis turns, of a planet; ``axis`` is its place at t = 0.
     """
 
     modal: ModalRotor
@@ -186,6 +221,7 @@ class RotorComponent(Component):
     axis: tuple[float, float] = (0.0, 0.0)
     bodies: tuple[GearBody, ...] = ()
     damping_ratio: float = 0.0
+    carrier: str | None = None
 
     def direction(self, at: float, axis: int) -> FloatArray:
         """Lateral motion (axis 0: x, 1: y) at a distance from the left end [m], shape (n,)."""
@@ -194,6 +230,25 @@ class RotorComponent(Component):
     def motions(self, at: float) -> FloatArray:
         """Motion of a section: x, y, z, rotations about x and y, shape (5, n), not to be written to."""
         return self._section(at)[:5]
+
+    def station(self, z: float) -> float:
+        """Section of the rotor nearest to a place along z, from its left end [m]."""
+        return min(max(z - self.start, 0.0), float(self.modal.lateral.stations[-1]))
+
+    def seat_motions(self, axis: Sequence[float], z: float) -> FloatArray:
+        """Motion of a seat in this rotor, such as a planet's pin: x, y, z, rotations about x and y, shape (5, n).
+
+        The seat moves as one body with the section at z, or with the end of the rotor where that is nearer.
+
+        Parameters
+        ----------
+        axis : sequence of float
+            x and y of the seat's axis [m].
+        z : float
+            Place along the shafts [m].
+        """
+        at = self.station(z)
+        return seat_in_section(self._section(at), np.subtract(axis, self.axis), z - self.start - at)
 
     @cached_property
     def _sections(self) -> dict[float, FloatArray]:
@@ -308,6 +363,30 @@ class RotorComponent(Component):
         return row
 
 
+def seat_in_section(section: FloatArray, arm: FloatArray, along: float) -> FloatArray:
+    """Motion of a seat that moves as one body with a section: x, y, z, rotations about x and y, shape (5, n).
+
+    Parameters
+    ----------
+    section : ndarray, shape (6, n)
+        Motion of the section along and about x, y, z by n coordinates.
+    arm : ndarray, shape (2,)
+        Place of the seat from the section's centre across the shaft [m].
+    along : float
+        Place along the shaft from the section [m].
+    """
+    x, y, z, about_x, about_y, turned = section
+    return np.array(
+        [
+            x + along * about_y - arm[1] * turned,
+            y - along * about_x + arm[0] * turned,
+            z + arm[1] * about_x - arm[0] * about_y,
+            about_x,
+            about_y,
+        ]
+    )
+
+
 def _component_findings(component: HousingComponent) -> Iterator[Finding]:
     """Yield what no housing is: K and C without negative eigenvalues, G skew, motions by each coordinate."""
     part, n = ("housing", component.name), component.size
@@ -316,6 +395,10 @@ def _component_findings(component: HousingComponent) -> Iterator[Finding]:
     }
     shapes |= {f"seats.{name}": (motion, (n, 6)) for name, motion in component.seats.items()}
     shapes |= {f"sensors.{name}": (motion, (n,)) for name, motion in component.sensors.items()}
+    shapes |= {
+        f"ring_motions.{name}": (motion, (n, 2 + 4 * max((np.shape(motion)[-1] - 2) // 4, 1)))
+        for name, motion in component.ring_motions.items()
+    }
     if component.participation is not None:
         shapes["participation"] = (component.participation, (n, 6))
     findings = []
@@ -356,6 +439,7 @@ def housing_component(
     seat_axes: Mapping[str, tuple[float, float]] | None = None,
     sensor_places: Mapping[str, SensorPlace] | None = None,
     seat_reach: Mapping[str, float] | None = None,
+    ring_motions: Mapping[str, FloatArray] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -366,7 +450,7 @@ def housing_component(
         Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
-    seats, seat_z, sensors, participation, seat_axes, sensor_places, seat_reach
+    seats, seat_z, sensors, participation, seat_axes, sensor_places, seat_reach, ring_motions
         See :class:`HousingComponent`; by :meth:`gearwhine.housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -406,6 +490,7 @@ def housing_component(
         sensor_places=sensor_places or {},
         complete_below=modes.certificate.limit,
         seat_reach=seat_reach or {},
+        ring_motions=ring_motions or {},
     )
 
 
@@ -451,6 +536,7 @@ def _component_of_modes(modes: HousingModes, participation: FloatArray | None, n
         sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensors.items()},
         damping_matrix=modes.damping_matrix,
         participation=participation,
+        ring_motions=modes.ring_motions,
         name=name,
     )
 
@@ -509,6 +595,7 @@ def rotor_component(
     damping_ratio: float = 0.0,
     axis: tuple[float, float] = (0.0, 0.0),
     bodies: Sequence[GearBody] = (),
+    carrier: str | None = None,
 ) -> RotorComponent:
     """Project a rotor onto its modes, without the averaged springs of its planar basis.
 
@@ -551,6 +638,8 @@ def rotor_component(
         x and y of the shaft's line [m], which matter where the base turns.
     bodies : sequence of GearBody
         Gears on the rotor whose rims move on their hubs.
+    carrier : str, optional
+        Rotor with which the shaft's axis turns.
     """
     lateral = modal.lateral
     twisting, torsion_basis = _torsion_with_rims(modal, bodies)
@@ -594,6 +683,7 @@ def rotor_component(
         axis=axis,
         bodies=tuple(bodies),
         damping_ratio=damping_ratio,
+        carrier=carrier,
     )
 
 

@@ -26,10 +26,11 @@ _JUST_AFTER = 1e-9  # mesh periods
 
 @dataclass(frozen=True)
 class TurningPart:
-    """Part of a connector's directions that turns against the coordinates of a component: A cos w s + B sin w s.
+    """Part of a connector's directions that turns against the coordinates of a component.
 
     A connector between parts of different frames, such as the mesh of a planet whose axis turns with a carrier and a
-    sun whose coordinates stand still, has directions D(s) = D + Σ (A cos w s + B sin w s) by the nominal time s.
+    sun whose coordinates stand still, has directions D(s) = D(0) + Σ (A (cos w s - 1) + B sin w s) by the nominal time
+    s; its ``directions`` are those at s = 0, A is part of them.
 
     Attributes
     ----------
@@ -43,10 +44,10 @@ class TurningPart:
     cosine: FloatArray
     sine: FloatArray
 
-    def at(self, time: float) -> FloatArray:
-        """Directions at a nominal time [s], shape (n, d)."""
+    def change(self, time: float) -> FloatArray:
+        """Change of the directions from s = 0 to a nominal time [s], shape (n, d)."""
         angle = self.rate * time
-        return np.asarray(self.cosine * np.cos(angle) + self.sine * np.sin(angle))
+        return np.asarray(self.cosine * (np.cos(angle) - 1.0) + self.sine * np.sin(angle))
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class LinearConnector:
         Number of the tooth contact whose flanks resist tilting by this connector
         (:mod:`gearwhine.coupling.machine.mesh_face`).
     turning : tuple of TurningPart
-        Parts of the directions that turn, beside the constant ``directions``.
+        Parts of the directions that turn; ``directions`` are those at the nominal time 0.
     """
 
     name: str
@@ -214,7 +215,7 @@ class ContactConnector:
         Friction of the flanks; None without. To the generalised force d Σ F_j of the pairs j with forces F_j it adds
         μ Σ ± F_j (a + x_j b), x_j their positions along the path of contact.
     turning : tuple of TurningPart
-        Parts of the direction that turn, of shape (n, 1), beside the constant ``direction``.
+        Parts of the direction that turn, of shape (n, 1); ``direction`` is that at the nominal time 0.
     """
 
     name: str

@@ -143,6 +143,9 @@ class MountedGear:
         rigid beyond. By default the gear moves with the section in the middle of the common face.
     missing : FaceCompliance, optional
         What the rotor's modes lack of its compliance over the common face; none by default.
+    rim_seat : str, optional
+        Seat of the housing whose bore the rim of a ring gear follows as it deforms; by default the rim moves as one
+        body with its rotor.
     """
 
     name: str
@@ -151,6 +154,7 @@ class MountedGear:
     axis: tuple[float, float]
     carried: tuple[float, float] | None = None
     missing: FaceCompliance | None = None
+    rim_seat: str | None = None
 
     def compliance(self, gear: Gear) -> FloatArray:
         """Compliance over mean approach, slope and tilt that the rotor's modes lack under this gear, (3, 3)."""
@@ -177,6 +181,8 @@ class GearMesh:
         Slices by which flanks that carry evenly resist tilting, see
         :mod:`gearwhine.coupling.machine.mesh_face`. By default those of ``contact``; where it has none
         either, the mesh acts in the middle of its face alone.
+    carrier : str, optional
+        Rotor with which the axes of planets among the two turn; None where both axes stand still.
     """
 
     driver: MountedGear
@@ -187,6 +193,7 @@ class GearMesh:
     friction: float = 0.0
     behind_rims: float = 0.0
     faces: FaceSlices | None = None
+    carrier: str | None = None
 
     @property
     def name(self) -> str:

@@ -47,13 +47,10 @@ class ShaftDeflection:
     part : StaticShaftPart
     displacement : ndarray, shape (6 N,)
         Displacement of the nodes along and about x, y, z [m, rad].
-    gravity : tuple of float or None
-        Acceleration of free fall [m/s²].
     """
 
     part: StaticShaftPart
     displacement: FloatArray
-    gravity: tuple[float, ...] | None
 
     @property
     def name(self) -> str:
@@ -62,7 +59,7 @@ class ShaftDeflection:
 
     def motions(self, z: npt.ArrayLike) -> FloatArray:
         """Motion of sections at positions from the left end (m,) [m]: along and about x, y, z, shape (6, m)."""
-        return self.part.shaft.motions(self.displacement, z, self.gravity)
+        return self.part.shaft.motions(self.displacement, z, self.part.acceleration)
 
 
 @dataclass(frozen=True, eq=False)
@@ -335,6 +332,8 @@ class OperatingPoint:
         Motions that nothing holds and no load drives, in words.
     tangent : StaticTangent
         For its sensitivities (:mod:`gearwhine.coupling.statics.sensitivity`).
+    gravity : tuple of float or None
+        Acceleration of free fall along x, y, z [m/s²].
     """
 
     shafts: tuple[ShaftDeflection, ...]
@@ -345,6 +344,7 @@ class OperatingPoint:
     iterations: int
     free: tuple[str, ...]
     tangent: StaticTangent
+    gravity: tuple[float, ...] | None = None
 
     def __repr__(self) -> str:
         """Return the loads on the bearings and the misalignment of the gear pairs; the rest is arrays."""

@@ -5,6 +5,7 @@ housing's modes, and two of each pedestal. Connectors are bearings, gear pairs a
 (:mod:`gearwhine.coupling.statics.static_model`).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -13,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from gearwhine.coupling.description.parts import TorqueSupport
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
-from gearwhine.coupling.machine.components import HousingComponent
+from gearwhine.coupling.machine.components import HousingComponent, seat_in_section
 from gearwhine.coupling.machine.gear_bodies import GearBody
 from gearwhine.coupling.machine.loads import ShaftForce, Torque
 from gearwhine.coupling.machine.mounted_parts import MountedBearing
@@ -59,6 +61,7 @@ def solve_operating_point(
     gravity: Sequence[float] | None = None,
     forces: Sequence[ShaftForce] = (),
     rims: Sequence[GearBody] = (),
+    torque_supports: Sequence[TorqueSupport] = (),
 ) -> OperatingPoint:
     """Find the static equilibrium of a machine.
 
@@ -77,6 +80,8 @@ def solve_operating_point(
     rims : sequence of GearBody
         Gears that several pairs share: their rims move on their hubs. Of one pair alone that is in the contact. And
         bodies with modes out of the plane.
+    torque_supports : sequence of TorqueSupport
+        Springs that hold shafts from rotation.
 
     Raises
     ------
@@ -85,7 +90,7 @@ def solve_operating_point(
     EquilibriumNotFoundError
         Where no equilibrium is found, or the forces do not balance to `RESIDUAL_BOUND`.
     """
-    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity, forces, rims)
+    model = _StaticModel(shafts, bearings, pairs, housing, torques, gravity, forces, rims, torque_supports)
     return model.solve()
 
 
@@ -109,7 +114,7 @@ class _StaticModel:
     stiffness, load : ndarray, shape (n, n) and (n,)
         Stiffness and load without the connectors.
     laws : list of ConnectorLaw
-        Laws of bearings, gear pairs and pedestals, in this order.
+        Laws of bearings, gear pairs, pedestals and torque supports, in this order.
     directions : list of ndarray, shape (n, d)
         Deflections of each connector by the coordinates.
     twists : list of ndarray, shape (n, d)
@@ -130,6 +135,7 @@ class _StaticModel:
         gravity: Sequence[float] | None,
         forces: Sequence[ShaftForce],
         rims: Sequence[GearBody],
+        torque_supports: Sequence[TorqueSupport],
     ) -> None:
         self.shafts, self.bearings, self.pairs, self.housing = shafts, bearings, pairs, housing
         self.gravity = None if gravity is None else tuple(gravity)
@@ -172,13 +178,16 @@ class _StaticModel:
         approaches = [self._pair_directions(pair) for pair in pairs]
         self.directions += [rows for rows, _ in approaches]
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
+        self.directions += [self._torque_direction(support) for support in torque_supports]
         self.twists = [twist for _, twist in approaches]
-        self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
+        self.laws: list[ConnectorLaw] = [bearing.placed_law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
+        held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
+        self.laws += held
         nominal = [bearing.nominal for bearing in bearings]
         nominal += [_uniform_stiffness(pair) for pair in pairs]
-        nominal += [law.nominal for law in pedestals.values()]
+        nominal += [law.nominal for law in (*pedestals.values(), *held)]
         self.nominal: FloatArray = linalg.block_diag(*nominal)
         self.all_directions = np.concatenate(self.directions, axis=1)
         ends = np.cumsum([rows.shape[1] for rows in self.directions])
@@ -201,10 +210,11 @@ class _StaticModel:
         for torque in torques:
             part = self._part(torque.rotor)
             load[self.first[part.name] + 6 * part.shaft.node(torque.at) + 5] += torque.value
+        for part in self.shafts:
+            if part.acceleration is not None:
+                load[self._indices_of(part.name)] += part.shaft.weight(part.acceleration)
         if self.gravity is None:
             return load
-        for part in self.shafts:
-            load[self._indices_of(part.name)] += part.shaft.weight(self.gravity)
         if self.housing is not None:
             if self.housing.participation is None:
                 raise CouplingError(f"{self.housing.name}: expected its participation in rigid motions, for its weight")
@@ -234,15 +244,31 @@ class _StaticModel:
     def seat_motion(self, mounted: MountedBearing) -> FloatArray:
         """Motion of a bearing's seat, (5, n): x, y, z and the rotations about x and y."""
         rows = np.zeros((5, self.size))
+        part = self._part(mounted.rotor)
+        holding = part.carrier or mounted.seat
+        if holding in self.first:
+            around, z = self._part(holding), part.start + mounted.bearing.at
+            at = min(max(z - around.start, 0.0), around.shaft.length)
+            return seat_in_section(
+                self._section(holding, at), np.subtract(part.axis, around.axis), z - around.start - at
+            )
         if mounted.seat is not None:
             assert self.housing is not None
-            z = self._part(mounted.rotor).start + mounted.bearing.at
+            z = part.start + mounted.bearing.at
             columns = slice(self.housing_first, self.housing_first + self.housing.size)
             rows[:, columns] = self.housing.seat_motions(mounted.seat, z)
         elif mounted.bearing.pedestal is not None:
             first = self.pedestal_first[mounted.bearing.name]
             rows[0, first] = rows[1, first + 1] = 1.0
         return rows
+
+    def _torque_direction(self, support: TorqueSupport) -> FloatArray:
+        """Rotation of a shaft against the seat that holds it, (n, 1)."""
+        row = self._section(support.shaft, support.at)[5]
+        if support.seat is not None:
+            assert self.housing is not None
+            row[self.housing_first : self.housing_first + self.housing.size] -= self.housing.seats[support.seat][:, 5]
+        return np.asarray(row[:, None])
 
     def _bearing_directions(self, mounted: MountedBearing) -> FloatArray:
         return np.asarray((self._section(mounted.rotor, mounted.bearing.at)[:5] - self.seat_motion(mounted)).T)
@@ -263,6 +289,11 @@ class _StaticModel:
                 rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
                 twist[number] += turned
             rows[-1] += flank.tilting(middle)
+            seat = self._part(gear.shaft).rim_seat
+            if seat is not None and self.housing is not None:
+                place = math.atan2(flank.arm[1], flank.arm[0])
+                deformed = sum(part for part, _ in self.housing.ring_harmonics(seat, flank.push, place))
+                rows[:-1, self.housing_first : self.housing_first + self.housing.size] += flank.side * deformed
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
                 rows[:-1] += flank.across(rim) + flank.turning(rim[5])
@@ -354,16 +385,17 @@ class _StaticModel:
         deflections = [rows.T @ x for rows in self.directions]
         states = [law.at(z) for law, z in zip(self.laws, deflections, strict=True)]
         residual = self._require_balance(x, extra, deflections, [force for _, force, _ in states], iterations)
+        in_seats = [z - one.displacement for one, z in zip(self.bearings, deflections, strict=False)]
         bearings = tuple(
             BearingLoad(
                 bearing.mounted,
                 force,
                 deflection,
-                self.seat_motion(bearing.mounted) @ x,
+                self.seat_motion(bearing.mounted) @ x + bearing.displacement,
                 tangent,
                 _rolling_state(bearing, deflection),
             )
-            for bearing, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
+            for bearing, deflection, (_, force, tangent) in zip(self.bearings, in_seats, states, strict=False)
         )
         housing_rows = slice(
             self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size)
@@ -379,7 +411,7 @@ class _StaticModel:
             tuple(self.directions[of_pairs]),
         )
         return OperatingPoint(
-            tuple(ShaftDeflection(part, x[self._indices_of(part.name)], self.gravity) for part in self.shafts),
+            tuple(ShaftDeflection(part, x[self._indices_of(part.name)]) for part in self.shafts),
             bearings,
             self._pair_loads(x, deflections[of_pairs], [loads for _, loads, _ in states[of_pairs]], bearings),
             None if self.housing is None else x[housing_rows],
@@ -387,6 +419,7 @@ class _StaticModel:
             iterations,
             free,
             tangent,
+            self.gravity,
         )
 
     def _require_balance(
@@ -405,7 +438,7 @@ class _StaticModel:
         # node, is no imbalance.
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
         # Without loads the preloads are the scale, also of rows that press each other within a bearing.
-        laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
+        laws = [] if np.any(self.load) else zip((one.law for one in self.bearings), deflections, strict=False)
         pressing = max(
             (float(law.elements.at(z).force) for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0
         )

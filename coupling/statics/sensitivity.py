@@ -17,7 +17,7 @@ for every parameter p (Haug, Choi and Komkov, Design Sensitivity Analysis of Str
 Outcomes of the flanks follow by the chain rule from the approach over the face, on which they depend alone.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -70,7 +70,9 @@ class Adjoint:
         """Differentiate the outcome by a bearing's position on its shaft, towards +z [outcome/m]."""
         load = self.point.bearing(bearing)
         shaft = self.point.shaft(load.mounted.rotor)
-        adjoint = ShaftDeflection(shaft.part, self.values[self.point.tangent.shafts[shaft.name]], None)
+        adjoint = ShaftDeflection(
+            replace(shaft.part, acceleration=None), self.values[self.point.tangent.shafts[shaft.name]]
+        )
         moved = _slope(adjoint, load) - _seat_slope(self.point, load, self.housing)
         return -float(moved @ load.force + self.force(bearing) @ deflection_slope(self.point, load))
 

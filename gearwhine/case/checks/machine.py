@@ -242,6 +242,8 @@ def check_gears(draft: Draft) -> Iterator[Finding]:
         if not unequal and driver.name in built and driven.name in built:
             yield from _check_pair(draft, index, pair, (driver, driven), (built[driver.name], built[driven.name]))
     for wrong in draft.train.contradictions if draft.train is not None else ():
+        if wrong.pair is None:
+            continue
         expected = (
             f'pairs in a loop that can turn; "{wrong.shaft}" would turn at {float(wrong.ratio):.6g} of the first '
             f"driver's speed by the other pairs, and at {float(wrong.other):.6g} by this one"
