@@ -38,9 +38,13 @@ numba is imported when a motion or an equilibrium is computed, not before.
 
 from gearwhine.coupling.assembly import CoupledMachine as CoupledMachine
 from gearwhine.coupling.assembly import assemble_machine as assemble_machine
+from gearwhine.coupling.description.gear_train import GivenSpeed as GivenSpeed
 from gearwhine.coupling.description.gear_train import Output as Output
 from gearwhine.coupling.description.parts import Shaft as Shaft
 from gearwhine.coupling.description.parts import ShaftGear as ShaftGear
+from gearwhine.coupling.description.parts import TorqueSupport as TorqueSupport
+from gearwhine.coupling.description.planet_copies import planet_copies as planet_copies
+from gearwhine.coupling.description.planetary import PlanetarySet as PlanetarySet
 from gearwhine.coupling.errors import CouplingError as CouplingError
 from gearwhine.coupling.errors import ModesError as ModesError
 from gearwhine.coupling.errors import PeriodicError as PeriodicError

@@ -9,7 +9,7 @@ come from :mod:`gearwhine.coupling.statics`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -48,6 +48,7 @@ from gearwhine.coupling.machine.connectors import (
     NonlinearConnector,
     Sliding,
     SpeedTable,
+    TurningPart,
 )
 from gearwhine.coupling.machine.coordinates import CoordinateLoads, MachineCoordinates, trains
 from gearwhine.coupling.machine.coupled_system import CoupledSystem, HarmonicLoad, embed
@@ -55,7 +56,8 @@ from gearwhine.coupling.machine.frames import Frames, in_frame, is_isotropic, st
 from gearwhine.coupling.machine.gear_bodies import transport
 from gearwhine.coupling.machine.loads import UNLOADED, AnyTorque, MachineLoads, Torque, largest_torques
 from gearwhine.coupling.machine.mesh_face import MeshFace, mesh_face
-from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing
+from gearwhine.coupling.machine.mesh_kinematics import FlankMotion
+from gearwhine.coupling.machine.mounted_parts import GearMesh, MountedBearing, MountedGear
 from gearwhine.coupling.machine.shaft_dashpots import ShaftDashpots, shaft_dashpots
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
 from gearwhine.coupling.machine.tooth_friction import sliding_flanks, with_balanced_friction
@@ -363,11 +365,18 @@ def assemble_machine(
     system = with_balanced_friction(with_faces)
     if frames.turn:
         of_contacts = [_mesh_frame(coordinates, mesh) for mesh, _ in flanks]
-        of_linear = [_bearing_frame(mounted, coordinates.rotor(mounted.rotor), frames) for mounted in bearings]
+        of_linear = [_bearing_frame(mounted, coordinates, frames) for mounted in bearings]
         for connector in system.linear[len(bearings) :]:
             tilted = connector.of_contact
             of_linear.append(frames.of_motion(connector.directions) if tilted is None else of_contacts[tilted])
         system = frames.turned(system, of_linear, of_contacts)
+        rims = [
+            tuple(_turning_rims(coordinates, *flank, frame)) for flank, frame in zip(flanks, of_contacts, strict=True)
+        ]
+        contacts_on_rims = zip(system.contacts, rims, strict=True)
+        system = replace(
+            system, contacts=tuple(replace(one, turning=(*one.turning, *parts)) for one, parts in contacts_on_rims)
+        )
     return CoupledMachine(
         tuple(rotors),
         housing,
@@ -412,12 +421,13 @@ def _bearing(
     speed_range: tuple[float, float],
     frames: Frames,
 ) -> tuple[LinearConnector, NonlinearConnector | None]:
-    """Assemble a bearing between shaft and seat, carrier, pedestal or ground: 5x5 stiffness and damping, or a law.
+    """Assemble a bearing between a shaft and a seat, another shaft, a pedestal or the ground: linear, or with a law.
 
     A grounded bearing that is alike all round stands still in any frame.
     """
     rotor, at = coordinates.rotor(mounted.rotor), mounted.bearing.at
-    speed = coordinates.speeds[rotor.name] - (0.0 if rotor.carrier is None else coordinates.speeds[rotor.carrier])
+    around = _shaft_around(mounted, coordinates)
+    speed = coordinates.speeds[rotor.name] - (0.0 if around is None else coordinates.speeds[around.name])
     bearing = mounted.bearing.at_speed(speed)
     table = _over_speed(mounted.bearing, speed, speed_range)
     # Most bearings hold x and y alone: no rows are spent on the motions that they leave free.
@@ -427,9 +437,8 @@ def _bearing(
         # The tangent of a rolling law may vanish where its force does not stay zero. A floating ring slides along z.
         axes = np.array([0, 1, 3, 4]) if mounted.law.floats else np.arange(5)
     relative = coordinates.rows(rotor.name, rotor.motions(at))
-    if rotor.carrier is not None:
-        pin = coordinates.rotor(rotor.carrier).seat_motions(rotor.axis, rotor.start + at)
-        relative = relative - coordinates.rows(rotor.carrier, pin)
+    if around is not None:
+        relative = relative - coordinates.rows(around.name, around.seat_motions(rotor.axis, rotor.start + at))
     elif mounted.seat is not None:
         if housing is None or mounted.seat not in housing.seats:
             raise CouplingError(f"bearing {bearing.name!r}: no seat {mounted.seat!r} in the housing")
@@ -456,6 +465,12 @@ def _bearing(
     return linear, nonlinear
 
 
+def _shaft_around(mounted: MountedBearing, coordinates: MachineCoordinates) -> RotorComponent | None:
+    """Return the shaft that holds a bearing: a planet's carrier, or one named as its seat; None for other seats."""
+    name = coordinates.rotor(mounted.rotor).carrier or mounted.seat
+    return coordinates.rotor(name) if name is not None and coordinates.is_rotor(name) else None
+
+
 def _frame_speeds(
     rotors: Sequence[RotorComponent],
     bearings: Sequence[MountedBearing],
@@ -476,9 +491,10 @@ def _frame_speeds(
         around = {carriers.get(other) for one in others for other in one}
         if rotor.name in frames or len(around) != 1 or None in around:
             continue
-        on_it = [mounted for mounted in bearings if mounted.rotor == rotor.name]
-        if all(_alike_all_round(mounted) for mounted in on_it):
-            frames[rotor.name] = speeds[carriers[next(iter(others[0]))]]
+        carrier = carriers[next(iter(others[0]))]
+        on_it = [mounted for mounted in bearings if rotor.name in (mounted.rotor, mounted.seat)]
+        if all(_alike_all_round(one) or {one.rotor, one.seat} == {rotor.name, carrier} for one in on_it):
+            frames[rotor.name] = speeds[carrier]
     return frames
 
 
@@ -492,11 +508,12 @@ def _alike_all_round(mounted: MountedBearing) -> bool:
     return is_isotropic(bearing.spatial_stiffness) and is_isotropic(bearing.spatial_damping)
 
 
-def _bearing_frame(mounted: MountedBearing, rotor: RotorComponent, frames: Frames) -> float:
-    """Speed at which a bearing turns [rad/s]: with its carrier, or with any frame where it is alike all round."""
-    if rotor.carrier is not None or _alike_all_round(mounted):
-        return frames.of(rotor.name)
-    return 0.0
+def _bearing_frame(mounted: MountedBearing, coordinates: MachineCoordinates, frames: Frames) -> float:
+    """Speed at which a bearing turns [rad/s]: with the shaft that holds it, or with any frame where it is isotropic."""
+    around = _shaft_around(mounted, coordinates)
+    if around is not None:
+        return frames.of(around.name)
+    return frames.of(mounted.rotor) if _alike_all_round(mounted) else 0.0
 
 
 def _torque_support(
@@ -529,18 +546,27 @@ def _centrifugal_load(coordinates: MachineCoordinates, frames: Frames) -> FloatA
 def _centrifugal_stiffness(
     coordinates: MachineCoordinates, planet: RotorComponent, bearings: Sequence[MountedBearing], frames: Frames
 ) -> LinearConnector:
-    """Torsional stiffness of a carrier by the centrifugal force m a f² of a planet on its pin, m a² f².
+    """Geometric stiffness of a pin under the centrifugal force N = m a f² of its planet.
 
-    The force stays radial where the carrier turns beyond its nominal rotation; along the pin's first direction it would
-    drive the carrier on.
+    The force follows the carrier: a rotation θ beyond the nominal one turns it, and the planet's tangential motion u
+    beside the carrier's gives it an arm. By the second-order terms of the pin's deflection in the carrier's own frame
+    its energy is N (θ u - a θ² / 2). Set and carrier that turn as one, u = a θ, then stay in equilibrium.
     """
     carrier = coordinates.rotor(planet.carrier or "")
-    distance = math.hypot(*np.subtract(planet.axis, carrier.axis))
-    mass = float(np.sum(rotor_participation(planet, (0.0, 0.0, 0.0))[:, 0] ** 2))
-    place = planet.start + float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
-    direction = coordinates.rotation(carrier.name, carrier.station(place))[:, None]
-    law = np.array([[mass * distance**2 * frames.of(planet.name) ** 2]])
-    return LinearConnector(f"centrifugal force of {planet.name}", direction, law, np.zeros((1, 1)))
+    outward = np.subtract(planet.axis, carrier.axis)
+    distance = math.hypot(*outward)
+    participation = rotor_participation(planet, (0.0, 0.0, 0.0))[:, :2]
+    mass = float(np.sum(participation[:, 0] ** 2))
+    at = float(np.mean([one.bearing.at for one in bearings if one.rotor == planet.name]))
+    station = carrier.station(planet.start + at)
+    along = np.array([-outward[1], outward[0]]) / distance
+    # The planet's motion is that of its centre of mass, so that the force is spread as the inertia that it balances.
+    tangential = coordinates.rows(planet.name, participation @ along / mass)
+    tangential = tangential - coordinates.rows(carrier.name, along @ carrier.motions(station)[:2])
+    force = mass * distance * frames.of(planet.name) ** 2
+    law = force * np.array([[0.0, 1.0], [1.0, -distance]])
+    directions = np.column_stack([tangential, coordinates.rotation(carrier.name, station)])
+    return LinearConnector(f"centrifugal force of {planet.name}", directions, law, np.zeros((2, 2)))
 
 
 def _transports(
@@ -822,7 +848,34 @@ def _flank(coordinates: MachineCoordinates, mesh: GearMesh, sense: int) -> tuple
         axial, *slopes = rotor.plate_rows(mounted.name, flank.arm)[:3]
         compression += flank.along(axial) + (at - mounted.at) * flank.across(np.array(slopes))
         direction += coordinates.rows(mounted.rotor, compression)
+        direction += sum(part for part, _ in _deformed_rim(coordinates, mounted, flank))
         if gear.eccentricity:
             speed = coordinates.speeds[mounted.rotor] - _mesh_frame(coordinates, mesh)
             errors.append([-flank.side * gear.eccentricity, speed, gear.eccentricity_phase - line.angle])
     return direction, np.array(errors, dtype=np.float64).reshape(-1, 3)
+
+
+def _deformed_rim(
+    coordinates: MachineCoordinates, mounted: MountedGear, flank: FlankMotion
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Parts of the compression by the bore that a ring's rim follows, by the orders of its circumference, (n,) both.
+
+    See :meth:`gearwhine.coupling.machine.components.HousingComponent.ring_harmonics`.
+    """
+    housing = next((part for part in coordinates.components if isinstance(part, HousingComponent)), None)
+    if mounted.rim_seat is None or housing is None:
+        return []
+    place = math.atan2(flank.arm[1], flank.arm[0])
+    return [
+        (flank.side * coordinates.rows(housing.name, cosine), flank.side * coordinates.rows(housing.name, sine))
+        for cosine, sine in housing.ring_harmonics(mounted.rim_seat, flank.push, place)
+    ]
+
+
+def _turning_rims(coordinates: MachineCoordinates, mesh: GearMesh, sense: int, frame: float) -> Iterator[TurningPart]:
+    """Yield the parts by which the deformation of a ring's bore moves the flanks of a mesh that turns in it."""
+    line = mesh.line_of_action(sense)
+    for mounted, flank in ((mesh.driver, line.driver), (mesh.driven, line.driven)):
+        for order, (cosine, sine) in enumerate(_deformed_rim(coordinates, mounted, flank)):
+            if order and frame != 0.0:
+                yield TurningPart(order * frame, cosine[:, None], sine[:, None])

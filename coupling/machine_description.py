@@ -33,9 +33,11 @@ from gearwhine.coupling.description.gear_train import (
     GivenSpeed,
     Output,
     carrying_flanks,
+    drive_ratio,
     gear_train,
     geometry_on_axes,
     imbalances_of_shafts,
+    mesh_phases,
     require_balanced_outputs,
 )
 from gearwhine.coupling.description.parts import (
@@ -51,6 +53,7 @@ from gearwhine.coupling.description.parts import (
     rotor_with_gears,
     station_findings,
 )
+from gearwhine.coupling.description.planetary import PlacedSet, PlanetarySet, SetMember, placed_set, set_findings
 from gearwhine.coupling.description.solids import force_findings, machine_findings, unbalance_findings
 from gearwhine.coupling.description.thrust import ThrustPair, require_thrust_carried
 from gearwhine.coupling.errors import CouplingError, EquilibriumNotFoundError
@@ -128,8 +131,6 @@ from gearwhine.rotors.analyses.unbalance import bow_shape
 
 FloatArray = npt.NDArray[np.float64]
 
-_LARGEST_TERM = 1_000_000  # of a speed ratio of two drives, which no teeth fix
-
 
 @dataclass(frozen=True, repr=False)
 class Machine:
@@ -174,6 +175,8 @@ class Machine:
         Shaft that turns at ``speed`` and takes ``torque`` in, in place of the first driver's.
     given_speeds : sequence of GivenSpeed
         Speeds of further driven shafts, as of a differential with two inputs.
+    planetary_sets : sequence of PlanetarySet
+        Planetary sets, by the names of their parts, for what is checked and told of sets.
 
     Raises
     ------
@@ -207,6 +210,7 @@ class Machine:
     torque_supports: Sequence[TorqueSupport] = ()
     input_shaft: str | None = None
     given_speeds: Sequence[GivenSpeed] = ()
+    planetary_sets: Sequence[PlanetarySet] = ()
 
     def __repr__(self) -> str:
         """Return the numbers of parts, and the operation; the parts hold arrays of thousands of lines."""
@@ -219,10 +223,10 @@ class Machine:
     def __post_init__(self) -> None:
         """Require unique names, existing stations and seats, meshing gears, and balanced power and thrust."""
         keep_tuples(self, "shafts", "bearings", "gears", "gear_pairs", "outputs", "forces", "ripple", "gravity")
-        keep_tuples(self, "torque_supports", "given_speeds")
+        keep_tuples(self, "torque_supports", "given_speeds", "planetary_sets")
         refuse(_type_findings(self), CouplingError)
         refuse(name_findings(self), CouplingError)
-        refuse(carrier_findings(self), CouplingError)
+        refuse([*carrier_findings(self), *set_findings(self.planetary_sets, self)], CouplingError)
         refuse([*station_findings(self), *bearing_findings(self, self.housing_component)], CouplingError)
         refuse(self._reach_findings(), CouplingError)
         _ = self.speeds, self.pair_geometries, self.constant_torques
@@ -247,7 +251,7 @@ class Machine:
         meshing = [frozenset((pair.driver, pair.driven)) for pair in self.gear_pairs]
         yield from machine_findings(self.shafts, self.gears, self.bearings, meshing)
         for shaft in self.shafts:
-            tips = [mounted.gear.tip_radius for mounted in self._gears_on(shaft.name)]
+            tips = [mounted.gear.outer_radius for mounted in self._gears_on(shaft.name)]
             yield from unbalance_findings(shaft, self.rotor(shaft.name), max(tips, default=0.0))
         for place, force in enumerate(self.forces):
             yield from force_findings(force, self.shaft(force.rotor).rotor, place)
@@ -255,6 +259,8 @@ class Machine:
             yield from gravity_findings(self.gravity)
         for mounted in self.gears:
             yield from mounted.gear.findings
+        for placed in self.placed_sets:
+            yield from placed.findings()
         rows = zip(self.gear_pairs, self.pair_geometries, self.pair_torques, self.mesh_speeds, strict=True)
         for pair, geometry, torque, speed in rows:
             yield from pair.findings(geometry)
@@ -285,6 +291,15 @@ class Machine:
             first=self.input_shaft,
         )
 
+    @cached_property
+    def placed_sets(self) -> tuple[PlacedSet, ...]:
+        """The planetary sets with their gears at their places: assembly, clearance, phasing."""
+        return tuple(placed_set(one, self) for one in self.planetary_sets)
+
+    def members_of(self, placed: PlacedSet) -> tuple[SetMember, ...]:
+        """Speed, torque and power of the members of a planetary set."""
+        return placed.members(self.train, self.pair_torques, self.speed)
+
     def _geared_shafts(self, pair: GearPair) -> GearedShafts:
         """Shafts that a pair connects, with the carrier that carries an axis of them."""
         driver, driven = self._gears_of(pair)
@@ -299,7 +314,7 @@ class Machine:
             part = ("given speed", given.shaft)
             expected = "a speed of the first driver other than 0, over which a second speed is taken"
             refuse([Finding(part, "speed", given.speed, expected)], CouplingError)
-        return Fraction(given.speed / self.speed).limit_denominator(_LARGEST_TERM)
+        return drive_ratio(given.speed / self.speed)
 
     @cached_property
     def speeds(self) -> dict[str, float]:
@@ -319,9 +334,9 @@ class Machine:
         return tuple(float(shafts.relative_speed(self.speeds)) for shafts in self.train.pairs)
 
     def bearing_speed(self, mounted: MountedBearing) -> float:
-        """Signed speed of a shaft in its bearing [rad/s], that of a planet relative to its carrier."""
-        carrier = self.shaft(mounted.rotor).carrier
-        return self.speeds[mounted.rotor] - (0.0 if carrier is None else self.speeds[carrier])
+        """Signed speed of a shaft in its bearing [rad/s], relative to a shaft that holds it, as a planet's carrier."""
+        around = self.shaft_around(mounted)
+        return self.speeds[mounted.rotor] - (0.0 if around is None else self.speeds[around])
 
     @property
     def _torque_springs(self) -> list[TorqueSupport]:
@@ -355,6 +370,24 @@ class Machine:
             places = shafts[0].start + driver.at, shafts[1].start + driven.at
             geometries.append(geometry_on_axes(driver.gear, driven.gear, (driver.shaft, driven.shaft), axes, places))
         return tuple(geometries)
+
+    @cached_property
+    def mesh_phases(self) -> tuple[float, ...]:
+        """Phase of each gear pair at t = 0 [mesh periods].
+
+        Raises
+        ------
+        CouplingError
+            Where gears in a loop cannot be assembled.
+        """
+        lines = []
+        for (driver, driven), geometry in zip(map(self._gears_of, self.gear_pairs), self.pair_geometries, strict=True):
+            x, y = np.subtract(self.shaft(driven.shaft).axis, self.shaft(driver.shaft).axis)
+            side = -1.0 if geometry.is_internal else 1.0
+            lines.append(math.atan2(side * y, side * x))
+        names = [(pair.driver, pair.driven) for pair in self.gear_pairs]
+        drivers, drivens = [first for first, _ in names], [second for _, second in names]
+        return tuple(mesh_phases(drivers, drivens, self.pair_geometries, lines, self.turning_senses))
 
     @cached_property
     def constant_torques(self) -> tuple[Torque, ...]:
@@ -550,7 +583,7 @@ class Machine:
             components,
             self.housing_component,
             speeds=self.speeds,
-            bearings=self.bearings,
+            bearings=[self._on_displaced_pin(mounted) for mounted in self.bearings],
             meshes=[self._mesh(pair, components) for pair in pairs],
             loads=loads,
             dashpots=[dashpot for shaft in self.shafts for dashpot in _dashpots(shaft.rotor)],
@@ -592,7 +625,10 @@ class Machine:
         try:
             return solve_operating_point(
                 [self._static_shaft(shaft, pairs) for shaft in self.shafts],
-                [static_bearing(mounted, self.bearing_speed(mounted)) for mounted in self.bearings],
+                [
+                    static_bearing(mounted, self.bearing_speed(mounted), self._pin_displacement(mounted.rotor))
+                    for mounted in self.bearings
+                ],
                 pairs,
                 self.housing_component,
                 self.constant_torques,
@@ -901,9 +937,9 @@ class Machine:
                 moments_at.append(mounted.bearing.at)
                 if not mounted.law.floats:
                     thrusts_at.append(mounted.bearing.at)
-        pins = self._pins_on(shaft)
-        twisted_at = [*pins, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
-        moments_at += pins
+        seats = self._seats_in(shaft)
+        twisted_at = [*seats, *(support.at for support in self.torque_supports if support.shaft == shaft.name)]
+        moments_at += seats
         modal = modal_rotor(
             self.rotor(shaft.name),
             [mounted.bearing.at_speed(self.bearing_speed(mounted)) for mounted in bearings],
@@ -945,13 +981,15 @@ class Machine:
         places += [torque.at for torque in self.constant_torques if torque.rotor == shaft.name]
         places += [force.at for force in self.forces if force.rotor == shaft.name]
         places += [support.at for support in self.torque_supports if support.shaft == shaft.name]
-        places += self._pins_on(shaft)
+        places += self._seats_in(shaft)
         for pair in pairs:
             for gear in (pair.driver, pair.driven):
                 if gear.shaft == shaft.name:
                     places += [gear.at, *gear.carriers.tolist()]
         exact = static_shaft(self.rotor(shaft.name), places)
-        return StaticShaftPart(shaft.name, shaft.axis, shaft.start, exact, self._acceleration_on(shaft), shaft.carrier)
+        acceleration = self._acceleration_on(shaft)
+        place = shaft.name, shaft.axis, shaft.start
+        return StaticShaftPart(*place, exact, acceleration, shaft.carrier, shaft.rim_seat)
 
     def _acceleration_on(self, shaft: Shaft) -> tuple[float, ...] | None:
         """Acceleration that acts on a shaft's mass as weight does: free fall, and that of its circling axis [m/s²]."""
@@ -962,13 +1000,45 @@ class Machine:
         fall = (0.0, 0.0, 0.0) if self.gravity is None else self.gravity
         return x + fall[0], y + fall[1], fall[2]
 
-    def _pins_on(self, carrier: Shaft) -> list[float]:
-        """Stations of a carrier at the bearings of its planets, from its left end [m]."""
+    def shaft_around(self, mounted: MountedBearing) -> str | None:
+        """Name of the shaft that holds a bearing: a planet's carrier, or one that is its seat; None for other seats."""
+        name = self.shaft(mounted.rotor).carrier or mounted.seat
+        return name if any(shaft.name == name for shaft in self.shafts) else None
+
+    def _pin_displacement(self, shaft: str) -> FloatArray | None:
+        """Displacement of a planet's pin by its error over x, y, z and the rotations about x, y; None without one."""
+        planet = self.shaft(shaft)
+        if planet.carrier is None or not any(planet.pin_error):
+            return None
+        x, y = np.subtract(planet.axis, self.shaft(planet.carrier).axis) / math.dist(
+            planet.axis, self.shaft(planet.carrier).axis
+        )
+        radial, tangential = planet.pin_error
+        return np.array([radial * x - tangential * y, radial * y + tangential * x, 0.0, 0.0, 0.0])
+
+    def _on_displaced_pin(self, mounted: MountedBearing) -> MountedBearing:
+        """Return a bearing with the force of its pin's error where its law is linear about no load.
+
+        A law that is linear about the operating point has it in its offset.
+        """
+        displacement = self._pin_displacement(mounted.rotor)
+        if displacement is None or mounted.offset is not None:
+            return mounted
+        if mounted.law is not None:
+            raise CouplingError(
+                f"bearing {mounted.bearing.name!r}: its pin has an error, and its law is nonlinear in motion; expected "
+                "a bearing that is linear about its load, or a pin_error of 0"
+            )
+        stiffness = mounted.bearing.at_speed(self.bearing_speed(mounted)).spatial_stiffness
+        return replace(mounted, offset=-stiffness @ displacement)
+
+    def _seats_in(self, shaft: Shaft) -> list[float]:
+        """Stations of a shaft at the bearings that it holds, such as those of planets, from its left end [m]."""
         return [
-            min(max(planet.start + mounted.bearing.at - carrier.start, 0.0), carrier.rotor.length)
-            for planet in self.shafts
-            if planet.carrier == carrier.name
-            for mounted in self._bearings_on(planet.name)
+            min(max(held.start + mounted.bearing.at - shaft.start, 0.0), shaft.rotor.length)
+            for mounted in self.bearings
+            if self.shaft_around(mounted) == shaft.name
+            for held in [self.shaft(mounted.rotor)]
         ]
 
     def _bearings_on(self, shaft: str) -> list[MountedBearing]:
@@ -1017,7 +1087,7 @@ class Machine:
             modal = next(part.modal for part in components if part.name == shaft.name)
             width = loaded.geometry.face_width
             missing = face_compliance(self.rotor(shaft.name), modal, gear.at + middle, width, carried)
-            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing))
+            gears.append(MountedGear(gear.name, shaft.name, gear.at, shaft.axis, carried, missing, shaft.rim_seat))
         bodies = {body.gear: body for part in components for body in part.bodies}
         behind = _behind_rims(loaded.pair, loaded.geometry, bodies)
         contact = law_between_rims(loaded.contact, behind)
@@ -1070,6 +1140,7 @@ def _type_findings(machine: Machine) -> Iterator[Finding]:
         "ripple": Ripple,
         "torque_supports": TorqueSupport,
         "given_speeds": GivenSpeed,
+        "planetary_sets": PlanetarySet,
     }
     yield from kind_findings(part, machine, **kinds)
     rules: dict[str, Rule] = {

@@ -35,12 +35,16 @@ if TYPE_CHECKING:
     from gearwhine.case_study import build as build
     from gearwhine.case_study import load as load
     from gearwhine.coupling import CouplingError as CouplingError
+    from gearwhine.coupling import GivenSpeed as GivenSpeed
     from gearwhine.coupling import Machine as Machine
     from gearwhine.coupling import MountedBearing as MountedBearing
     from gearwhine.coupling import Output as Output
+    from gearwhine.coupling import PlanetarySet as PlanetarySet
     from gearwhine.coupling import Shaft as Shaft
     from gearwhine.coupling import ShaftForce as ShaftForce
     from gearwhine.coupling import ShaftGear as ShaftGear
+    from gearwhine.coupling import TorqueSupport as TorqueSupport
+    from gearwhine.coupling import planet_copies as planet_copies
     from gearwhine.coupling.analyses.recording import TransientPlan as TransientPlan
     from gearwhine.coupling.gears import Gear as Gear
     from gearwhine.coupling.gears import GearError as GearError
@@ -73,7 +77,19 @@ except PackageNotFoundError:  # run from a checkout that is not installed
     __version__ = "0+unknown"
 
 _HOMES = {
-    "gearwhine.coupling": ("CouplingError", "Machine", "MountedBearing", "Output", "Shaft", "ShaftForce", "ShaftGear"),
+    "gearwhine.coupling": (
+        "CouplingError",
+        "GivenSpeed",
+        "Machine",
+        "MountedBearing",
+        "Output",
+        "PlanetarySet",
+        "Shaft",
+        "ShaftForce",
+        "ShaftGear",
+        "TorqueSupport",
+        "planet_copies",
+    ),
     "gearwhine.coupling.analyses.recording": ("TransientPlan",),
     "gearwhine.coupling.gears": ("Gear", "GearError"),
     "gearwhine.coupling.gears.loaded.gear_pair": ("GearPair",),

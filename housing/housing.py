@@ -36,6 +36,7 @@ from gearwhine.housing.model.seats import (
     Sensor,
     SensorPort,
     bearing_port,
+    ring_port,
     seat_matrix,
     sensor_findings,
     sensor_port,
@@ -350,6 +351,10 @@ class Housing:
         """Rigid motion of each seat at its centre from the nodes' displacements, shape (6, 3 n_nodes)."""
         return {seat.name: seat_matrix(self.mesh, seat) for seat in self.seats}
 
+    def ring_ports(self) -> dict[str, sparse.csr_array]:
+        """Deformation of the bore of each seat with a ring gear, shape (2 + 4 orders, 3 n_nodes)."""
+        return {seat.name: ring_port(self.mesh, seat) for seat in self.seats if seat.ring_orders}
+
     def sensor_ports(self) -> dict[str, SensorPort]:
         """Each sensor on its mesh."""
         return {sensor.name: sensor_port(self.mesh, sensor) for sensor in self.sensors}
@@ -433,6 +438,7 @@ class Housing:
                 names = ", ".join(map(repr, seat_ports)) or "none"
                 raise HousingError(f"bearing {name!r}: no seat {seat!r} in the housing; expected one of {names}")
         loaded = [bearing_port(seat_ports[seat], arm) for seat, arm in places.values()]
+        loaded += self.ring_ports().values()
         progress(f"assembling {3 * len(self.mesh.points)} degrees of freedom")
         begin = time.perf_counter()
         free = self.free_matrices()
@@ -673,6 +679,11 @@ class HousingModes:
         return {name: self.modes.project_all(port) for name, port in self.seat_ports.items()}
 
     @cached_property
+    def ring_motions(self) -> dict[str, FloatArray]:
+        """Deformation of the bore of each seat with a ring gear by modes and residual modes, (n, 2 + 4 orders)."""
+        return {name: self.modes.project_all(port) for name, port in self.housing.ring_ports().items()}
+
+    @cached_property
     def sensor_motions(self) -> dict[str, FloatArray]:
         """Motions of modes and residual modes along each sensor, shape (n,)."""
         return {name: self.modes.project_all(port.matrix)[:, 0] for name, port in self.sensors.items()}
@@ -729,7 +740,8 @@ class HousingModes:
         """
         if self.modes.residual_modes is None:
             raise ValueError("static compliance of a housing without residual modes")
-        return self.modes.residual_modes.proof.missing_parts.reshape(len(self.bearings), -1)
+        missing = self.modes.residual_modes.proof.missing_parts
+        return missing[: 5 * len(self.bearings)].reshape(len(self.bearings), -1)
 
     @cached_property
     def selection(self) -> Selection | None:
@@ -786,7 +798,8 @@ class HousingModes:
         residual = self.modes.residual_modes
         if residual is None or not self.loaded:
             return None
-        ports = sparse.csr_array(sparse.vstack(list(self.loaded.values()), format="csr"))
+        loaded = [*self.loaded.values(), *self.housing.ring_ports().values()]
+        ports = sparse.csr_array(sparse.vstack(loaded, format="csr"))
         fewer, mixture = leading_residual_modes(residual, ports, self.modes.certificate.limit**2, RESPONSE_ORDERS - 1)
         transformation = np.asarray(linalg.block_diag(np.eye(len(self.frequencies_hz)), mixture))
         damping = self.damping_matrix

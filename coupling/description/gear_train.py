@@ -1,8 +1,8 @@
 """Gear train: speed ratios, senses of rotation, power flow, mesh phases; checks that a train can exist.
 
-External gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂; their shafts are as far apart as the geometry
-of the pair says, and the middles of their faces at most half of the narrower face apart along the shafts. A train at
-constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
+Gears on parallel shafts roll without slip where ω₁ z₁ = -ω₂ z₂, z negative of an internal gear (ISO 21771); their
+shafts are as far apart as the geometry of the pair says, and the middles of their faces at most half of the narrower
+face apart along the shafts. A train at constant speed takes as much power as it gives, Σ T ω = 0 over its shafts.
 
 Gear pairs that share gears have related mesh phases. Each gear is fitted to its shaft so that the first pair it belongs
 to begins a mesh period at t = 0. The phase of every further pair of the same gear follows from the gear's teeth: as
@@ -24,7 +24,7 @@ from gearwhine.coupling.description.train_matrix import SpeedRows, connected_sha
 from gearwhine.coupling.errors import CouplingError
 from gearwhine.coupling.gears import Gear, GearPairGeometry
 from gearwhine.coupling.gears.errors import InterferenceError, NoContactError
-from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, turning_sense
+from gearwhine.coupling.gears.geometry.pair import mesh_frequency, pair_label, signed_distance, turning_sense
 from gearwhine.coupling.gears.geometry.profile import meshing_rotations
 from gearwhine.coupling.machine.coordinates import trains
 from gearwhine.coupling.machine.loads import (
@@ -204,6 +204,11 @@ class GearTrain:
         """What the mean force of each pair follows from: the torques alone, or in a loop of pairs `EQUAL_MESHES`."""
         return tuple(EQUAL_MESHES if shares else "torques" for shares in self.shares_torque)
 
+    @property
+    def turns(self) -> bool:
+        """Whether the speed of every connected shaft follows from the drives, and none is driven against another."""
+        return not self.contradictions and not any(self.drive_problems())
+
     @cached_property
     def shares_torque(self) -> tuple[bool, ...]:
         """Whether the share of each pair is statically indeterminate: it is in a loop of pairs, as of a power split.
@@ -243,12 +248,7 @@ class GearTrain:
     def problems(self, shafts: Sequence[str], labels: Sequence[str]) -> Iterator[str]:
         """Yield sentences on what keeps a train from turning, as :meth:`turning_ratios`."""
         if self.first in (*self.planets, *self.held):
-            why = "a planet, whose axis turns with its carrier" if self.first in self.planets else "held"
-            candidates = [name for name in shafts if name not in (*self.planets, *self.held)]
-            yield (
-                f"the torque comes in on shaft {self.first!r}, which is {why}; expected an input on a shaft that turns "
-                f"about a fixed axis, one of {', '.join(map(repr, candidates))}"
-            )
+            yield from self.drive_problems()
             return
         for wrong in self.contradictions:
             yield self.sentence(wrong, "gear pairs" if wrong.pair is None else labels[wrong.pair])
@@ -259,16 +259,29 @@ class GearTrain:
                 f"no gear pair leads from shaft {self.first!r}, the first driver, to "
                 f"{', '.join(map(repr, idle))}; expected a pair that turns each shaft"
             )
+        yield from self.drive_problems()
+
+    def drive_problems(self) -> Iterator[str]:
+        """Yield a sentence on a drive where none can be, or on speeds that are left open."""
+        if self.first in (*self.planets, *self.held):
+            why = "a planet, whose axis turns with its carrier" if self.first in self.planets else "held"
+            candidates = [name for name in self.ratios if name not in (*self.planets, *self.held)]
+            candidates += [name for name in self.open_shafts if name not in self.planets]
+            yield (
+                f"the torque comes in on shaft {self.first!r}, which is {why}; expected an input on a shaft that turns "
+                f"about a fixed axis, one of {', '.join(map(repr, candidates))}"
+            )
+            return
         if self.open_shafts:
             drives = ", ".join(map(repr, (self.first, *self.given)))
             candidates = [name for name in self.open_shafts if name not in self.planets] or list(self.open_shafts)
             missing = self.freedoms - 1 - len(self.given)
-            verb = "follows" if len(self.open_shafts) == 1 else "follow"
+            given = "1 speed is given, that" if not self.given else f"{1 + len(self.given)} speeds are given, those"
             yield (
-                f"the speed of {', '.join(map(repr, self.open_shafts))} {verb} from nothing: the train has "
-                f"{self.freedoms} degrees of freedom and {1 + len(self.given)} of them driven, by {drives}; expected "
-                f"{missing} more of {', '.join(map(repr, candidates))} held by a torque support, driven at a given "
-                "speed, or geared to another shaft"
+                f"the train has {self.freedoms} degrees of freedom and {given} of {drives}: "
+                f"{', '.join(map(repr, self.open_shafts))} turn freely; expected {missing} more of "
+                f"{', '.join(map(repr, candidates))} held by a torque support, driven at a given speed, or geared to "
+                "another shaft"
             )
 
     def sentence(self, wrong: Contradiction, label: str) -> str:
@@ -462,6 +475,14 @@ class GearTrain:
         for torque in applied:
             along[torque.rotor] += torque.value * self.rotation_sense(torque.rotor, speed)
         return along
+
+
+_LARGEST_TERM = 1_000_000  # of a speed ratio of two drives, which no teeth fix
+
+
+def drive_ratio(ratio: float) -> Fraction:
+    """Return the speed ratio of two drives as a fraction of terms below a million."""
+    return Fraction(ratio).limit_denominator(_LARGEST_TERM)
 
 
 def gear_train(
@@ -841,7 +862,7 @@ def _require_ratio(mesh: GearMesh, speeds: Mapping[str, float]) -> None:
 def _require_place(mesh: GearMesh, starts: Mapping[str, float]) -> None:
     gears = mesh.driver, mesh.driven
     apart = hypot(gears[0].axis[0] - gears[1].axis[0], gears[0].axis[1] - gears[1].axis[1])
-    distance = mesh.geometry.working_centre_distance
+    distance = abs(mesh.geometry.working_centre_distance)
     if abs(apart - distance) > LARGEST_OFFSET:
         raise CouplingError(
             f"{mesh.label}: the axes of rotors {gears[0].rotor!r} and {gears[1].rotor!r} are {1e3 * apart:.6g} mm "
@@ -884,7 +905,7 @@ def geometry_on_axes(
         Where the gears do not fit each other; the message names this distance, the distance that the gears need, and
         the shafts.
     """
-    distance = hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1])
+    distance = signed_distance(driver, driven, hypot(axes[1][0] - axes[0][0], axes[1][1] - axes[0][1]))
     require_one_plane(pair_label(driver.name, driven.name), places, (driver, driven))
     offset = places[1] - places[0]
     try:
@@ -912,7 +933,8 @@ def plane_findings(part: Part, places: Sequence[float], gears: Sequence[Gear]) -
         yield Finding(part, "driven", None, expected)
 
 
-_MISFIT = 1e-3  # largest misfit over the pitch that may come from rounding of the axes
+LARGEST_MISFIT = 1e-3
+"""Largest misfit of teeth in a loop of gears that may come from rounding of the axes, over the pitch."""
 
 
 def mesh_phases(
@@ -930,7 +952,7 @@ def mesh_phases(
         The gears' names, pair by pair.
     geometries : sequence of GearPairGeometry
     centre_lines : sequence of float
-        Angle from x of the line from the driver's centre to the driven gear's [rad].
+        Angle from x of the line from the driver's centre to the driven gear's, of an internal pair back [rad].
     senses : sequence of int
         +1 where the driver turns counter-clockwise, -1 where clockwise.
 
@@ -950,7 +972,8 @@ def mesh_phases(
             angle - gear.turn_along(middle)
             for angle, gear, middle in zip(met, (pair.driver, pair.driven), pair.common_middles, strict=True)
         ]
-        pitches = sense * 2.0 * math.pi / pair.driver.teeth, -sense * 2.0 * math.pi / pair.driven.teeth
+        along = pair.flank_sense(sense)
+        pitches = along * 2.0 * math.pi / pair.driver.teeth, -along * 2.0 * math.pi / pair.driven.teeth
         if driver in angles:
             phase = (angles[driver] - at_zero[0]) / pitches[0]
         elif driven in angles:
@@ -961,7 +984,7 @@ def mesh_phases(
             stands = zero + phase * pitch
             # A whole number of pitches is the same place.
             misfit = (angles.setdefault(gear, stands) - stands) / pitch
-            if abs(misfit - round(misfit)) > _MISFIT:
+            if abs(misfit - round(misfit)) > LARGEST_MISFIT:
                 raise CouplingError(
                     f"{driver} -> {driven}: the gears form a loop that cannot be assembled: teeth of {gear} would "
                     f"stand {abs(misfit - round(misfit)):.3f} pitches beside the gaps that they belong in; move an "

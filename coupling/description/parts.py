@@ -70,6 +70,11 @@ class Shaft:
     carrier : str, optional
         Name of the shaft with which the axis of this one turns, as that of a planet with its carrier; ``axis`` is its
         place at t = 0. None: the axis stands still.
+    rim_seat : str, optional
+        Seat of the housing, with ``ring_orders``, whose bore the rim of the ring gear on this shaft follows as it
+        deforms; by default the rim moves as one body with the shaft.
+    pin_error : tuple of float
+        Offset of a planet's pin from ``axis``, away from the carrier's axis and counter-clockwise about it [m].
     """
 
     rotor: Rotor
@@ -81,10 +86,12 @@ class Shaft:
     frequency_limit: float | None = None
     mode_count: int | None = None
     carrier: str | None = None
+    pin_error: tuple[float, float] = (0.0, 0.0)
+    rim_seat: str | None = None
 
     def __post_init__(self) -> None:
         """Keep own copies, and check every number."""
-        keep_tuples(self, "axis", "unbalances")
+        keep_tuples(self, "axis", "unbalances", "pin_error")
         kind = Instance(Rotor, "a rotor")
         refuse(attribute_findings(("shaft", ""), self, rotor=kind), CouplingError)
         rules: dict[str, Rule] = {
@@ -95,6 +102,8 @@ class Shaft:
             "mode_count": Number(at_least=1, optional=True, whole=True),
             "bow": Instance(Bow, "a bow, or None", optional=True),
             "carrier": Text(optional=True),
+            "pin_error": Numbers(2),
+            "rim_seat": Text(optional=True),
         }
         part = ("shaft", self.name)
         if not self.name:
@@ -102,6 +111,9 @@ class Shaft:
         kinds = kind_findings(part, self, unbalances=ShaftUnbalance)
         refuse([*attribute_findings(part, self, **rules), *kinds], CouplingError)
         refuse(self._station_findings(), CouplingError)
+        if self.carrier is None and any(self.pin_error):
+            expected = "(0, 0) of a shaft without a carrier; a place of its own is `axis`"
+            refuse([Finding(part, "pin_error", self.pin_error, expected)], CouplingError)
 
     def _station_findings(self) -> Iterator[Finding]:
         """Yield unbalances and points of a bow beyond the ends of the rotor, and a bow that bends nothing."""
@@ -196,7 +208,7 @@ class ShaftGear:
     @property
     def in_one_piece(self) -> bool:
         """Whether gear and shaft deform as one piece over the face; else the gear stands on one section."""
-        return self.stiffens_shaft and self.gear.rim_thickness is None
+        return self.stiffens_shaft and self.gear.rim_thickness is None and not self.gear.is_internal
 
     @property
     def body_inertia(self) -> tuple[float, float, float]:
@@ -538,6 +550,12 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             expected = f"a seat of the housing, one of {seat_names}, or None for the ground"
             yield Finding(("machine", ""), f"torque_supports.{number}.seat", support.seat, expected)
     shafts = {shaft.name: shaft for shaft in machine.shafts}
+    rings = () if housing is None else tuple(housing.ring_motions)
+    for shaft in machine.shafts:
+        if shaft.rim_seat is not None and shaft.rim_seat not in rings:
+            names = ", ".join(map(repr, rings)) or "none"
+            expected = f"a seat of the housing with ring_orders of 1 or more, one of {names}, or None for a rigid rim"
+            yield Finding(("shaft", shaft.name), "rim_seat", shaft.rim_seat, expected)
     for mounted in machine.bearings:
         part, seat, shaft = ("bearing", mounted.bearing.name), mounted.seat, shafts[mounted.rotor]
         if shaft.carrier is not None:
@@ -551,8 +569,23 @@ def bearing_findings(machine: MachineParts, housing: HousingComponent | None) ->
             continue
         if mounted.bearing.pedestal is not None:
             yield pedestal_finding(part, seat, None)
+        if seat in shafts:
+            yield from _coaxial_findings(part, shaft, shafts[seat])
+            continue
         if housing is None or seat not in seats:
             yield Finding(part, "seat", seat, f"a seat of the housing, one of {seat_names}, or None for the ground")
         elif seat in housing.seat_axes:
             place = SeatPlace(seat, (*housing.seat_axes[seat], housing.seat_z[seat]), housing.seat_reach.get(seat))
             yield from seat_findings(part, shaft.name, shaft.axis, shaft.start, mounted.bearing.at, place)
+
+
+def _coaxial_findings(part: Part, shaft: Shaft, around: Shaft) -> Iterator[Finding]:
+    """Yield a bearing between a shaft and itself, or one that is not on its axis or turns with another carrier."""
+    offset = hypot(*(a - b for a, b in zip(shaft.axis, around.axis, strict=True)))
+    if shaft is around or offset > LARGEST_OFFSET or around.carrier is not None:
+        expected = (
+            f'another shaft on the axis of "{shaft.name}"; the axis of "{around.name}" is {in_mm(offset)} off it'
+            if shaft is not around and around.carrier is None
+            else f'another shaft on the axis of "{shaft.name}" that is no planet'
+        )
+        yield Finding(part, "seat", around.name, expected)

@@ -107,14 +107,13 @@ def _shaft_lengths(rotor: Rotor) -> Iterator[tuple[float, float, float, float]]:
 
 
 def gear_solids(gear: Gear, shaft: str, axis: tuple[float, float], middle: float) -> Iterator[PlacedSolid]:
-    """Yield the rings of a gear's blank, the outermost out to the tip circle; its middle at z = ``middle`` [m]."""
+    """Yield the rings of a gear's blank, with the teeth out to the tip circle; its middle at z = ``middle`` [m]."""
     rings = gear.blank_rings
     for ring in rings:
-        outer = gear.tip_radius if ring is rings[0] else ring.outer_radius
+        outer = gear.outer_radius if ring is rings[0] else ring.outer_radius
+        inner = -gear.tip_radius if gear.is_internal else ring.inner_radius
         half = 0.5 * ring.width
-        yield PlacedSolid(
-            ("gear", gear.name), "at", shaft, axis, middle - half, middle + half, ring.inner_radius, outer
-        )
+        yield PlacedSolid(("gear", gear.name), "at", shaft, axis, middle - half, middle + half, inner, outer)
 
 
 def bearing_solid(
@@ -235,8 +234,17 @@ _HANGS_OFF = 0.05
 def fit_findings(gear: Gear, rotor: Rotor, at: float) -> Iterator[Finding]:
     """Yield a shaft as thick as the gear on it, and a face that hangs off the end of its shaft."""
     part, half = ("gear", gear.name), 0.5 * gear.face_width
-    for left, right, _, outer in _shaft_lengths(rotor):
+    for left, right, inner, outer in _shaft_lengths(rotor):
         over = min(right, at + half) - max(left, at - half)
+        if gear.is_internal:
+            if over > max(_SLACK, 1e-3 * gear.face_width) and outer > -gear.tip_radius and inner < gear.outer_radius:
+                expected = (
+                    f"a ring around its shaft; that has a diameter of {in_mm(2.0 * outer)} there, and the ring a tip "
+                    f"circle of {in_mm(-2.0 * gear.tip_radius)}"
+                )
+                yield Finding(part, "at", None, expected)
+                break
+            continue
         if over > max(_SLACK, 1e-3 * gear.face_width) and outer >= gear.root_circle_radius:
             expected = (
                 f"a gear whose teeth stand on its shaft; that has a diameter of {in_mm(2.0 * outer)} there, the root "

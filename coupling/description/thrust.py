@@ -119,7 +119,7 @@ def axial_forces(
     for number, (pair, sense) in enumerate(zip(pairs, senses, strict=True)):
         for rotor, arm in pair.arms.items():
             if rotor not in held:
-                moments[names.index(rotor), number] += sense * arm
+                moments[names.index(rotor), number] += pair.geometry.flank_sense(sense) * arm
     acting = np.array([torques.get(name, 0.0) for name in names])
     mesh_forces = np.linalg.lstsq(moments, acting, rcond=None)[0] if pairs else np.zeros(0)
     by_rotor: dict[str, list[tuple[str, float]]] = {}

@@ -21,8 +21,9 @@ import numpy.typing as npt
 from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import ModesError
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
-from gearwhine.coupling.linear.frequency_response import SUM_RULE, excitations, superposed
+from gearwhine.coupling.linear.frequency_response import excitations
 from gearwhine.coupling.linear.line_mechanisms import LineMechanisms
+from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.statics.mean_mesh import linear_matrices
 
 FloatArray = npt.NDArray[np.float64]

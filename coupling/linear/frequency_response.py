@@ -36,6 +36,8 @@ from gearwhine.coupling.assembly import CoupledMachine
 from gearwhine.coupling.errors import CouplingError, ModesError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
 from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
+from gearwhine.coupling.linear.turning_response import Excitation, TurningResponse
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState, linear_matrices, mean_contact
 from gearwhine.rotors.analyses.harmonic_response import at_positive_frequency
@@ -45,7 +47,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _EVEN_POINTS = 600  # evenly spaced points of a band, in addition to those of each resonance
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])  # half-power half-widths
-SUM_RULE = 1e-6  # largest error of the modes' sum rule for a superposition
 
 
 def receptance(
@@ -99,10 +100,19 @@ def response(
     contact: ContactState | None = None,
     pairs: Eigenpairs | None = None,
 ) -> ComplexArray:
-    """Coordinates H(iw) f under loads f of shape (f, i, n): shape (f, i, n). See :func:`receptance`."""
+    """Coordinates H(iw) f under loads f of shape (f, i, n): shape (f, i, n). See :func:`receptance`.
+
+    Of a machine whose directions turn they are the motions at w, without the sidebands beside it
+    (:mod:`gearwhine.coupling.linear.turning_response`).
+    """
     w = np.asarray(frequencies, dtype=np.float64)
     if not np.all(np.isfinite(w)) or np.any(w == 0.0):
         raise CouplingError("frequencies that are 0 or not finite; expected others: a free machine drifts at 0")
+    if system.turns:
+        model = TurningResponse(system, mean_contact(system) if contact is None else contact)
+        excitations_at: list[list[Excitation]] = [[({model.still: load}, {}) for load in at] for at in loads]
+        moved = [model.respond(at, each, [model.still]) for at, each in zip(w.tolist(), excitations_at, strict=True)]
+        return np.array([each[model.still] for each in moved]).reshape(loads.shape)
     if pairs is not None:
         return superposed(pairs, loads, w)
     stiffness, damping = linear_matrices(system, mean_contact(system) if contact is None else contact)
@@ -122,42 +132,6 @@ def response(
 
 def _pairs_of(modes: CoupledModes | None) -> Eigenpairs | None:
     return None if modes is None else modes.pairs
-
-
-def superposed(
-    pairs: Eigenpairs,
-    loads: npt.NDArray[np.float64] | ComplexArray,
-    frequencies: FloatArray,
-    outputs: FloatArray | None = None,
-) -> ComplexArray:
-    """H(iw) f from all eigenpairs, loads and result of shape (f, i, n); loads (1, i, n) are the same at all w.
-
-    With output directions (o, n) the result is the motion along these alone, of shape (f, i, o).
-
-    Raises
-    ------
-    ModesError
-        Where the eigenpairs fail their sum rule: at a nearly defective eigenvalue.
-    """
-    if not pairs.sum_rule <= SUM_RULE:
-        raise ModesError(
-            f"the coupled modes miss their sum rule by {pairs.sum_rule:.1e}: two of them are all but one, as at "
-            "critical damping, and cannot be superposed; solve the system directly instead"
-        )
-    s = 1j * frequencies
-    distance = s[:, None] - pairs.values
-    if np.any(distance == 0.0):
-        raise ModesError("an undamped mode is driven at its own frequency; give it damping or leave that frequency out")
-    # 1 / (s - λ) - 1 / s = λ / (s (s - λ)), without the difference's loss of digits at high frequency.
-    gains = pairs.values / (s[:, None] * distance)
-    right, drift = pairs.right, pairs.drift
-    if outputs is not None:
-        right, drift = right @ outputs.T, outputs @ drift
-    driven = np.einsum("mn,fin->fim", pairs.left.conj(), loads, optimize=True)
-    moved = np.einsum("fim,mn->fin", driven * gains[:, None, :], right, optimize=True)
-    if pairs.drifts:
-        moved = moved + np.einsum("fin,kn->fik", loads, drift, optimize=True) / (s**2)[:, None, None]
-    return np.asarray(moved)
 
 
 def resonance_grid(modes: CoupledModes, low: float, high: float) -> FloatArray:
@@ -277,8 +251,12 @@ def mesh_error_response(
     law = state.stiffness[flanks] + 1j * frequencies * state.damping[flanks]
     if state.stiffness[flanks] == 0.0:
         raise CouplingError(f"{tooth.name} does not touch; expected a contact that carries an error on")
-    loads = law[:, None, None] * tooth.direction
-    moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
+    if machine.system.turns:
+        model = TurningResponse(machine.system, state)
+        moved = model.at_excitation(frequencies, lambda w: model.mesh_error(flanks, w))
+    else:
+        loads = law[:, None, None] * tooth.direction
+        moved = response(machine.system, loads, frequencies, state, _pairs_of(modes))[:, 0]
     return _named(machine, state, frequencies, moved, f"transmission error of {tooth.name}", "m", flanks)
 
 

@@ -12,7 +12,7 @@ D_lᵀ Z⁻¹ D_l' between them, (I + S (k + iωc)) δ = δ_free. It is the ampl
 the housing shows; a frozen picture of the carrier would put all of them into one line.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -20,7 +20,9 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from gearwhine.coupling.errors import CouplingError
+from gearwhine.coupling.errors import CouplingError, ModesError
+from gearwhine.coupling.linear.eigenpairs import Eigenpairs, quadratic_eigenpairs
+from gearwhine.coupling.linear.modal_superposition import SUM_RULE, superposed
 from gearwhine.coupling.machine.connectors import TurningPart
 from gearwhine.coupling.machine.coupled_system import CoupledSystem
 from gearwhine.coupling.statics.mean_mesh import ContactState
@@ -28,6 +30,8 @@ from gearwhine.coupling.statics.mean_mesh import ContactState
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Order = tuple[int, ...]
+Excitation = tuple[Mapping[Order, ComplexArray], Mapping[int, complex]]
+"""Loads on the coordinates by the order of their frequency, and errors of contacts that turn by their number [m]."""
 
 SIDEBANDS = 6
 """Number of multiples of each rate of turning on either side of an excitation."""
@@ -87,7 +91,7 @@ class TurningResponse:
         return tuple(product(reach, repeat=len(self.rates)))
 
     @property
-    def _still(self) -> Order:
+    def still(self) -> Order:
         """Order of the excitation itself, and of directions that stand still."""
         return tuple(0 for _ in self.rates)
 
@@ -133,7 +137,7 @@ class TurningResponse:
 
     def _by_order(self, directions: FloatArray, turning: Sequence[TurningPart]) -> dict[Order, ComplexArray]:
         """Fourier coefficients D_l of directions by their order l, (n, d) each."""
-        still = self._still
+        still = self.still
         found: dict[Order, ComplexArray] = {still: directions.astype(np.complex128)}
         for part in turning:
             base = next(place for place, rate in enumerate(self.rates) if self._multiple(abs(part.rate), rate))
@@ -145,15 +149,67 @@ class TurningResponse:
                 found[order] = found.get(order, np.zeros_like(half)) + half
         return found
 
-    def _columns(self, order: Order) -> ComplexArray:
-        """Directions D_l of all connectors that turn, side by side, (n, d)."""
+    @cached_property
+    def _columns(self) -> ComplexArray:
+        """Directions D_l of all connectors that turn, side by side for each order l of them, (n, l d)."""
         parts = [
             one.directions.get(order, np.zeros((self.system.size, len(one.stiffness)), dtype=np.complex128))
+            for order in self._offsets
             for one in self._turning
         ]
         return np.concatenate([np.zeros((self.system.size, 0)), *parts], axis=1)
 
-    def mesh_error_load(self, number: int, frequency: float) -> tuple[dict[Order, ComplexArray], dict[int, complex]]:
+    @cached_property
+    def _offsets(self) -> list[Order]:
+        """Orders l of the directions."""
+        return sorted({order for one in self._turning for order in one.directions})
+
+    @cached_property
+    def _width(self) -> int:
+        """Number d of the directions that turn."""
+        return sum(len(one.stiffness) for one in self._turning)
+
+    @cached_property
+    def _pairs(self) -> Eigenpairs | None:
+        """Eigenpairs without the connectors that turn; None where they cannot be superposed."""
+        try:
+            pairs = quadratic_eigenpairs(*self._constant)
+        except ModesError:
+            return None
+        return pairs if pairs.sum_rule <= SUM_RULE else None
+
+    @cached_property
+    def _modal_columns(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Left and right vectors of the eigenpairs on the columns, (m, l d) both, and the drift between columns."""
+        assert self._pairs is not None
+        columns = self._columns
+        drift = columns.T @ self._pairs.drift @ columns
+        return self._pairs.left.conj() @ columns, self._pairs.right @ columns, np.asarray(drift)
+
+    def _dynamic(self, w: float) -> ComplexArray:
+        """Z at a frequency without the connectors that turn, (n, n)."""
+        stiffness, damping = self._constant
+        dynamic = np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
+        dynamic[np.diag_indices(len(dynamic))] -= w**2
+        return dynamic
+
+    def _compliance(self, w: float) -> ComplexArray:
+        """Compliance between all directions at a frequency, (l, d, l, d)."""
+        shape = (len(self._offsets), self._width) * 2
+        if self._pairs is None or w == 0.0:
+            return np.asarray(self._columns.T @ np.linalg.solve(self._dynamic(w), self._columns)).reshape(shape)
+        left, right, drift = self._modal_columns
+        s = 1j * w
+        gains = self._pairs.values / (s * (s - self._pairs.values))
+        return np.asarray((right.T * gains) @ left + drift / s**2).reshape(shape)
+
+    def _moved(self, w: float, loads: ComplexArray) -> ComplexArray:
+        """Coordinates (n, i) under loads (n, i) at a frequency, without the connectors that turn."""
+        if self._pairs is None or w == 0.0:
+            return np.asarray(np.linalg.solve(self._dynamic(w), loads))
+        return np.asarray(superposed(self._pairs, loads.T[None], np.array([w]))[0].T)
+
+    def mesh_error(self, number: int, frequency: float) -> Excitation:
         """Load of a unit transmission error of a contact at ω [rad/s]: on coordinates by order, or as its own error.
 
         The error of flanks that turn is a deflection of their own connector; that of others is a load (k + iωc) d.
@@ -162,78 +218,90 @@ class TurningResponse:
         if tooth.turning:
             return {}, {number: 1.0}
         law = complex(self.contact.stiffness[number], frequency * self.contact.damping[number])
-        return {self._still: np.asarray(law * tooth.direction, dtype=np.complex128)}, {}
+        return {self.still: np.asarray(law * tooth.direction, dtype=np.complex128)}, {}
 
     def respond(
-        self, frequency: float, loads: Mapping[Order, ComplexArray], errors: Mapping[int, complex] | None = None
+        self,
+        frequency: float,
+        excitations: Sequence[Excitation],
+        orders: Sequence[Order] | None = None,
     ) -> dict[Order, ComplexArray]:
-        """Solve the motions at ω + m·f of an excitation at ω.
+        """Solve the motions at ω + m·f of excitations at ω.
 
         Parameters
         ----------
         frequency : float
             ω [rad/s].
-        loads : mapping of order to ndarray of complex, shape (n,)
-            Loads on the coordinates, by the order m of their frequency ω + m·f.
-        errors : mapping of int to complex, optional
-            Transmission errors at ω of contacts that turn, by the number of the contact [m].
+        excitations : sequence of (mapping of order to ndarray of complex, shape (n,), mapping of int to complex)
+            Of each excitation, loads on the coordinates by the order m of their frequency ω + m·f, and transmission
+            errors at ω of contacts that turn, by the number of the contact [m].
+        orders : sequence of order, optional
+            Orders of the motions that are asked for; by default all.
 
         Returns
         -------
-        dict of order to ndarray of complex, shape (n,)
-            Coordinates q_m; the motion is Re Σ q_m e^{i(ω + m·f)t}.
+        dict of order to ndarray of complex, shape (i, n)
+            Coordinates q_m of each excitation; the motion is Re Σ q_m e^{i(ω + m·f)t}.
 
         Raises
         ------
         CouplingError
             For an error of a contact that does not turn, or a load of an order that is not followed.
         """
-        unknown = set(loads) - set(self.orders)
+        unknown = {order for loads, _ in excitations for order in loads} - set(self.orders)
         if unknown:
             raise CouplingError(f"loads of orders {sorted(unknown)}; expected orders among those that are followed")
-        stiffness, damping = self._constant
-        offsets = sorted({order for one in self._turning for order in one.directions})
-        columns = {order: self._columns(order) for order in offsets}
-        width = columns[offsets[0]].shape[1] if offsets else 0
         places = {order: number for number, order in enumerate(self.orders)}
-        count = len(self.orders)
-        free = np.zeros((count, width), dtype=np.complex128)
+        count, width = len(self.orders), self._width
+        law = self._law(frequency)
+        free = np.zeros((count, width, len(excitations)), dtype=np.complex128)
         between = np.zeros((count, width, count, width), dtype=np.complex128)
-        alone: dict[Order, ComplexArray] = {}
-        answers: dict[Order, dict[Order, ComplexArray]] = {}
+        loads = {
+            order: np.array([one.get(order, np.zeros(self.system.size)) for one, _ in excitations]).T.astype(complex)
+            for order in self.orders
+            if any(order in one for one, _ in excitations)
+        }
         for order in self.orders:
             w = frequency + self.shift(order)
-            dynamic = np.asarray(stiffness + 1j * w * damping, dtype=np.complex128)
-            dynamic[np.diag_indices(len(dynamic))] -= w**2
-            # Forces of order p act on this one by D_{m-p}, and this motion deflects connectors of order p' by D_{p'-m}.
-            acting = {other: columns[gap] for other in self.orders if (gap := _minus(order, other)) in columns}
-            seen = {other: columns[gap] for other in self.orders if (gap := _minus(other, order)) in columns}
-            load = loads.get(order, np.zeros(self.system.size, dtype=np.complex128))
-            driven = np.column_stack([load, *acting.values()])
-            solved: ComplexArray = np.asarray(np.linalg.solve(dynamic, driven), dtype=np.complex128)
-            alone[order] = np.asarray(solved[:, 0])
-            answers[order] = {other: solved[:, 1 + n * width : 1 + (n + 1) * width] for n, other in enumerate(acting)}
-            for deflected, rows in seen.items():
-                free[places[deflected]] += rows.T @ alone[order]
-                for other, answer in answers[order].items():
-                    between[places[deflected], :, places[other], :] += rows.T @ answer
-        free[places[self._still]] -= self._errors(errors or {}, width)
-        law = self._law_of(frequency, width)
-        matrix = np.einsum("apbq,bqr->apbr", between, law).reshape(count * width, count * width)
-        deflections = np.linalg.solve(np.eye(count * width) + matrix, free.ravel()).reshape(count, width)
-        forces = np.einsum("bqr,br->bq", law, deflections)
-        return {
-            order: alone[order]
-            - sum(
-                (answer @ forces[places[other]] for other, answer in answers[order].items()),
-                np.zeros(self.system.size, dtype=np.complex128),
-            )
-            for order in self.orders
-        }
+            compliance = self._compliance(w)
+            # Forces of order p act on this one by D_{m-p}; its motion deflects connectors of order p' by D_{p'-m}.
+            gaps = list(enumerate(self._offsets))
+            acting = [(n, places[other]) for n, gap in gaps if (other := _minus(order, gap)) in places]
+            seen = [(n, places[other]) for n, gap in gaps if (other := _plus(order, gap)) in places]
+            alone = None
+            if order in loads:
+                alone = (self._columns.T @ self._moved(w, loads[order])).reshape(len(self._offsets), width, -1)
+            for row, deflected in seen:
+                if alone is not None:
+                    free[deflected] += alone[row]
+                for column, force in acting:
+                    between[deflected, :, force, :] += compliance[row, :, column, :]
+        free[places[self.still]] -= np.array([self._error(errors) for _, errors in excitations]).T
+        matrix = np.einsum("apbq,bqr->apbr", between, law, optimize=True).reshape(count * width, count * width)
+        deflections = np.linalg.solve(np.eye(count * width) + matrix, free.reshape(count * width, -1))
+        forces = np.einsum("bqr,bri->bqi", law, deflections.reshape(count, width, -1), optimize=True)
+        motion = {}
+        for order in self.orders if orders is None else orders:
+            acting_load = loads.get(order, np.zeros((self.system.size, len(excitations)), dtype=np.complex128)).copy()
+            for n, gap in enumerate(self._offsets):
+                source = _minus(order, gap)
+                if source in places:
+                    acting_load -= self._columns[:, n * width : (n + 1) * width] @ forces[places[source]]
+            motion[order] = self._moved(frequency + self.shift(order), acting_load).T
+        return motion
 
-    def _law_of(self, frequency: float, width: int) -> ComplexArray:
+    def at_excitation(
+        self,
+        frequencies: FloatArray,
+        excitation: Callable[[float], Excitation],
+    ) -> ComplexArray:
+        """Coordinates (f, n) at each frequency ω by an excitation at ω alone, without the sidebands ω + m·f."""
+        moved = [self.respond(w, [excitation(w)], [self.still])[self.still][0] for w in frequencies.tolist()]
+        return np.array(moved).reshape(-1, self.system.size)
+
+    def _law(self, frequency: float) -> ComplexArray:
         """Laws k + i ω_m c of the connectors that turn by order, (m, d, d)."""
-        law = np.zeros((len(self.orders), width, width), dtype=np.complex128)
+        law = np.zeros((len(self.orders), self._width, self._width), dtype=np.complex128)
         for number, order in enumerate(self.orders):
             w, begin = frequency + self.shift(order), 0
             for one in self._turning:
@@ -242,18 +310,22 @@ class TurningResponse:
                 begin = own.stop
         return law
 
-    def _errors(self, errors: Mapping[int, complex], width: int) -> ComplexArray:
+    def _error(self, errors: Mapping[int, complex]) -> ComplexArray:
         """Errors of the contacts that turn over the directions of the connectors that do, (d,)."""
-        found = np.zeros(width, dtype=np.complex128)
+        found = np.zeros(self._width, dtype=np.complex128)
         turning = [number for number, tooth in enumerate(self.system.contacts) if tooth.turning]
         for number, error in errors.items():
             if number not in turning:
                 raise CouplingError(
                     f"an error of {self.system.contacts[number].name}, which does not turn; expected its load instead"
                 )
-            found[width - len(turning) + turning.index(number)] = error
+            found[self._width - len(turning) + turning.index(number)] = error
         return found
 
 
 def _minus(first: Order, second: Order) -> Order:
     return tuple(a - b for a, b in zip(first, second, strict=True))
+
+
+def _plus(first: Order, second: Order) -> Order:
+    return tuple(a + b for a, b in zip(first, second, strict=True))

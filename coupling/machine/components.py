@@ -106,6 +106,9 @@ class HousingComponent(Component):
         Distance along z from a seat's centre within which a bearing sits in it [m], where it is known.
     displacement_field : HousingField or None
         Mesh and shapes of its coordinates, which sound needs; None of a reduced housing.
+    ring_motions : mapping of str to ndarray, shape (n, 2 + 4 orders)
+        Deformation of each bore with a ring gear by the coordinates: a₀, c₀, and a_n, b_n, c_n, d_n of each order, see
+        :func:`gearwhine.housing.model.patches.ring_matrix`.
 
     Raises
     ------
@@ -125,6 +128,7 @@ class HousingComponent(Component):
     warnings: tuple[ResultWarning, ...] = ()
     seat_reach: Mapping[str, float] = field(default_factory=dict)
     displacement_field: HousingField | None = None
+    ring_motions: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that the matrices and motions are those of a housing."""
@@ -145,6 +149,35 @@ class HousingComponent(Component):
         arm = z - self.seat_z[seat]
         # A rotation about y moves a point beyond the centre towards +z along +x, one about x along -y.
         return np.array([x + arm * about_y, y - arm * about_x, along, about_x, about_y])
+
+    def ring_harmonics(self, seat: str, push: Sequence[float], angle: float) -> list[tuple[FloatArray, FloatArray]]:
+        """Motion of ring teeth along a push that turns, by the deformation of their bore: (n,) and (n,) of each order.
+
+        Parameters
+        ----------
+        seat : str
+        push : (x, y)
+            Unit vector at the angle of the tooth contact at first; it turns with the contact.
+        angle : float
+            Angle of the contact from x about the bore's axis at first [rad].
+
+        Returns
+        -------
+        list of two ndarray
+            Parts A_n and B_n of the motion Σ A_n cos nα + B_n sin nα at α beyond the first angle, from order 0 on.
+        """
+        radial = push[0] * math.cos(angle) + push[1] * math.sin(angle)
+        tangential = push[1] * math.cos(angle) - push[0] * math.sin(angle)
+        rows = self.ring_motions[seat].T
+        parts = [(radial * rows[0] + tangential * rows[1], np.zeros(self.size))]
+        for order in range(1, (len(rows) - 2) // 4 + 1):
+            a, b, c, d = rows[4 * order - 2 : 4 * order + 2]
+            cosine, sine = radial * a + tangential * c, radial * b + tangential * d
+            turn = order * angle
+            parts.append(
+                (cosine * math.cos(turn) + sine * math.sin(turn), sine * math.cos(turn) - cosine * math.sin(turn))
+            )
+        return parts
 
 
 @dataclass(frozen=True)
@@ -362,6 +395,10 @@ def _component_findings(component: HousingComponent) -> Iterator[Finding]:
     }
     shapes |= {f"seats.{name}": (motion, (n, 6)) for name, motion in component.seats.items()}
     shapes |= {f"sensors.{name}": (motion, (n,)) for name, motion in component.sensors.items()}
+    shapes |= {
+        f"ring_motions.{name}": (motion, (n, 2 + 4 * max((np.shape(motion)[-1] - 2) // 4, 1)))
+        for name, motion in component.ring_motions.items()
+    }
     if component.participation is not None:
         shapes["participation"] = (component.participation, (n, 6))
     findings = []
@@ -402,6 +439,7 @@ def housing_component(
     seat_axes: Mapping[str, tuple[float, float]] | None = None,
     sensor_places: Mapping[str, SensorPlace] | None = None,
     seat_reach: Mapping[str, float] | None = None,
+    ring_motions: Mapping[str, FloatArray] | None = None,
     name: str = "housing",
 ) -> HousingComponent:
     """Assemble the housing from its modes and attachments: K = diag(ω²), C = diag(2 ζ ω) + Φᵀ C Φ.
@@ -412,7 +450,7 @@ def housing_component(
         Modes: m of them and, where there are attachments, k further ones: n = m + k coordinates.
     damping_ratios : ndarray, shape (m,)
         Damping ratios. Attachments take the highest of them.
-    seats, seat_z, sensors, participation, seat_axes, sensor_places, seat_reach
+    seats, seat_z, sensors, participation, seat_axes, sensor_places, seat_reach, ring_motions
         See :class:`HousingComponent`; by :meth:`gearwhine.housing.ModeSet.project_all`.
     damping_matrix : ndarray, shape (n, n), optional
         Φᵀ C Φ of dashpots, mounts and joints [1/s], which couples the coordinates.
@@ -452,6 +490,7 @@ def housing_component(
         sensor_places=sensor_places or {},
         complete_below=modes.certificate.limit,
         seat_reach=seat_reach or {},
+        ring_motions=ring_motions or {},
     )
 
 
@@ -497,6 +536,7 @@ def _component_of_modes(modes: HousingModes, participation: FloatArray | None, n
         sensor_places={name: SensorPlace(port.position, port.direction) for name, port in modes.sensors.items()},
         damping_matrix=modes.damping_matrix,
         participation=participation,
+        ring_motions=modes.ring_motions,
         name=name,
     )
 

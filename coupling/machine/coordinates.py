@@ -60,6 +60,10 @@ class MachineCoordinates:
         self.size = sum(component.size for component in components)
         self._numbers = {part.name: i for i, part in enumerate(components)}
 
+    def is_rotor(self, name: str) -> bool:
+        """Whether a component of this name is a rotor."""
+        return name in self._numbers and isinstance(self.components[self._numbers[name]], RotorComponent)
+
     def rotor(self, name: str) -> RotorComponent:
         """Return the rotor of this name."""
         part = self.components[self._numbers[name]] if name in self._numbers else None

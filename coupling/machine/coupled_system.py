@@ -202,6 +202,11 @@ class CoupledSystem:
         return tuple(sorted({part.rate for parts in turning for part in parts}))
 
     @property
+    def turns(self) -> bool:
+        """Whether directions of connectors turn, as of planets against a housing that stands still."""
+        return any(connector.turning for connector in self.linear) or any(contact.turning for contact in self.contacts)
+
+    @property
     def is_smooth(self) -> bool:
         """Whether the tooth contacts, without friction, are the only nonlinearity."""
         return not self.nonlinear and all(contact.sliding is None for contact in self.contacts)

@@ -143,6 +143,9 @@ class MountedGear:
         rigid beyond. By default the gear moves with the section in the middle of the common face.
     missing : FaceCompliance, optional
         What the rotor's modes lack of its compliance over the common face; none by default.
+    rim_seat : str, optional
+        Seat of the housing whose bore the rim of a ring gear follows as it deforms; by default the rim moves as one
+        body with its rotor.
     """
 
     name: str
@@ -151,6 +154,7 @@ class MountedGear:
     axis: tuple[float, float]
     carried: tuple[float, float] | None = None
     missing: FaceCompliance | None = None
+    rim_seat: str | None = None
 
     def compliance(self, gear: Gear) -> FloatArray:
         """Compliance over mean approach, slope and tilt that the rotor's modes lack under this gear, (3, 3)."""
@@ -198,8 +202,10 @@ class GearMesh:
 
     @property
     def centre_line_angle(self) -> float:
-        """Angle from x of the line from the driver's centre to the driven gear's [rad]."""
+        """Angle from x of the line from the driver's centre to the driven gear's, of an internal pair back [rad]."""
         x, y = self._centre_line
+        if self.geometry.is_internal:
+            x, y = -x, -y
         return atan2(y, x)
 
     @property

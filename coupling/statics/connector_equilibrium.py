@@ -27,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg, sparse
 
-from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw
+from gearwhine.coupling.statics.static_model import ConnectorLaw, LinearLaw, replace_linear
 from gearwhine.numerics.trust_region import Local, minimise
 
 FloatArray = npt.NDArray[np.float64]
@@ -176,7 +176,7 @@ class ConnectedStructure:
     def _conservative_laws(self) -> list[ConnectorLaw]:
         # An unsymmetric stiffness has no energy; its nominal stiffness replaces it until Newton's method.
         return [
-            LinearLaw(self.nominal[part, part]) if isinstance(law, LinearLaw) else law
+            replace_linear(law, LinearLaw(self.nominal[part, part]))
             for part, law in zip(self.parts, self.laws, strict=True)
         ]
 

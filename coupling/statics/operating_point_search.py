@@ -5,6 +5,7 @@ housing's modes, and two of each pedestal. Connectors are bearings, gear pairs a
 (:mod:`gearwhine.coupling.statics.static_model`).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -179,7 +180,7 @@ class _StaticModel:
         self.directions += [np.eye(self.size)[:, first : first + 2] for first in self.pedestal_first.values()]
         self.directions += [self._torque_direction(support) for support in torque_supports]
         self.twists = [twist for _, twist in approaches]
-        self.laws: list[ConnectorLaw] = [bearing.law for bearing in bearings]
+        self.laws: list[ConnectorLaw] = [bearing.placed_law for bearing in bearings]
         self.laws += [FaceContactLaw(pair.between_rims, pair.clearance) for pair in pairs]
         self.laws += pedestals.values()
         held = [LinearLaw(np.array([[support.stiffness or 0.0]])) for support in torque_supports]
@@ -244,11 +245,13 @@ class _StaticModel:
         """Motion of a bearing's seat, (5, n): x, y, z and the rotations about x and y."""
         rows = np.zeros((5, self.size))
         part = self._part(mounted.rotor)
-        if part.carrier is not None:
-            carrier, z = self._part(part.carrier), part.start + mounted.bearing.at
-            at = min(max(z - carrier.start, 0.0), carrier.shaft.length)
-            section = self._section(part.carrier, at)
-            return seat_in_section(section, np.subtract(part.axis, carrier.axis), z - carrier.start - at)
+        holding = part.carrier or mounted.seat
+        if holding in self.first:
+            around, z = self._part(holding), part.start + mounted.bearing.at
+            at = min(max(z - around.start, 0.0), around.shaft.length)
+            return seat_in_section(
+                self._section(holding, at), np.subtract(part.axis, around.axis), z - around.start - at
+            )
         if mounted.seat is not None:
             assert self.housing is not None
             z = part.start + mounted.bearing.at
@@ -286,6 +289,11 @@ class _StaticModel:
                 rows[number] += flank.across(section) + arm * flank.tilting(section) + turned + axial
                 twist[number] += turned
             rows[-1] += flank.tilting(middle)
+            seat = self._part(gear.shaft).rim_seat
+            if seat is not None and self.housing is not None:
+                place = math.atan2(flank.arm[1], flank.arm[0])
+                deformed = sum(part for part, _ in self.housing.ring_harmonics(seat, flank.push, place))
+                rows[:-1, self.housing_first : self.housing_first + self.housing.size] += flank.side * deformed
             if gear.name in self.rims:
                 rim = self.rims[gear.name]
                 rows[:-1] += flank.across(rim) + flank.turning(rim[5])
@@ -377,16 +385,17 @@ class _StaticModel:
         deflections = [rows.T @ x for rows in self.directions]
         states = [law.at(z) for law, z in zip(self.laws, deflections, strict=True)]
         residual = self._require_balance(x, extra, deflections, [force for _, force, _ in states], iterations)
+        in_seats = [z - one.displacement for one, z in zip(self.bearings, deflections, strict=False)]
         bearings = tuple(
             BearingLoad(
                 bearing.mounted,
                 force,
                 deflection,
-                self.seat_motion(bearing.mounted) @ x,
+                self.seat_motion(bearing.mounted) @ x + bearing.displacement,
                 tangent,
                 _rolling_state(bearing, deflection),
             )
-            for bearing, deflection, (_, force, tangent) in zip(self.bearings, deflections, states, strict=False)
+            for bearing, deflection, (_, force, tangent) in zip(self.bearings, in_seats, states, strict=False)
         )
         housing_rows = slice(
             self.housing_first, self.housing_first + (0 if self.housing is None else self.housing.size)
@@ -429,7 +438,7 @@ class _StaticModel:
         # node, is no imbalance.
         terms = np.abs(self.stiffness + extra) @ np.abs(x)
         # Without loads the preloads are the scale, also of rows that press each other within a bearing.
-        laws = [] if np.any(self.load) else zip(self.laws, deflections, strict=True)
+        laws = [] if np.any(self.load) else zip((one.law for one in self.bearings), deflections, strict=False)
         pressing = max(
             (float(law.elements.at(z).force) for law, z in laws if isinstance(law, RollingElementLaw)), default=0.0
         )

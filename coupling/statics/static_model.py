@@ -5,7 +5,7 @@ flanks over the face. A law gives energy, force and tangent at any deflection; t
 of the tangent, from which the search for equilibrium starts (:mod:`gearwhine.coupling.statics.operating_point`).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -104,17 +104,48 @@ class OffsetLaw:
         return self.law.at(deflection - self.offset)
 
 
+def replace_linear(law: ConnectorLaw, other: LinearLaw) -> ConnectorLaw:
+    """Return another linear law in place of one, about the same seat; other laws as they are."""
+    if isinstance(law, OffsetLaw):
+        return replace(law, law=replace_linear(law.law, other))
+    return other if isinstance(law, LinearLaw) else law
+
+
 @dataclass(frozen=True, eq=False)
 class StaticBearing:
-    """A bearing in the static model: its law, and the nominal stiffness (5, 5) that the search starts from."""
+    """A bearing in the static model.
+
+    Attributes
+    ----------
+    mounted : MountedBearing
+    law : ConnectorLaw
+    nominal : ndarray, shape (5, 5)
+        Nominal stiffness that the search starts from.
+    displacement : ndarray, shape (5,)
+        Displacement of its seat from its place, such as a planet's pin by its error [m, rad].
+    """
 
     mounted: MountedBearing
     law: ConnectorLaw
     nominal: FloatArray
+    displacement: FloatArray = field(default_factory=lambda: np.zeros(5))
+
+    @property
+    def placed_law(self) -> ConnectorLaw:
+        """The law by the deflection from the seat's nominal place."""
+        return OffsetLaw(self.law, self.displacement) if np.any(self.displacement) else self.law
 
 
-def static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
-    """Make a bearing of the static model: by its elements, its gap, or its stiffness at a speed [rad/s]."""
+def static_bearing(mounted: MountedBearing, speed: float, displacement: FloatArray | None = None) -> StaticBearing:
+    """Make a bearing of the static model: by its elements, its gap, or its stiffness at a speed [rad/s].
+
+    ``displacement`` (5,) is that of its seat from its place [m, rad]; zero by default.
+    """
+    bearing = _static_bearing(mounted, speed)
+    return bearing if displacement is None else replace(bearing, displacement=displacement)
+
+
+def _static_bearing(mounted: MountedBearing, speed: float) -> StaticBearing:
     rolling = mounted.elements
     if rolling is not None:
         return StaticBearing(mounted, RollingElementLaw(RollingElements(rolling)), _nominal_rolling(rolling))
@@ -154,6 +185,8 @@ class StaticShaftPart:
         centrifugal acceleration of its axis [m/s²].
     carrier : str or None
         Shaft in which its bearings sit, of a planet; None for seats of the housing and the ground.
+    rim_seat : str or None
+        Seat of the housing whose bore the rim of its ring gear follows.
     """
 
     name: str
@@ -162,6 +195,7 @@ class StaticShaftPart:
     shaft: StaticShaft
     acceleration: tuple[float, ...] | None = None
     carrier: str | None = None
+    rim_seat: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +291,7 @@ def static_pair(
     behind_rims : float
         Compliance of rims that are coordinates of the static machine, along the line of action [m/N].
     """
-    force = abs(torque) / geometry.driver.base_radius
+    force = abs(torque / geometry.driver.base_radius)
     tooth_stiffness = pair.stiffness
     model = (
         stiffness_under_load(tooth_stiffness, geometry, force) if isinstance(tooth_stiffness, str) else tooth_stiffness

@@ -18,8 +18,8 @@ import numpy.typing as npt
 from gearwhine.coupling import CoupledMachine, ModesError, coupled_modes
 from gearwhine.coupling.gears import GearError
 from gearwhine.coupling.linear.complex_modes import CoupledModes
-from gearwhine.coupling.linear.frequency_response import superposed
 from gearwhine.coupling.linear.mesh_harmonics import MeshHarmonicModel, MeshLoad
+from gearwhine.coupling.linear.modal_superposition import superposed
 from gearwhine.coupling.signals.spectrum import decibels
 from gearwhine.coupling.sound.motion_lines import pulsating_efficiency
 

@@ -70,7 +70,7 @@ class CheckedPair:
     @property
     def mean_force(self) -> float | None:
         """Force along the line of action, F = T / r_b of the driver [N]."""
-        return None if self.torque is None else abs(self.torque) / self.geometry.driver.base_radius
+        return None if self.torque is None else abs(self.torque / self.geometry.driver.base_radius)
 
 
 @dataclass(frozen=True)

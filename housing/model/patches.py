@@ -203,6 +203,50 @@ def patch_matrix(mesh: Mesh, facets: Facets, center: FloatArray | None = None, *
     return _port(weights, np.concatenate(columns), mesh)
 
 
+def ring_matrix(mesh: Mesh, facets: Facets, center: FloatArray, orders: int) -> sparse.csr_array:
+    """Assemble the deformation of a bore about z beside its rigid motion, by harmonics of its circumference.
+
+    The radial and the tangential displacement over the angle θ about the bore's axis are, in the mean over its length,
+
+        u_r = a₀ + Σ (a_n cos nθ + b_n sin nθ),        u_t = c₀ + Σ (c_n cos nθ + d_n sin nθ),
+
+    of what is left of the displacement without the rigid motion of the whole patch.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    facets : Facets
+        Facets of the bore.
+    center : ndarray, shape (3,)
+        Point of its axis [m].
+    orders : int
+        Highest order n.
+
+    Returns
+    -------
+    scipy.sparse.csr_array, shape (2 + 4 orders, 3 n_nodes)
+        Rows a₀, c₀, and a_n, b_n, c_n, d_n of each order.
+    """
+    parts, _ = _quadrature(mesh, facets)
+    loads, columns, squares = [], [], np.zeros(2 + 4 * orders)
+    for part in parts:
+        x, y = (part.points[..., axis] - center[axis] for axis in (0, 1))
+        angle = np.arctan2(y, x)
+        outward = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+        along = np.stack([-np.sin(angle), np.cos(angle), np.zeros_like(angle)], axis=-1)
+        waves = [(np.ones_like(angle), axis) for axis in (outward, along)]
+        for order in range(1, orders + 1):
+            waves += [(wave(order * angle), axis) for axis in (outward, along) for wave in (np.cos, np.sin)]
+        fields = np.stack([wave[..., None] * axis for wave, axis in waves])
+        squares += np.einsum("rfqi,rfqi,fq->r", fields, fields, part.areas, optimize=True)
+        load = np.einsum("rfqi,qa,fq->rfai", fields, part.shape_values, part.areas, optimize=True)
+        loads.append(load.reshape(len(fields), -1))
+        columns.append((3 * part.facets[:, :, None] + np.arange(3)).ravel())
+    deformed = _port(np.concatenate(loads, axis=1) / squares[:, None], np.concatenate(columns), mesh)
+    rigid = sparse.csr_array(rigid_motions(mesh.points, center).reshape(-1, 6))
+    return sparse.csr_array(deformed - (deformed @ rigid) @ patch_matrix(mesh, facets, center))
+
+
 def point_matrix(mesh: Mesh, point: SurfacePoint) -> sparse.csr_array:
     """Assemble the translations of a surface point, shape (3, 3 n_nodes); a point of a solid has no rotation."""
     columns = (3 * point.nodes[:, None] + np.arange(3)).ravel()

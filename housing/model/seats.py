@@ -14,7 +14,7 @@ from scipy import sparse
 
 from gearwhine.housing.errors import HousingError
 from gearwhine.housing.fem.nearest_point import surface_point
-from gearwhine.housing.model.patches import patch_matrix, point_matrix
+from gearwhine.housing.model.patches import patch_matrix, point_matrix, ring_matrix
 from gearwhine.meshes import Mesh
 from gearwhine.numerics.findings import Finding, Number, Numbers, Rule, Text, attribute_findings, refuse
 from gearwhine.numerics.own_copies import keep_tuples
@@ -36,12 +36,16 @@ class Seat:
         Diameter of the bore [m], by which the seat is found in a solid or a mesh that does not name its surface.
     depth : float
         Length of the bore with its boss [m], where it is known: a bearing may be off the centre by as much.
+    ring_orders : int
+        Highest order of the bore's deformation around its circumference that ring teeth in it drive, such as twice the
+        number of planets; 0 for the seat of a bearing, which moves as one body.
     """
 
     name: str
     center: tuple[float, float, float]
     diameter: float | None = None
     depth: float = 0.0
+    ring_orders: int = 0
 
     def __post_init__(self) -> None:
         """Keep own copies; check name, centre and sizes."""
@@ -51,6 +55,7 @@ class Seat:
             "center": Numbers(3),
             "diameter": Number(above=0.0, optional=True, unit="m"),
             "depth": Number(at_least=0.0, unit="m"),
+            "ring_orders": Number(at_least=0, whole=True),
         }
         refuse(attribute_findings(("seat", str(self.name)), self, **rules), HousingError)
 
@@ -127,6 +132,14 @@ def seat_matrix(mesh: Mesh, seat: Seat) -> sparse.csr_array:
         Where the seat's surface does not span a rigid motion.
     """
     return patch_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), name=f"seat {seat.name!r}")
+
+
+def ring_port(mesh: Mesh, seat: Seat) -> sparse.csr_array:
+    """Return the port of a ring gear in a seat: deformation of its bore by orders, shape (2 + 4 orders, 3 n_nodes).
+
+    See :func:`gearwhine.housing.model.patches.ring_matrix`.
+    """
+    return ring_matrix(mesh, mesh.surface(seat.name), np.array(seat.center), seat.ring_orders)
 
 
 def bearing_port(seat: sparse.csr_array, arm: float) -> sparse.csr_array:

@@ -75,7 +75,7 @@ def tooth_coupling(gear: Gear, radius: float) -> float:
     """Shear coupling T of one tooth across its face [N], with the load at `radius` [m]."""
     across, along = tooth_side(gear, _OUTLINE)
     height = along - along[0]
-    load = float(np.interp(radius, np.hypot(across, along), height))
+    load = float(np.interp(radius, gear.sign * np.hypot(across, along), height))
     edges = np.linspace(0.0, height[-1], _LAYERS + 1)
     step = edges[1]
     y = 0.5 * (edges[1:] + edges[:-1])

@@ -116,10 +116,12 @@ class Spall:
         """Require that the spall lies on the flank; see `gearwhine.coupling.gears.geometry.gear.Fault`."""
         require_tooth(gear, self.tooth)
         tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
-        if not (self.start_roll_angle < tip and self.end_roll_angle > form):
+        low, high = (tip, form) if gear.is_internal else (form, tip)
+        if not (self.start_roll_angle < high and self.end_roll_angle > low):
+            ends = "the tip and the form circle" if gear.is_internal else "the form circle and the tip"
             raise GearError(
-                f"gear {gear.name!r}: a spall must lie on the flank, between the roll angles of the form circle and "
-                f"the tip, {math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, got "
+                f"gear {gear.name!r}: a spall must lie on the flank, between the roll angles of {ends}, "
+                f"{math.degrees(low):.4g} and {math.degrees(high):.4g} degrees, got "
                 f"{math.degrees(self.start_roll_angle):.4g} to {math.degrees(self.end_roll_angle):.4g} degrees"
             )
 
@@ -197,7 +199,7 @@ def check_tooth_number(name: str, tooth: int | None) -> None:
 
 def require_tooth(gear: Gear, tooth: int | None) -> None:
     """Raise `GearError` where a gear has no tooth of this number."""
-    if tooth is not None and tooth >= gear.teeth:
+    if tooth is not None and tooth >= gear.tooth_count:
         raise GearError(
-            f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.teeth - 1}"
+            f"gear {gear.name!r}: a fault is on tooth {tooth}; the teeth are numbered 0 to {gear.tooth_count - 1}"
         )

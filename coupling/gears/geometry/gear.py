@@ -1,4 +1,4 @@
-"""External gear, spur or helical: tooth proportions, the radii and angles that follow from them, mass and inertia.
+"""Gear, external or internal, spur or helical: tooth proportions, radii and angles, mass and inertia.
 
 The tooth is what a basic rack generates (ISO 53, ISO 21771).  Module ``m``, pressure angle ``alpha``, profile shift
 ``x`` (positive outward) and the heights are those of the rack's normal section; rotation,
@@ -10,17 +10,24 @@ contact and drawings are in the transverse plane.  With ``z`` teeth and helix an
     base helix angle           sin(beta_b) = sin(beta) cos(alpha)
     equivalent teeth           z_n = z / (cos(beta_b)^2 cos(beta))
 
-A spur gear is ``beta = 0``.  A tooth made thinner for backlash is cut by the same rack, ``thinning / (2 tan(alpha))``
+A spur gear is ``beta = 0``.  An internal gear (ring gear) has a negative number of teeth, and with it all its radii are
+negative (ISO 21771): each of these equations holds for it as it stands.  Its teeth point inward, so that its tip circle
+is the smallest, ``|r_a| = |r| - (h_a + x) m``, and a positive profile shift makes its teeth thicker too.  A radius as a
+length is ``abs()`` of it.
+
+A tooth made thinner for backlash is cut by the same rack, ``thinning / (2 tan(alpha))``
 deeper: flank, fillet and root follow the generating shift ``x_E = x - thinning / (2 m tan(alpha))``, the tip does not.
 
-The rack's tip corners are rounded; the flank is an involute down to the form radius, where the corner's trochoid takes
-over (see :mod:`gearwhine.coupling.gears.geometry.rack`, :mod:`gearwhine.coupling.gears.geometry.profile`).
+The rack's tip corners are rounded; the flank of an external gear is an involute down to the form radius, where the
+corner's trochoid takes over (see :mod:`gearwhine.coupling.gears.geometry.rack`,
+:mod:`gearwhine.coupling.gears.geometry.profile`).
 
 Mass and moments of inertia are those of the gear blank, the body that carries the teeth. The teeth count as a ring out
 to the reference circle, where they fill half the circumference. A gear without a rim is a disc as wide as its face,
-down to its bore. A gear with a rim is a ring of the full width down to the inside of the rim, and a web of its own
-thickness in the middle of the face from there to the bore; without a web the ring is alone, and its carrier is given as
-a disc of the rotor. A disc without a bore reaches down to the axis; on a shaft its core is part of the shaft
+down to its bore. An internal gear is a ring from its reference circle to the outside of its rim. A gear with a rim is a
+ring of the full width down to the inside of the rim, and a web of its own thickness in the middle of the face from
+there to the bore; without a web the ring is alone, and its carrier is given as a disc of the rotor. A disc without a
+bore reaches down to the axis; on a shaft its core is part of the shaft
 (:mod:`gearwhine.coupling.gears.geometry.blank`).
 """
 
@@ -39,6 +46,8 @@ from gearwhine.coupling.gears.errors import GearError, PointedToothError, ThinTi
 from gearwhine.coupling.gears.geometry.involute import involute
 from gearwhine.coupling.gears.geometry.modifications import HelixDeviation, ProfileDeviation, RootRelief, TipRelief
 from gearwhine.coupling.gears.geometry.rack import BasicRack, RackCorner, fillet_end
+from gearwhine.coupling.gears.geometry.ring_support import RingSupport
+from gearwhine.coupling.gears.geometry.root_arc import RootArc, full_arc_radius
 from gearwhine.housing.material import STEEL
 from gearwhine.numerics.findings import Finding, Text, attribute_findings, refuse
 from gearwhine.numerics.materials import material_findings
@@ -47,6 +56,8 @@ from gearwhine.numerics.own_copies import keep_tuples
 FloatArray = npt.NDArray[np.float64]
 
 _STEEPEST_HELIX = math.radians(60.0)
+_STIFF_RIM = 3.5
+"""Thickness of a ring's rim, in modules, from which on ISO 6336-3 takes it as stiff (Y_B = 1)."""
 
 
 class Inertia(NamedTuple):
@@ -109,14 +120,14 @@ class Fault(Protocol):
 
 @dataclass(frozen=True)
 class Gear:
-    """A spur or helical gear with external teeth.
+    """A spur or helical gear with external or internal teeth.
 
     Parameters
     ----------
     name : str
         Name in messages.
     teeth : int
-        Number of teeth, at least 5.
+        Number of teeth, at least 5; negative of an internal gear, whose radii are negative then (ISO 21771).
     module : float
         Normal module [m].
     pressure_angle : float
@@ -124,13 +135,15 @@ class Gear:
     face_width : float
         Width of the teeth along the shaft [m].
     profile_shift : float
-        Profile shift coefficient, in normal modules, positive outward.
+        Profile shift coefficient, in normal modules, positive outward; of an internal gear inward. A positive one makes
+        the teeth thicker.
     addendum, dedendum : float
         Addendum of the gear and of the basic rack that cuts it (so the gear's dedendum), in normal modules.
     root_radius : float or None
         Tip corner radius of the rack in its normal section [m], which shapes the root fillet.  None: the radius that
         ends the rack's straight flank one addendum below its reference line, ``(dedendum - addendum) m / (1 -
-        sin(alpha))``, or the full tip radius where that is smaller.
+        sin(alpha))``, or the full tip radius where that is smaller.  Of an internal gear the radius of the root
+        fillet itself, in the transverse plane (:mod:`gearwhine.coupling.gears.geometry.root_arc`).
     bore : float
         Diameter of the bore [m]; 0 for a gear made from its shaft, which then has the mass of the core
         (:mod:`gearwhine.coupling.gears.geometry.blank`).
@@ -156,15 +169,19 @@ class Gear:
     faults : tuple of Fault
         Damaged teeth (:mod:`gearwhine.coupling.gears.geometry.faults`).
     helix_angle : float
-        Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear.
+        Helix angle on the reference cylinder [rad], positive for a right-hand helix; 0 for a spur gear. An internal
+        gear meshes with an external one of the same hand.
     rim_thickness : float or None
-        Thickness from the root circle to the inside of the rim [m]; None for a disc without a rim.
+        Thickness from the root circle to the inside of the rim [m]; None for a disc without a rim.  Of an internal
+        gear that from the root circle to the outside of the ring; None for 3.5 modules.
     web_thickness : float or None
         Width of the disc between rim and hub [m]; None for a rim alone.
     hub_diameter : float or None
         Outer diameter of the hub around the bore [m]; None for a web that begins at the bore.
     hub_width : float or None
         Width of the hub [m]; None for that of the face.
+    ring_support : RingSupport or None
+        What holds the outside of an internal gear's rim; None for a clamped one.
     tooth_thinning : float
         Reduction of the tooth thickness below that of the profile shift, for backlash: in the normal section, along
         the reference circle [m].
@@ -207,6 +224,7 @@ class Gear:
     allow_undercut: bool = False
     hub_diameter: float | None = None
     hub_width: float | None = None
+    ring_support: RingSupport | None = None
 
     def __post_init__(self) -> None:
         """Check the dimensions, the body, the rack, the flank and the modifications."""
@@ -222,6 +240,23 @@ class Gear:
         """Deviations larger than the teeth, and what is unlikely of sizes, deviations and material."""
         material = material_findings(("gear", self.name), self.youngs_modulus, self.poisson_ratio, self.density)
         return (*_deviation_findings(self), *_size_findings(self), *material)
+
+    # ----------------------------------------------------- external or internal
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether the teeth point inward, as those of a ring gear."""
+        return self.teeth < 0
+
+    @property
+    def sign(self) -> int:
+        """Sign of the number of teeth and of the radii: 1 of an external gear, -1 of an internal one."""
+        return -1 if self.is_internal else 1
+
+    @property
+    def tooth_count(self) -> int:
+        """Number of teeth without its sign."""
+        return abs(self.teeth)
 
     # ------------------------------------------------------- transverse plane
 
@@ -264,7 +299,9 @@ class Gear:
 
     @cached_property
     def form_radius(self) -> float:
-        """Form circle radius, at which the fillet's trochoid ends and the involute begins [m]."""
+        """Form circle radius, at which the fillet ends and the involute begins [m]."""
+        if self.is_internal:
+            return self.root_arc.form_radius
         if self.is_undercut:
             height, across, _ = self.rack_corner_arc.trochoid(self.pitch_radius, self.fillet_end)
             return math.hypot(height, across)
@@ -281,7 +318,7 @@ class Gear:
     @property
     def lead(self) -> float:
         """Lead of the helix [m], negative for a left-hand one; infinite for a spur gear."""
-        return self.teeth * self.axial_pitch
+        return self.tooth_count * self.axial_pitch
 
     @property
     def axial_pitch(self) -> float:
@@ -310,20 +347,31 @@ class Gear:
 
     @property
     def rack(self) -> BasicRack:
-        """The rack that generates the teeth."""
+        """The rack that generates the teeth of an external gear, and is the reference profile of an internal one."""
         return BasicRack(
             self.module, self.pressure_angle, self.addendum, self.dedendum, self.root_radius, self.helix_angle
         )
 
     @property
     def rack_tip_radius(self) -> float:
-        """Corner radius of the generating rack, in its normal section [m]."""
-        return self.rack.corner_radius
+        """Corner radius of the generating rack, in its normal section; of an internal gear that of its root arc [m]."""
+        return self.root_arc.radius if self.is_internal else self.rack.corner_radius
 
     @property
     def full_rack_tip_radius(self) -> float:
-        """The largest corner radius: one arc from flank to flank of the rack's tooth [m]."""
+        """The largest `rack_tip_radius`: one arc from flank to flank of the rack's tooth, or of a ring's space [m]."""
+        if self.is_internal:
+            return full_arc_radius(self.base_radius, self.root_circle_radius, self.base_half_angle, self.teeth)
         return self.rack.full_tip_radius
+
+    @cached_property
+    def root_arc(self) -> RootArc:
+        """Root fillet of an internal gear, from its flank to its root circle."""
+        radius = self.root_radius
+        if radius is None:
+            from_clearance = (self.dedendum - self.addendum) * self.module / (1.0 - math.sin(self.pressure_angle))
+            radius = max(0.0, min(from_clearance, self.full_rack_tip_radius))
+        return RootArc(self.base_radius, self.root_circle_radius, self.base_half_angle, radius)
 
     @property
     def rack_corner_arc(self) -> RackCorner:
@@ -343,12 +391,14 @@ class Gear:
 
     @property
     def is_undercut(self) -> bool:
-        """Whether the rack cuts away the foot of the involute."""
-        return self._flank_depth > self._deepest_flank * (1.0 + 1e-12)
+        """Whether the rack cuts away the foot of the involute; an internal gear has none."""
+        return not self.is_internal and self._flank_depth > self._deepest_flank * (1.0 + 1e-12)
 
     @property
     def fillet_end(self) -> float:
         """The parameter of `coupling.gears.geometry.profile.fillet_points` where the involute begins [rad]."""
+        if self.is_internal:
+            return self.root_arc.end
         if not self.is_undercut:
             return self.transverse_pressure_angle
         return fillet_end(self.rack_corner_arc, self.pitch_radius, self.transverse_pressure_angle, self.base_half_angle)
@@ -367,13 +417,13 @@ class Gear:
 
     @cached_property
     def base_half_angle(self) -> float:
-        """Half the angle a tooth spans on the base circle [rad]."""
+        """Half the angle a tooth spans on the base circle [rad], signed: a radius times an angle is a thickness."""
         at_pitch = (math.pi / 2.0 + 2.0 * self.generating_shift * math.tan(self.pressure_angle)) / self.teeth
         return at_pitch + involute(self.transverse_pressure_angle)
 
     @property
     def tip_half_angle(self) -> float:
-        """Half the angle a tooth spans on the tip circle [rad]."""
+        """Half the angle a tooth spans on the tip circle, signed as `base_half_angle` [rad]."""
         return self.base_half_angle - involute(math.acos(self.base_radius / self.tip_radius))
 
     def roll_angle(self, radius: float) -> float:
@@ -384,12 +434,29 @@ class Gear:
 
     @property
     def rim_inner_radius(self) -> float | None:
-        """Radius of the inside of the rim [m]; None for a gear without one."""
-        return None if self.rim_thickness is None else self.root_circle_radius - self.rim_thickness
+        """Radius of the inside of the rim [m]; None for a gear without one, and for an internal gear."""
+        if self.is_internal or self.rim_thickness is None:
+            return None
+        return self.root_circle_radius - self.rim_thickness
+
+    @property
+    def rim_outer_radius(self) -> float | None:
+        """Radius of the outside of an internal gear's rim, negative as its other radii [m]; None for external gears."""
+        if not self.is_internal:
+            return None
+        thickness = _STIFF_RIM * self.module if self.rim_thickness is None else self.rim_thickness
+        return self.root_circle_radius - thickness
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the whole body as a length [m]: of the tip circle, of an internal gear of the rim's outside."""
+        return self.tip_radius if self.rim_outer_radius is None else -self.rim_outer_radius
 
     @property
     def blank_rings(self) -> tuple[BlankRing, ...]:
         """Rings of the blank, one inside the other, their middles in the middle of the face."""
+        if self.is_internal:
+            return (BlankRing(self.face_width, self.outer_radius, -self.pitch_radius),)
         bore_radius, inside = 0.5 * self.bore, self.rim_inner_radius
         if inside is None:
             return (BlankRing(self.face_width, self.pitch_radius, bore_radius),)
@@ -446,7 +513,7 @@ def _check_numbers(gear: Gear) -> None:
     """Raise `GearError` for a single number outside its range."""
     label = f"gear {gear.name!r}: "
     refuse(attribute_findings(("gear", str(gear.name)), gear, name=Text()), GearError)
-    if type(gear.teeth) is not int or gear.teeth < 5:
+    if type(gear.teeth) is not int or abs(gear.teeth) < 5:
         raise GearError(f"{label}teeth must be a whole number of at least 5, got {gear.teeth!r}")
     for quantity in ("module", "face_width", "addendum", "dedendum", "youngs_modulus", "density"):
         require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
@@ -459,9 +526,10 @@ def _check_numbers(gear: Gear) -> None:
             require_finite(label + quantity, getattr(gear, quantity), minimum=0.0, strict=True)
     if gear.root_radius is not None:
         require_finite(f"{label}root_radius", gear.root_radius, minimum=0.0)
-    if gear.pitch_deviations and len(gear.pitch_deviations) != gear.teeth:
+    if gear.pitch_deviations and len(gear.pitch_deviations) != gear.tooth_count:
         raise GearError(
-            f"{label}pitch_deviations must be one for each of {gear.teeth} teeth, got {len(gear.pitch_deviations)}"
+            f"{label}pitch_deviations must be one for each of {gear.tooth_count} teeth, "
+            f"got {len(gear.pitch_deviations)}"
         )
     for tooth, deviation in enumerate(gear.pitch_deviations):
         require_finite(f"{label}pitch_deviations[{tooth}]", deviation)
@@ -476,6 +544,18 @@ def _check_numbers(gear: Gear) -> None:
 def _check_body(gear: Gear) -> None:
     """Raise `GearError` where bore, rim and web do not fit into each other."""
     label = f"gear {gear.name!r}: "
+    if gear.is_internal:
+        for quantity in ("bore", "web_thickness", "hub_diameter", "hub_width"):
+            if getattr(gear, quantity):
+                raise GearError(
+                    f"{label}an internal gear is a ring outside its teeth, without {quantity}; its rim_thickness says "
+                    "how far it reaches beyond its root circle, and a disc of the shaft may carry it"
+                )
+        if gear.ring_support is not None:
+            gear.ring_support.require_fit(gear.name, gear.outer_radius)
+        return
+    if gear.ring_support is not None:
+        raise GearError(f"{label}ring_support is of internal gears; an external one is held at its bore or rim")
     if gear.root_circle_radius <= 0.5 * gear.bore:
         raise GearError(
             f"{label}the bore ({gear.bore * 1e3:.4g} mm) must be smaller than the root circle "
@@ -511,6 +591,9 @@ def _check_body(gear: Gear) -> None:
 def _check_rack(gear: Gear) -> None:
     """Raise `GearError` or `PointedToothError` where no rack has the proportions."""
     label = f"gear {gear.name!r}: "
+    if gear.is_internal:
+        _check_ring(gear, label)
+        return
     full = gear.full_rack_tip_radius
     if full < 0.0:
         raise PointedToothError(
@@ -526,6 +609,30 @@ def _check_rack(gear: Gear) -> None:
         raise GearError(
             f"{label}profile_shift {gear.profile_shift:g} withdraws the rack's teeth beyond the pitch line on which "
             f"they roll; at most {gear.dedendum + gear.profile_shift - gear.generating_shift:.4g} here"
+        )
+
+
+def _check_ring(gear: Gear, label: str) -> None:
+    """Raise `GearError` or `PointedToothError` where an internal gear has no involute from root to tip."""
+    if gear.tip_radius > gear.base_radius:
+        most = (gear.base_radius - gear.pitch_radius) / gear.module - gear.profile_shift
+        per_tooth = (gear.pitch_radius - gear.base_radius) / gear.teeth
+        least = math.ceil((gear.addendum + gear.profile_shift) * gear.module / per_tooth)
+        raise GearError(
+            f"{label}the tip circle of {-2e3 * gear.tip_radius:.6g} mm lies inside the base circle of "
+            f"{-2e3 * gear.base_radius:.6g} mm, where an internal gear has no involute; an addendum of at most "
+            f"{most:.4g}, a smaller profile_shift ({gear.profile_shift:g}), or {least} teeth or more"
+        )
+    full = gear.full_rack_tip_radius if gear.root_circle_radius < gear.base_radius else -1.0
+    if full < 0.0:
+        raise PointedToothError(
+            f"{label}the flanks of a space meet before the root circle of {-2e3 * gear.root_circle_radius:.6g} mm; "
+            f"reduce dedendum ({gear.dedendum:g}) or raise profile_shift ({gear.profile_shift:g})"
+        )
+    if gear.root_radius is not None and gear.root_radius > full * (1.0 + 1e-12):
+        raise GearError(
+            f"{label}root_radius {gear.root_radius * 1e3:.4g} mm does not fit the root of a space; "
+            f"at most {full * 1e3:.4g} mm"
         )
 
 
@@ -545,7 +652,7 @@ def _check_flank(gear: Gear) -> None:
             raise UndercutError(f"{label}the rack cuts the teeth off at their feet; raise profile_shift")
     if gear.tip_radius <= gear.form_radius:
         raise GearError(f"{label}the tip circle lies below the start of the involute; raise the addendum")
-    if gear.tip_half_angle <= 0.0:
+    if gear.sign * gear.tip_half_angle <= 0.0:
         raise PointedToothError(
             f"{label}the teeth are pointed below the tip circle; reduce profile_shift "
             f"({gear.profile_shift:g}) or addendum ({gear.addendum:g})"
@@ -558,14 +665,19 @@ def _check_modifications(gear: Gear) -> None:
     tip, form = gear.roll_angle(gear.tip_radius), gear.roll_angle(gear.form_radius)
     if gear.tip_relief is not None:
         start = gear.tip_relief.start(tip, gear.base_radius)
-        if not 0.0 <= start < tip:
+        if gear.is_internal and not tip < start <= form:
+            raise GearError(
+                f"{label}tip relief must start between the roll angles of the tip and the form circle, "
+                f"{math.degrees(tip):.4g} and {math.degrees(form):.4g} degrees, got {math.degrees(start):.4g} degrees"
+            )
+        if not gear.is_internal and not 0.0 <= start < tip:
             raise GearError(
                 f"{label}tip relief must start below the tip's roll angle of {math.degrees(tip):.4g} degrees "
                 f"and on the involute, got {math.degrees(start):.4g} degrees"
             )
     if gear.root_relief is not None:
         start = gear.root_relief.start(form, gear.base_radius)
-        if not form < start <= tip:
+        if not gear.sign * form < gear.sign * start <= gear.sign * tip:
             raise GearError(
                 f"{label}root relief must start between the roll angles of the form circle and the tip, "
                 f"{math.degrees(form):.4g} and {math.degrees(tip):.4g} degrees, "

@@ -1,4 +1,4 @@
-"""Gear pair on parallel shafts: working pressure angle, centre distance, backlash, path of contact, contact ratio.
+"""Gear pair on parallel shafts, external or internal: centre distance, backlash, path of contact, contact ratio.
 
 Everything is in the transverse plane, where a pair of helical gears is a pair of spur gears whose phase moves along
 the face.  Position along the path of contact is counted in base pitches: a pair of teeth comes into contact at
@@ -16,6 +16,15 @@ Two gears mesh without backlash at the transverse pressure angle ``w`` of (ISO 2
     inv(w) = inv(alpha_t) + 2 tan(alpha_n) (x_k + x_i) / (z_k + z_i),
 
 at the centre distance ``a = (rb_k + rb_i) / cos(w)``; from it follow profile shifts for a centre distance.
+
+**Internal pairs.** One of the two gears may be internal, with negative teeth and radii (ISO 21771). Then the centre
+distance, and the distance of the tangent points, are negative, and every equation holds as it stands. The unit vector
+from the driver's centre to the driven's over the *signed* distance points from the shafts to the pitch point where the
+driver is the pinion, and away from it where the driver is the ring: ``r_w`` along it is the pitch point in both.
+Distances xi and base radii of a ring are negative, its roll angles positive. Its flank point of roll angle ``u`` moves
+with ``rb omega``, so a driver of either kind pushes along the sense ``s = sign(omega_k z_k)`` (`flank_sense`).
+
+Where the teeth would meet off the path of contact is in :mod:`gearwhine.coupling.gears.geometry.interference`.
 """
 
 from __future__ import annotations
@@ -37,6 +46,11 @@ from gearwhine.coupling.gears.errors import (
     require_finite,
 )
 from gearwhine.coupling.gears.geometry.gear import Gear
+from gearwhine.coupling.gears.geometry.interference import (
+    addendum_without_fouling,
+    fouling_clearance,
+    radial_clearance,
+)
 from gearwhine.coupling.gears.geometry.involute import inverse_involute, involute
 from gearwhine.numerics.findings import Finding
 
@@ -66,8 +80,13 @@ def turning_sense(speed: float) -> int:
 
 
 def mesh_frequency(speed: float, teeth: int) -> float:
-    """Tooth-mesh frequency [Hz] of a gear with this number of teeth at a speed [rad/s] of either sign."""
-    return abs(speed) * teeth / (2.0 * math.pi)
+    """Tooth-mesh frequency [Hz] of a gear with this number of teeth, at a speed [rad/s]; both of either sign."""
+    return abs(speed) * abs(teeth) / (2.0 * math.pi)
+
+
+def signed_distance(driver: Gear, driven: Gear, apart: float) -> float:
+    """Centre distance of two gears from the distance of their axes [m]: negative with an internal gear (ISO 21771)."""
+    return -apart if driver.is_internal or driven.is_internal else apart
 
 
 def pair_label(driver: str, driven: str) -> str:
@@ -82,19 +101,21 @@ class GearPairGeometry:
     Parameters
     ----------
     driver, driven : Gear
+        At most one of them internal.
     centre_distance : float or None
-        Distance of the shafts [m]; None for the distance without backlash of teeth that are not thinned, so that any
-        `tooth_thinning` becomes backlash.
+        Distance of the shafts [m], negative of an internal pair (ISO 21771); None for the distance without backlash of
+        teeth that are not thinned, so that any `tooth_thinning` becomes backlash.
     axial_offset : float
         Place of the middle of the driven gear's face along z from that of the driver's [m].
 
     Raises
     ------
     MismatchedGearsError
-        Unequal module, pressure angle or helix angle, or helices of one hand.
+        Unequal module, pressure angle or helix angle, or helices whose hands do not fit: opposite ones of external
+        gears, equal ones with an internal gear; two internal gears.
     InterferenceError
-        Contact below the involute's start on either gear, a tip in the other's root, or teeth thicker than their
-        spaces.
+        Contact below the involute's start on either gear, a tip in the other's root, teeth thicker than their
+        spaces, or tips that foul each other beyond the path of contact of an internal pair.
     NoContactError
         Total contact ratio below one, which of spur gears is the transverse one.
     """
@@ -113,10 +134,29 @@ class GearPairGeometry:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What is unlikely of the pair: contact ratios."""
-        return tuple(_ratio_findings(self))
+        """What is unlikely of the pair: contact ratios, an internal pair that can be mounted along its axes alone."""
+        return (*_ratio_findings(self), *_mounting_findings(self))
 
     # ---------------------------------------------------------- working values
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether one of the gears is internal."""
+        return self.driver.is_internal or self.driven.is_internal
+
+    @property
+    def pinion_and_ring(self) -> tuple[Gear, Gear]:
+        """The external and the internal gear of an internal pair."""
+        return (self.driven, self.driver) if self.driver.is_internal else (self.driver, self.driven)
+
+    def flank_sense(self, sense: int) -> int:
+        """Sense s along which the driver pushes, where it turns counter-clockwise (sense 1) or clockwise (-1).
+
+        That of its rotation, and of an internal driver the opposite: ``s R_k omega_k`` is positive.
+        """
+        if sense not in (1, -1):
+            raise GearError(f"{self.label}: sense must be +1 or -1, got {sense!r}")
+        return sense * self.driver.sign
 
     @property
     def label(self) -> str:
@@ -125,7 +165,7 @@ class GearPairGeometry:
 
     @property
     def ratio(self) -> float:
-        """Gear ratio, teeth of the driven over teeth of the driver: speeds divide by it."""
+        """Gear ratio, teeth of the driven over teeth of the driver: speeds divide by it. Negative of internal pairs."""
         return self.driven.teeth / self.driver.teeth
 
     @cached_property
@@ -190,7 +230,7 @@ class GearPairGeometry:
 
     @cached_property
     def working_centre_distance(self) -> float:
-        """Working centre distance of the shafts [m]."""
+        """Working centre distance of the shafts, negative of an internal pair [m]."""
         if self.centre_distance is not None:
             return self.centre_distance
         return self.base_radii_sum / math.cos(self.working_pressure_angle)
@@ -204,7 +244,7 @@ class GearPairGeometry:
 
     @property
     def working_pitch_radii(self) -> tuple[float, float]:
-        """Working pitch radii of driver and driven gear, which roll on each other [m]."""
+        """Working pitch radii of driver and driven gear, which roll on each other, signed as the gears' [m]."""
         cosine = math.cos(self.working_pressure_angle)
         return self.driver.base_radius / cosine, self.driven.base_radius / cosine
 
@@ -290,7 +330,7 @@ class GearPairGeometry:
     def mating_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of driver and driven gear in the pairs that enter at whole phases `number`."""
         n = np.asarray(number, dtype=np.int64)
-        return n % self.driver.teeth, n % self.driven.teeth
+        return n % self.driver.tooth_count, n % self.driven.tooth_count
 
     def mating_back_teeth(self, number: npt.ArrayLike) -> tuple[IntArray, IntArray]:
         """Mating teeth of the back flanks in the pairs that enter at whole phases `number` of the back flanks.
@@ -300,17 +340,16 @@ class GearPairGeometry:
         the driven tooth that follows, n + 1: n itself is on the other side.
         """
         n = -np.asarray(number, dtype=np.int64) - math.floor(self._back_flank_shift)
-        return n % self.driver.teeth, (n + 1) % self.driven.teeth
+        return n % self.driver.tooth_count, (n + 1) % self.driven.tooth_count
 
     def line_of_action_angle(self, centre_line_angle: float, sense: int = 1) -> float:
         """Angle from x of the unit vector along which the driver pushes the driven gear [rad].
 
         ``psi + s (pi/2 - w)``, with `centre_line_angle` psi the angle of the line from the driver's centre to
-        the driven's and `sense` s = +1 where the driver turns counter-clockwise, -1 where clockwise.
+        the driven's, of an internal pair from the driven's to the driver's, and s the `flank_sense` of `sense`: +1
+        where the driver turns counter-clockwise, -1 where clockwise.
         """
-        if sense not in (1, -1):
-            raise GearError(f"{self.label}: sense must be +1 or -1, got {sense!r}")
-        return centre_line_angle + sense * (math.pi / 2.0 - self.working_pressure_angle)
+        return centre_line_angle + self.flank_sense(sense) * (math.pi / 2.0 - self.working_pressure_angle)
 
     def driver_roll_angle(self, position: npt.ArrayLike) -> FloatArray:
         """Roll angle of the driver's contact point [rad] at `position` in base pitches."""
@@ -321,11 +360,11 @@ class GearPairGeometry:
         return (self.tangent_distance - self._driver_distance(position)) / self.driven.base_radius
 
     def driver_radius(self, position: npt.ArrayLike) -> FloatArray:
-        """Distance of the contact from the driver's centre [m] at `position` in base pitches."""
+        """Distance of the contact from the driver's centre [m], signed, at `position` in base pitches."""
         return self.driver.base_radius * np.sqrt(1.0 + self.driver_roll_angle(position) ** 2)
 
     def driven_radius(self, position: npt.ArrayLike) -> FloatArray:
-        """Distance of the contact from the driven gear's centre [m] at `position` in base pitches."""
+        """Distance of the contact from the driven gear's centre [m], signed, at `position` in base pitches."""
         return self.driven.base_radius * np.sqrt(1.0 + self.driven_roll_angle(position) ** 2)
 
     def driver_position(self, roll_angle: float) -> float:
@@ -346,7 +385,7 @@ class GearPairGeometry:
 
     @cached_property
     def tangent_distance(self) -> float:
-        """Distance of the tangent points of the line of action on the two base circles [m]."""
+        """Distance of the driven gear's tangent point of the line of action from the driver's, along the push [m]."""
         return self.base_radii_sum * math.tan(self.working_pressure_angle)
 
     @property
@@ -357,7 +396,7 @@ class GearPairGeometry:
 
     @cached_property
     def start_distance(self) -> float:
-        """Distance of the start of contact from the driver's tangent point [m]."""
+        """Distance of the start of contact from the driver's tangent point, along the push [m]."""
         return self.tangent_distance - tip_reach(self.driven)
 
     def _driver_distance(self, position: npt.ArrayLike) -> FloatArray:
@@ -365,12 +404,12 @@ class GearPairGeometry:
 
 
 def tip_reach(gear: Gear) -> float:
-    """Distance from a gear's tangent point to where its tip circle cuts the line of action [m]."""
-    return math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
+    """Distance from a gear's tangent point to where its tip circle cuts the line of action, signed as its radii [m]."""
+    return gear.sign * math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
 
 
 def mismatched_sizes(
-    driver: tuple[float, float, float], driven: tuple[float, float, float]
+    driver: tuple[float, float, float], driven: tuple[float, float, float], *, internal: bool = False
 ) -> tuple[Literal["module", "pressure_angle", "helix_angle"], ...]:
     """Sizes in which the teeth of a driver and a driven gear do not fit each other.
 
@@ -378,14 +417,16 @@ def mismatched_sizes(
     ----------
     driver, driven : tuple of float
         Normal module [m], normal pressure angle [rad] and helix angle [rad].
+    internal : bool
+        Whether one of the gears is internal.
 
     Returns
     -------
     tuple of str
         Modules and pressure angles that differ by more than the rounding of printed sizes, helix angles that are not
-        equal and of opposite hands.
+        equal and of opposite hands, of an internal pair of one hand.
     """
-    pairs = zip(driver, (driven[0], driven[1], -driven[2]), strict=True)
+    pairs = zip(driver, (driven[0], driven[1], driven[2] if internal else -driven[2]), strict=True)
     names: tuple[Literal["module", "pressure_angle", "helix_angle"], ...] = ("module", "pressure_angle", "helix_angle")
     return tuple(
         name
@@ -396,11 +437,27 @@ def mismatched_sizes(
 
 def _check_match(pair: GearPairGeometry) -> None:
     """Raise `MismatchedGearsError` unless the teeth of one gear fit the spaces of the other."""
+    if pair.driver.is_internal and pair.driven.is_internal:
+        raise MismatchedGearsError(
+            f"{pair.label}: both gears are internal, of {pair.driver.teeth} and {pair.driven.teeth} teeth; an internal "
+            "gear meshes with an external one"
+        )
+    if pair.is_internal and pair.driver.teeth + pair.driven.teeth >= 0:
+        pinion, ring = pair.pinion_and_ring
+        raise MismatchedGearsError(
+            f"{pair.label}: the internal gear {ring.name!r} of {ring.tooth_count} teeth does not reach around "
+            f"{pinion.name!r} of {pinion.teeth}; it needs more, by some 8 to 12 with teeth of full height"
+        )
     degrees = 180.0 / math.pi
     sizes = [(gear.module, gear.pressure_angle, gear.helix_angle) for gear in (pair.driver, pair.driven)]
-    for quantity in mismatched_sizes(*sizes):
+    for quantity in mismatched_sizes(*sizes, internal=pair.is_internal):
         scale, unit = (1e3, "mm") if quantity == "module" else (degrees, "degrees")
         first, second = (scale * getattr(gear, quantity) for gear in (pair.driver, pair.driven))
+        if quantity == "helix_angle" and pair.is_internal:
+            raise MismatchedGearsError(
+                f"{pair.label}: an internal gear and its pinion on parallel shafts need equal helix_angle of one hand, "
+                f"got {first:+.8g} and {second:+.8g} degrees"
+            )
         if quantity == "helix_angle":
             raise MismatchedGearsError(
                 f"{pair.label}: external gears on parallel shafts need equal helix_angle of opposite hands, "
@@ -426,8 +483,13 @@ def _check_distance(pair: GearPairGeometry) -> None:
     if distance is None:
         return
     close = pair.base_radii_sum / math.cos(pair.backlash_free_pressure_angle)
-    where = f"at a centre distance of {distance * 1e3:.6g} mm; they mesh without backlash at {close * 1e3:.6g} mm"
-    if not (math.isfinite(distance) and distance > pair.base_radii_sum):
+    where = (
+        f"at a centre distance of {pair.driven.sign * pair.driver.sign * distance * 1e3:.6g} mm; they mesh without "
+        f"backlash at {abs(close) * 1e3:.6g} mm"
+    )
+    if pair.is_internal:
+        _check_internal_distance(pair, distance, close, where)
+    elif not (math.isfinite(distance) and distance > pair.base_radii_sum):
         raise InterferenceError(
             f"{pair.label}: the gears do not fit {where}, which exceeds the sum of the base radii, "
             f"{pair.base_radii_sum * 1e3:.6g} mm"
@@ -437,6 +499,20 @@ def _check_distance(pair: GearPairGeometry) -> None:
     if _loses_contact(pair):
         GearPairGeometry(pair.driver, pair.driven)  # raises for teeth that mesh at no distance
         raise NoContactError(f"{pair.label}: the teeth lose contact {where}")
+
+
+def _check_internal_distance(pair: GearPairGeometry, distance: float, close: float, where: str) -> None:
+    """Raise for the distance of an internal pair that is not negative, or shorter than the base circles leave."""
+    if not (math.isfinite(distance) and distance < 0.0):
+        raise GearError(
+            f"{pair.label}: centre_distance of an internal pair is negative (ISO 21771), that of these gears "
+            f"{close * 1e3:.6g} mm without backlash; got {distance * 1e3:.6g} mm"
+        )
+    if distance >= pair.base_radii_sum:
+        raise InterferenceError(
+            f"{pair.label}: the gears do not fit {where}, which exceeds the difference of the base radii, "
+            f"{-pair.base_radii_sum * 1e3:.6g} mm"
+        )
 
 
 def _loses_contact(pair: GearPairGeometry) -> bool:
@@ -455,7 +531,7 @@ def _check_contact(pair: GearPairGeometry) -> None:
         remedy = "lengthen the teeth or widen the faces" if pair.driver.helix_angle else "lengthen the teeth"
         raise NoContactError(
             f"{pair.label}: the {kind} is {pair.total_contact_ratio:.4f}, below 1, without backlash at a centre "
-            f"distance of {pair.working_centre_distance * 1e3:.6g} mm; {remedy}"
+            f"distance of {abs(pair.working_centre_distance) * 1e3:.6g} mm; {remedy}"
         )
     last = pair.tangent_distance - pair.start_distance - pair.path_length
     for rooted, tip, lowest in ((pair.driver, pair.driven, pair.start_distance), (pair.driven, pair.driver, last)):
@@ -465,6 +541,23 @@ def _check_contact(pair: GearPairGeometry) -> None:
             raise InterferenceError(
                 f"{pair.label}: the tip of {tip.name!r} hits the root of {rooted.name!r} by {-clearance * 1e3:.4g} mm"
             )
+    if pair.is_internal:
+        _check_fouling(pair)
+
+
+def _check_fouling(pair: GearPairGeometry) -> None:
+    """Raise where the teeth of an internal pair foul each other beyond the path of contact."""
+    pinion, ring = pair.pinion_and_ring
+    clearance = fouling_clearance(pinion, ring, pair.working_centre_distance)
+    if clearance >= 0.0:
+        return
+    addendum = addendum_without_fouling(pinion, ring, pair.working_centre_distance)
+    shorter = "" if addendum is None else f"an addendum of {ring.name!r} of at most {addendum:.4g}, or "
+    raise InterferenceError(
+        f"{pair.label}: the tips of the teeth foul each other by {-clearance * 1e3:.4g} mm where the tip circles "
+        f"cross, beyond the path of contact, with {ring.tooth_count - pinion.teeth} teeth between {pinion.teeth} and "
+        f"{ring.tooth_count}; {shorter}a greater difference avoids it"
+    )
 
 
 _MOST_IN_CONTACT = 20.0
@@ -484,6 +577,17 @@ def _ratio_findings(pair: GearPairGeometry) -> Iterator[Finding]:
         yield Finding(part, "total_contact_ratio", pair.total_contact_ratio, expected, "warning")
 
 
+def _mounting_findings(pair: GearPairGeometry) -> Iterator[Finding]:
+    """Yield a pinion that does not pass between the tips of its ring's teeth."""
+    if not pair.is_internal:
+        return
+    clearance = radial_clearance(*pair.pinion_and_ring, pair.working_centre_distance)
+    if clearance < 0.0:
+        overlap = f"the teeth overlap by {-clearance * 1e3:.4g} mm on the way"
+        expected = f"to be mounted along the axes: pushed in radially, {overlap}"
+        yield Finding(("gear pair", f"{pair.driver.name} -> {pair.driven.name}"), "", None, expected, "warning")
+
+
 def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowest: float) -> None:
     """Raise where contact would begin `lowest` [m] past the tangent point, below the flank of `rooted`."""
     form = rooted.roll_angle(rooted.form_radius) * rooted.base_radius
@@ -491,13 +595,13 @@ def _check_active_profile(pair: GearPairGeometry, rooted: Gear, tip: Gear, lowes
         return
     start = (
         f"at a radius of {math.hypot(rooted.base_radius, lowest) * 1e3:.6g} mm"
-        if lowest >= 0.0
+        if lowest >= 0.0 or rooted.is_internal
         else f"inside the base circle of {rooted.base_radius * 1e3:.6g} mm"
     )
     raise InterferenceError(
         f"{pair.label}: the tip of {tip.name!r} reaches {(form - lowest) * 1e3:.4g} mm (along the line of action) "
         f"below the involute of {rooted.name!r}: contact would start {start}, the flank above its fillet starts at "
-        f"a radius of {rooted.form_radius * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or "
+        f"a radius of {abs(rooted.form_radius) * 1e3:.6g} mm; reduce the addendum of {tip.name!r} or "
         f"the root_radius of {rooted.name!r}"
     )
 
@@ -550,7 +654,12 @@ def profile_shift_sum(driver: Gear, driven: Gear, centre_distance: float) -> flo
     """
     base = driver.base_radius + driven.base_radius
     require_finite("centre_distance", centre_distance)
-    if centre_distance <= base:
+    if base < 0.0 and not centre_distance < base:
+        raise InterferenceError(
+            f"{pair_label(driver.name, driven.name)}: the centre distance of an internal pair must be below the sum of "
+            f"the base radii, {base * 1e3:.6g} mm, got {centre_distance * 1e3:.6g} mm"
+        )
+    if centre_distance <= base and base > 0.0:
         raise InterferenceError(
             f"{pair_label(driver.name, driven.name)}: the centre distance must exceed the sum of the base radii, "
             f"{base * 1e3:.6g} mm, got {centre_distance * 1e3:.6g} mm"

@@ -27,6 +27,7 @@ Where the gears are large and the gap small, the flank's radius there hardly dif
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -178,5 +179,6 @@ def _corner(
     y = tangent_distance - mating_tip * np.sin(angle)
     squared = x * x + y * y
     touched = np.sqrt(np.maximum(0.0, squared / base**2 - 1.0))
-    gap = base * (np.arctan2(y, x) - roll + touched - np.arctan(touched))
+    sign = math.copysign(1.0, base)  # a point at a negative radius is on the other side of the centre
+    gap = base * (np.arctan2(sign * y, sign * x) - roll + touched - np.arctan(touched))
     return touched, np.asarray(np.maximum(gap, 0.0), dtype=np.float64)

@@ -54,7 +54,7 @@ def hunting_numbers(geometry: GearPairGeometry) -> IntArray:
     Only gears whose teeth differ count; empty where the teeth of both are alike.
     """
     differing = [
-        gear.teeth
+        gear.tooth_count
         for gear in (geometry.driver, geometry.driven)
         if any(gear.pitch_deviations) or any(fault.tooth is not None for fault in gear.faults)
     ]
@@ -68,7 +68,7 @@ def _lead(geometry: GearPairGeometry, driver_teeth: IntArray, driven_teeth: IntA
 
 
 def _deviations(gear: Gear) -> FloatArray:
-    return np.array(gear.pitch_deviations or (0.0,) * gear.teeth, dtype=np.float64)
+    return np.array(gear.pitch_deviations or (0.0,) * gear.tooth_count, dtype=np.float64)
 
 
 PairFaults = tuple[tuple[Fault, ...], tuple[Fault, ...]]

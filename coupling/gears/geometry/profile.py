@@ -13,6 +13,10 @@ fillet
     :mod:`gearwhine.coupling.gears.geometry.rack`.  It runs from pi/2 (bottom of the space) to `Gear.fillet_end` (start
     of the involute), which is the transverse pressure angle but for undercut teeth.
 
+The tooth of an internal gear, whose radii are negative, is at negative heights and points upward as an external one,
+its root below its tip; it widens downward.  Directions and angles are those in which a tooth points, from root to tip:
+the tooth itself of an internal gear stands on the other side of its centre.
+
 All of it is in the transverse plane; tip relief, a few micrometres, is not drawn.
 
 Gear outlines are whole gears as polygons, alone and placed in mesh. At phase p the pair of teeth with number 0 touches
@@ -20,7 +24,7 @@ at p base pitches along the path of contact. Seen from its gear's centre, a flan
 ``atan(u)`` beyond the tangent point of the line of action and ``psi - inv(atan(u))`` from its tooth's axis, psi half
 the tooth's angle on the base circle; so the axis is ``u - psi`` beyond the tangent point. The tangent points are at the
 working pressure angle w from the line of centres. With that line at ``zeta`` from x, and the driver rotating in the
-sense s = +1 (counter-clockwise) or -1, the axes of the two teeth stand at
+sense s = +1 (counter-clockwise) or -1, of an internal driver the other way round, the axes of the two teeth stand at
 
     driver:  zeta + s (u_k - w - psi_k)          driven:  zeta + pi + s (u_i - w - psi_i).
 """
@@ -93,12 +97,19 @@ def flank_points(gear: Gear, angle: FloatArray) -> ProfilePoints:
 
 
 def fillet_points(gear: Gear, gamma: FloatArray) -> ProfilePoints:
-    """Root fillet of a tooth at `gamma` [rad], from pi/2 (root circle) down to `Gear.fillet_end`."""
+    """Root fillet of a tooth at `gamma` [rad], from pi/2 (root circle) down to `Gear.fillet_end`.
+
+    An internal gear's is an arc (:mod:`gearwhine.coupling.gears.geometry.root_arc`).
+    """
+    if gear.is_internal:
+        return ProfilePoints(*gear.root_arc.points(gamma))
     return ProfilePoints(*gear.rack_corner_arc.trochoid(gear.pitch_radius, gamma))
 
 
 def root_half_angle(gear: Gear) -> float:
-    """Half the angle a tooth spans on the root circle, where the trochoid meets it [rad]."""
+    """Half the angle a tooth spans on the root circle, where its fillet meets it, signed as the radii [rad]."""
+    if gear.is_internal:
+        return gear.root_arc.centre_angle
     return gear.rack_corner[1] / gear.pitch_radius
 
 
@@ -152,7 +163,7 @@ def gear_outline(
     ----------
     gear : Gear
     rotation : float
-        Angle from x of the axis of tooth 0 [rad], in the plane z = 0.
+        Angle from x of the direction in which tooth 0 points [rad], in the plane z = 0.
     centre : tuple of float
         Position of the gear's centre [m].
     axial_position : float
@@ -163,15 +174,18 @@ def gear_outline(
     Returns
     -------
     ndarray, shape (n, 2)
-        x and y of the corners of a closed polygon [m], counter-clockwise; the first point is not repeated.
+        x and y of the corners of a closed polygon [m], counter-clockwise; the first point is not repeated. Of an
+        internal gear it is the inside of the ring.
     """
     if points < 2:
         raise GearError(f"gear {gear.name!r}: an outline needs at least 2 points on each curve, got {points!r}")
     tooth = _tooth_and_space(gear, points)
-    twist = math.tan(gear.helix_angle) * axial_position / gear.pitch_radius
-    angles = rotation + twist + 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
+    twist = math.tan(gear.helix_angle) * axial_position / abs(gear.pitch_radius)
+    angles = rotation + twist + 2.0 * math.pi * np.arange(gear.tooth_count) / gear.teeth
     rotated = tooth[None, :] * np.exp(1j * angles)[:, None]
     outline = rotated.ravel() + complex(*centre)
+    if gear.is_internal:  # from a tooth to the next one it runs clockwise, as the signed pitch does
+        outline = outline[::-1]
     return np.column_stack([outline.real, outline.imag])
 
 
@@ -186,17 +200,17 @@ def meshing_rotations(
     phase : float
         Phase in mesh periods: position along the path of contact at which the teeth 0 touch [base pitches].
     centre_line_angle : float
-        Angle from x of the line from the driver's centre to the driven's [rad].
+        Angle from x of the line of centres [rad]: from the driver's centre to the driven's, of an internal pair the
+        other way round, since its centre distance is negative.
     sense : int
         +1 where the driver turns counter-clockwise, -1 where clockwise.
 
     Returns
     -------
     tuple of float
-        Angles from x of the axes of the two teeth 0 [rad].
+        Angles from x of the directions in which the two teeth 0 point [rad].
     """
-    if sense not in (1, -1):
-        raise GearError(f"{pair.label}: sense must be +1 or -1, got {sense!r}")
+    sense = pair.flank_sense(sense)
     angle = pair.working_pressure_angle
     driver = float(pair.driver_roll_angle(phase)) - angle - pair.driver.base_half_angle
     driven = float(pair.driven_roll_angle(phase)) - angle - pair.driven.base_half_angle

@@ -52,8 +52,10 @@ def contact_curvature_radius(pair: GearPairGeometry, position: npt.ArrayLike) ->
     on_path = (at >= -_PATH_END_ROUNDING) & (at <= pair.contact_ratio + _PATH_END_ROUNDING)
     driver = pair.driver.base_radius * pair.driver_roll_angle(at)
     driven = pair.driven.base_radius * pair.driven_roll_angle(at)
-    # The two distances add up to that of the tangent points.
-    radius = np.maximum(driver * driven, 0.0) / (pair.tangent_distance * math.cos(pair.driver.base_helix_angle))
+    # The two distances add up to that of the tangent points; of an internal pair one is negative, and their sum.
+    sum_of_both = pair.tangent_distance
+    lengths = np.maximum(math.copysign(1.0, sum_of_both) * driver * driven, 0.0)
+    radius = lengths / (abs(sum_of_both) * math.cos(pair.driver.base_helix_angle))
     return np.where(on_path, radius, np.nan)
 
 

@@ -42,7 +42,7 @@ def equivalent_mass(
 ) -> float:
     """Equivalent mass of the two gears rotating against each other, along the line of action [kg].
 
-    ``J_k J_i / (J_k R_i^2 + J_i R_k^2)``, inertias [kg m^2], base radii [m].
+    ``J_k J_i / (J_k R_i^2 + J_i R_k^2)``, inertias [kg m^2], base radii as lengths [m].
 
     Raises
     ------
@@ -282,7 +282,7 @@ def operation_findings(geometry: GearPairGeometry, torque: float, speed: float) 
             geometry.driven,
         ),
     )
-    force, base_helix = abs(torque) / driver.base_radius, driver.base_helix_angle
+    force, base_helix = abs(torque / driver.base_radius), driver.base_helix_angle
     length = geometry.face_width * (geometry.contact_ratio if base_helix else 1.0) / math.cos(base_helix)
     radii = [radius * math.sin(geometry.working_pressure_angle) for radius in geometry.working_pitch_radii]
     curvature = sum(math.cos(base_helix) / radius for radius in radii)
@@ -295,7 +295,7 @@ def operation_findings(geometry: GearPairGeometry, torque: float, speed: float) 
             f"roots with {1e-9 * root:.3g} GPa, where steel bears {1e-9 * _PRESSURE:g} and {1e-9 * _BENDING:g} at most"
         )
         yield Finding(part, "torque", float(torque), expected, "warning")
-    line_speed = abs(speed) * geometry.working_pitch_radii[0]
+    line_speed = abs(speed * geometry.working_pitch_radii[0])
     if line_speed > _BURSTS:
         expected = f"a pitch-line speed at which no rim bursts, at most {_BURSTS:g} m/s; it is {line_speed:.4g} m/s"
         yield Finding(part, "speed", float(speed), expected)
@@ -346,7 +346,7 @@ class LoadedGearPair:
     @property
     def torque(self) -> float:
         """Torque on the driver that the mesh carries [N m]."""
-        return self.static.force * self.geometry.driver.base_radius
+        return self.static.force * abs(self.geometry.driver.base_radius)
 
     @property
     def carrying_flanks(self) -> ToothContact:
@@ -390,7 +390,7 @@ def load_gear_pair(
     GearError
         Where the pair cannot carry the torque, or its stiffness model does not fit the geometry.
     """
-    force = abs(torque) / geometry.driver.base_radius
+    force = abs(torque / geometry.driver.base_radius)
     stiffness = pair.stiffness
     model = stiffness_under_load(stiffness, geometry, force) if isinstance(stiffness, str) else stiffness
     contact = tooth_contact(
@@ -429,5 +429,5 @@ def _damping_coefficient(
         return pair.damping
     if pair.damping_ratio == 0.0:
         return 0.0
-    mass = equivalent_mass(*inertias, geometry.driver.base_radius, geometry.driven.base_radius)
+    mass = equivalent_mass(*inertias, abs(geometry.driver.base_radius), abs(geometry.driven.base_radius))
     return mesh_damping(pair.damping_ratio, mean_mesh_stiffness, mass)

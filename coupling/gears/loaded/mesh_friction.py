@@ -86,14 +86,14 @@ def mesh_friction(
     # Before the pitch point the force is positive, and both distances are straight lines along the path.
     across, by_position = -(normal * signed).sum(axis=(1, 2)), -(normal * moment).sum(axis=(1, 2))
     driver_moment, driven_moment = (
-        gear.base_radius * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_position)
+        abs(gear.base_radius) * (roll(0.0) * across + (roll(1.0) - roll(0.0)) * by_position)
         for gear, roll in (
             (geometry.driver, geometry.driver_roll_angle),
             (geometry.driven, geometry.driven_roll_angle),
         )
     )
-    lost = driven_moment / geometry.ratio - driver_moment  # the sliding over the driver's speed
-    put_in = mesh.force * geometry.driver.base_radius
+    lost = driven_moment / abs(geometry.ratio) - driver_moment  # the sliding over the driver's speed
+    put_in = mesh.force * abs(geometry.driver.base_radius)
     mean = period_mean(mesh.phases, lost)
     return MeshFriction(
         mesh.phases,

@@ -114,8 +114,9 @@ def line_contact(geometry: GearPairGeometry, position: npt.ArrayLike) -> LineCon
     gears = (geometry.driver, geometry.driven)
     radii = (geometry.driver_radius(at), geometry.driven_radius(at))
     # A flank's radius of curvature is the length of the line of action to its base circle; none at its very start.
+    # Those of a concave flank, of an internal gear, are negative.
     curvatures = [
-        1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - gear.base_radius**2, 0.0)), 1e-6 * gear.module)
+        gear.sign / np.maximum(np.sqrt(np.maximum(radius**2 - gear.base_radius**2, 0.0)), 1e-6 * gear.module)
         for gear, radius in zip(gears, radii, strict=True)
     ]
     depths = [in_normal_section(gear, _depth)(radius) for gear, radius in zip(gears, radii, strict=True)]

@@ -103,7 +103,7 @@ def _spur_radius(gear: Gear, spur: Gear) -> Callable[[FloatArray], FloatArray]:
 
     def spur_radius(radius: FloatArray) -> FloatArray:
         share = (_reach(gear, radius) - low) / (high - low)
-        return np.asarray(np.hypot(spur.base_radius, foot + share * (tip - foot)), dtype=np.float64)
+        return np.asarray(gear.sign * np.hypot(spur.base_radius, foot + share * (tip - foot)), dtype=np.float64)
 
     return spur_radius
 

@@ -49,6 +49,7 @@ def library_findings(case: Case) -> Iterator[Finding]:
         yield from _of_gears(case.gear, case.parts.gears)
         yield from _of_pairs(case.parts)
     if case.rotor:
+        yield from _of_sets(case)
         yield from _of_machine(case)
 
 
@@ -134,6 +135,14 @@ def _of_gears(tables: Sequence[Gear], gears: Mapping[str, BuiltGear]) -> Iterato
                 yield placed(("gear", index), finding, key_in_gear(gear, finding.attribute))
 
 
+def _of_sets(case: Case) -> Iterator[Finding]:
+    """Yield findings of planetary sets, and of the rotors that are their carriers and planets."""
+    numbers = {one.name: index for index, one in enumerate(case.planetary)}
+    for finding in case.parts.set_findings():
+        found = placed(("planetary", numbers[finding.part[1]]), finding)
+        yield replace(found, value=UNSAID) if finding.attribute == "planets" else found
+
+
 def _of_machine(case: Case) -> Iterator[Finding]:
     """Yield findings of the machine's parts at their places."""
     from gearwhine.coupling.errors import CouplingError
@@ -191,7 +200,7 @@ def _place_findings(parts: Parts, housing: Housing | None) -> Iterator[PartFindi
     seats = {} if housing is None else {seat.name: seat.diameter for seat in housing.seat}
     yield from machine_findings(shafts, gears, bearings, meshing, seats)
     for shaft, rotor in zip(shafts, parts.rotors, strict=True):
-        tip = max((mounted.gear.tip_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
+        tip = max((mounted.gear.outer_radius for mounted in parts.gears_on(shaft.name)), default=0.0)
         yield from unbalance_findings(shaft, rotor, tip)
     by_name = {shaft.name: shaft.rotor for shaft in shafts}
     for place, force in enumerate(() if parts.operation is None else parts.operation.force):
