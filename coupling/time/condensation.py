@@ -39,6 +39,7 @@ Law = TypeVar("Law", LinearConnector, NonlinearConnector, Sliding)
 
 _DEFAULT_LIMIT = 2.0 * np.pi * LATERAL_LIMIT_HZ
 _ABOVE_CERTIFIED = 1.0 + 1e-6  # ratio to the highest certified mode from which a frequency is above it
+_NO_COUPLING = 1e-4  # part of the stiffnesses of a residual coordinate and another below which they are not coupled
 _SINGULAR_VALUE_ROUNDING = 1e-13  # part of a matrix's largest singular value that is rounding
 
 
@@ -106,10 +107,16 @@ def _with_static_attachments(component: Component) -> Component:
         float(found.max(initial=0.0) if len(found) > FEWEST_MODES else min(found.max(initial=0.0), _DEFAULT_LIMIT))
         for found in certified
     )
-    own = np.sqrt(np.abs(np.diag(component.stiffness)))
+    own_stiffness = np.diag(component.stiffness)
+    own = np.sqrt(np.abs(own_stiffness))
     is_static = (own > _ABOVE_CERTIFIED * limit) & np.isin(component.kinds, ["rotor", "torsion", "axial"])
     kinds = tuple("residual" if static else kind for kind, static in zip(component.kinds, is_static, strict=True))
-    return replace(component, kinds=kinds)
+    # A spring has no Coriolis and gyroscopic terms: these couplings, tiny beside its stiffness, would make the rank of
+    # what is not diagonal as large as the number of coordinates.
+    coupling = component.stiffness - np.diag(own_stiffness)
+    of_static = is_static[:, None] | is_static
+    dropped = of_static & (np.abs(coupling) < _NO_COUPLING * np.outer(own, own))
+    return replace(component, kinds=kinds, stiffness=np.where(dropped, 0.0, coupling) + np.diag(own_stiffness))
 
 
 def condensed(system: CoupledSystem) -> Condensed:
