@@ -86,14 +86,14 @@ class Condensed:
 
 
 def with_static_attachments(system: CoupledSystem) -> CoupledSystem:
-    """Return a system with connectors that turn in which modes of shafts above their limit are residual.
+    """Return a system with planets in which modes of shafts above their limit are residual.
 
-    They carry the static response of the truncated modes, of a short shaft at frequencies that no step should resolve;
-    the exact method, which steps over them, does not know connectors that turn. Other systems are returned as they are.
+    They carry the static response of the truncated modes, of a short shaft at frequencies that no step should resolve.
+    Systems without planets are returned as they are.
     A shaft keeps modes up to a limit, those certified, and at least so few that the limit may be below them: of as few,
     those below the default limit count.
     """
-    if not system.turning_names:
+    if not any(isinstance(one, RotorComponent) and one.carrier is not None for one in system.components):
         return system
     return replace(system, components=tuple(map(_with_static_attachments, system.components)))
 

@@ -170,7 +170,9 @@ def _prepared(
     """Integration of the condensed coordinates by the method that the settings ask for, and their initial state."""
     if samples_per_block < 1:
         raise CouplingError(f"blocks of {samples_per_block} samples; expected at least one")
-    system = with_static_attachments(system)
+    if settings.method == "newmark" or system.turning_names:
+        # The exact method steps over modes of any frequency.
+        system = with_static_attachments(system)
     followed = condensed(system)
     if followed.system is not system:
         system, rows = followed.system, (outputs.displacement, outputs.velocity, outputs.acceleration)
