@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from planetary_machines import set_parts
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from gearwhine.coupling import (
     CoupledSystem,
     CouplingError,
+    Machine,
     MountedBearing,
     PeriodicError,
     TransientError,
@@ -36,7 +38,8 @@ from gearwhine.coupling.machine.connectors import (
 )
 from gearwhine.coupling.machine.coupled_system import HarmonicLoad
 from gearwhine.coupling.machine.speed_profile import SpeedProfile
-from gearwhine.coupling.time.condensation import condensed
+from gearwhine.coupling.time import transient
+from gearwhine.coupling.time.condensation import condensed, with_static_attachments
 from gearwhine.coupling.time.histories import histories, transient_outputs
 from gearwhine.coupling.time.transient import TransientResult
 from gearwhine.coupling.time.turning_directions import law_directions, mixing, turning_arrays
@@ -367,3 +370,33 @@ def test_the_force_of_a_bearing_that_turns_follows_its_directions(profile: Speed
         np.testing.assert_allclose(found["left"][row], expected, rtol=1e-9, atol=1e-6)
         expected = stiffness @ (right.directions.T @ (q + 1e-5 * v))
         np.testing.assert_allclose(found["right"][row], expected, rtol=1e-9, atol=1e-6)
+
+
+# ------------------------------------------------------------------------------------------ modes of short shafts
+
+
+@pytest.mark.slow
+def test_static_modes_of_planets_ask_for_no_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forces of a set with all modes followed, and with those above 8 kHz as springs; both start at rest."""
+    parts = set_parts()
+    stiffness = np.diag([1e8, 2e8])
+    # Bearings that are not alike all round stand still, and the meshes of sun and ring turn.
+    parts["bearings"] = [
+        one
+        if one.rotor.startswith("p")
+        else replace(one, bearing=Bearing(one.bearing.name, one.bearing.at, stiffness, 1e-5 * stiffness))
+        for one in parts["bearings"]
+    ]
+    machine = Machine(**(parts | {"speed": 100.0 * np.pi}))
+    system = machine.assembled.system
+    reduced = with_static_attachments(system)
+    assert len(system.turning_names) >= 8
+    assert reduced.size == system.size
+    assert reduced.highest_frequency < 0.2 * system.highest_frequency
+    few = machine.simulate(revolutions=0.2, discard=0.05, tolerance=1e-4).result
+    monkeypatch.setattr(transient, "with_static_attachments", lambda system: system)
+    many = machine.simulate(revolutions=0.2, discard=0.05, tolerance=1e-3).result
+    assert few.steps < 0.4 * many.steps
+    np.testing.assert_allclose(few.mean_force, many.mean_force, rtol=1e-4)
+    np.testing.assert_allclose(few.peak_force, many.peak_force, rtol=1e-3)
+    assert few.energy.error < 1e-3
